@@ -1,0 +1,53 @@
+"""Exceptions of kinform. They take data and build the message; the command turns them into exit 2."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+__all__ = ["InputError", "KinformError", "Problem", "ResultsError", "StageError"]
+
+
+class KinformError(Exception):
+    """Base of everything kinform raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with the input: what, where, and what to do about it.
+
+    `file` is as the user wrote it or relative to the manifest; `line` is 1-based; `remedy` is an
+    imperative sentence.
+    """
+
+    message: str
+    file: str | None = None
+    line: int | None = None
+    remedy: str | None = None
+
+    def __str__(self) -> str:
+        place = "" if self.file is None else self.file
+        if self.line is not None:
+            place += f":{self.line}"
+        text = f"{place}: {self.message}" if place else self.message
+        return f"{text}\n  remedy: {self.remedy}" if self.remedy else text
+
+
+class InputError(KinformError):
+    """The input cannot be used; carries every problem that was found, not only the first."""
+
+    def __init__(self, problems: Iterable[Problem]):
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class ResultsError(KinformError):
+    """A results file cannot be read or written."""
+
+
+class StageError(KinformError):
+    """A stage was asked for before the stages that it needs."""
+
+    def __init__(self, stage: str, needs: str):
+        self.stage, self.needs = stage, needs
+        super().__init__(f"{stage} needs the results of `kinform {needs}`: run that first")

@@ -1,0 +1,194 @@
+"""Form: parts, meshes, groups and poses as they come out of the manifest, in SI.
+
+Arrays are float64 and read-only. `X_WP` is the pose of the part frame P in the world W (4×4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.function import Function, SimulationRequest
+from kinform.model.names import PartName
+from kinform.model.tolerances import Tolerances
+
+__all__ = [
+    "Assembly",
+    "Assumption",
+    "Group",
+    "MassOverride",
+    "Mesh",
+    "MeshHealth",
+    "Part",
+    "Source",
+    "Subassembly",
+    "freeze",
+]
+
+Array = NDArray[np.float64]
+
+
+def freeze(array: NDArray[np.generic]) -> NDArray[np.generic]:
+    """The same array, made read-only."""
+    array.setflags(write=False)
+    return array
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where something was declared: manifest path relative to the top manifest's folder, 1-based line."""
+
+    file: str
+    line: int | None = None
+
+
+@dataclass(frozen=True)
+class MeshHealth:
+    """Facts about one mesh, measured before anything was repaired (counts; volume in m³, signed)."""
+
+    facets: int
+    vertices: int
+    watertight: bool
+    """Every edge belongs to exactly two facets after welding."""
+    consistent_winding: bool
+    """Every shared edge is run through in both directions."""
+    manifold_status: str
+    """Status by manifold3d: "NoError", "NotManifold", …"""
+    volume: float
+    """Signed volume (m³); negative: inside out. Meaningful when watertight."""
+    degenerate_facets: int
+    duplicate_facets: int
+    open_edges: int
+    overused_edges: int
+    shells: int
+    weld: float
+    """Welding distance that was used (m)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A welded triangle mesh in the part frame, shared by all parts with the same content."""
+
+    vertices: Array
+    """(V, 3) m."""
+    faces: NDArray[np.int64]
+    """(F, 3) indices into vertices; degenerate facets removed."""
+    health: MeshHealth
+    path: str
+    """File relative to the top manifest's folder."""
+    body: str | None
+    """Body inside the file (OBJ `o`/`g`, ASCII solid), or None for the whole file."""
+    digest: str
+    """SHA-256 (hex) of the welded geometry: vertices, faces. Equal digests: the same shape."""
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the diagonal of the bounding box (m)."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0))) if len(self.vertices) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class MassOverride:
+    """Mass properties that the user states instead of those of the geometry (part frame)."""
+
+    mass: float
+    centre_of_mass: Array
+    """(3,) m."""
+    inertia: Array
+    """(3, 3) kg·m² about the centre of mass, part axes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One part, placed. `mesh` is None for a stick body."""
+
+    name: PartName
+    mesh: Mesh | None
+    X_WP: Array
+    """(4, 4) pose of the part frame in the world."""
+    solid: bool
+    """False: surfaces only; contacts yes, mass no, need not be watertight."""
+    material: str | None
+    density: float | None
+    """kg/m³; None when nothing states it."""
+    override: MassOverride | None
+    units: str
+    """Length unit of this part's mesh file."""
+    source: Source
+
+
+@dataclass(frozen=True)
+class Group:
+    """Parts fastened by means that the geometry does not show."""
+
+    name: str
+    parts: tuple[PartName, ...]
+    source: Source
+
+
+@dataclass(frozen=True, eq=False)
+class Assumption:
+    """The user overrides what geometry says of two parts (or groups). World frame, SI."""
+
+    between: tuple[str, str]
+    type: str | None
+    """Joint type, or None when `ignore`."""
+    ignore: bool
+    axis: Array | None
+    point: Array | None
+    pitch: float | None
+    """Metres a turn."""
+    reason: str
+    source: Source
+
+
+@dataclass(frozen=True)
+class Subassembly:
+    """A sub-assembly that was flattened: its prefix ("yaw_motor"), file, and its stated mobility."""
+
+    name: str
+    file: str
+    mobility: int | None
+    source: Source
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Form and function of one design, flattened, in SI, in the world frame."""
+
+    name: str
+    units: str
+    """Unit of the top manifest, used to show lengths to people."""
+    parts: tuple[Part, ...]
+    """Sorted by name."""
+    groups: tuple[Group, ...]
+    """Sorted by name."""
+    assumptions: tuple[Assumption, ...]
+    ground: str | None
+    """Part or group; None: the heaviest body."""
+    tolerances: Tolerances
+    infer_fasteners: bool
+    function: Function
+    simulation: SimulationRequest | None
+    subassemblies: tuple[Subassembly, ...]
+    source: Source
+    files: tuple[str, ...]
+    """Every file read (manifests, meshes, tables), relative to the top manifest's folder, sorted."""
+    notes: tuple[str, ...] = field(default=())
+    """What the reader did on its own account, in sentences."""
+
+    def part(self, name: str) -> Part:
+        """The part of that name; KeyError otherwise."""
+        for part in self.parts:
+            if part.name == name:
+                return part
+        raise KeyError(name)
+
+    def parts_of(self, name: str) -> tuple[PartName, ...]:
+        """The parts that a part's or a group's name stands for; KeyError for unknown names."""
+        for group in self.groups:
+            if group.name == name:
+                return group.parts
+        return (self.part(name).name,)

@@ -1,0 +1,87 @@
+"""Where parts touch: patches between analytic surfaces, and overlaps between solids. World frame, SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.names import PartName
+
+__all__ = ["Contacts", "Interference", "Patch"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """Contact between a surface of part a and a surface of part b (a < b by name).
+
+    `normals` come from the analytic surface, unit, pointing out of a's material (into b).
+    """
+
+    parts: tuple[PartName, PartName]
+    surfaces: tuple[int, int]
+    """Index of the surface in each part's MeshSurfaces."""
+    kind: str
+    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals."""
+    one_sided: bool
+    """True: analytic on one side, facets of no known surface on the other."""
+    points: Array
+    """(n, 3) m, samples on the patch."""
+    normals: Array
+    """(n, 3)."""
+    gaps: Array
+    """(n,) m, signed: negative is overlap."""
+    weights: Array
+    """(n,) m², area that each sample stands for; their sum is `area`."""
+    area: float
+    gap: float
+    """m: area-weighted mean of `gaps`; for coaxial surfaces the difference of radii."""
+    axis: Array
+    """(3,) plane normal out of a, or the common axis; zero for spheres."""
+    point: Array
+    """(3,) on the plane, on the axis, or the centre."""
+    radii: tuple[float, float]
+    """Radius on a and b (half-angle for cones); 0 for planes."""
+    misalignment: float
+    """rad between the two axes (0 for spheres)."""
+    offset: float
+    """m between the two axes at the patch, or between the centres."""
+    uncertainty: tuple[float, float]
+    """Of the direction (rad) and of the position (m) of the common geometry, from both fits."""
+    chord: float
+    """m: sum of the chord errors of both surfaces."""
+    fit: str
+    """clearance, touch, transition or interference, beyond chord errors and uncertainty."""
+
+
+@dataclass(frozen=True, eq=False)
+class Interference:
+    """Solids of two parts overlap beyond the chord errors of their surfaces."""
+
+    parts: tuple[PartName, PartName]
+    volume: float
+    """m³, by manifold3d; nan where a mesh is not manifold."""
+    depth: float
+    """m: greatest overlap measured."""
+    place: Array
+    """(3,) m: centroid of the overlap."""
+    mated: bool
+    """True: all of it lies at mating patches within the contact tolerance (a press fit)."""
+    method: str
+    """"manifold" or "facets"."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """All contacts of an assembly."""
+
+    patches: tuple[Patch, ...]
+    """Sorted by part names, then surface indices."""
+    interferences: tuple[Interference, ...]
+    candidates: tuple[tuple[PartName, PartName], ...]
+    """Pairs that the broad phase kept, sorted."""
+    tolerance: dict[tuple[PartName, PartName], float]
+    """Contact tolerance used for each candidate pair (m)."""

@@ -1,0 +1,29 @@
+"""Everything known of one design: what each stage has added so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.findings import CheckReport
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassReport
+from kinform.model.simulation import Simulation
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["Design"]
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The assembly and the results of the stages; None: not computed yet."""
+
+    assembly: Assembly
+    surfaces: dict[str, MeshSurfaces] = field(default_factory=dict)
+    """By mesh digest; empty: not computed yet."""
+    contacts: Contacts | None = None
+    kinematics: Kinematics | None = None
+    mass: MassReport | None = None
+    simulation: Simulation | None = None
+    report: CheckReport | None = None

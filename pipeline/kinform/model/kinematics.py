@@ -1,0 +1,162 @@
+"""Behaviour without forces: bodies, joints, constraints, mobility. World frame, SI and radians.
+
+Twists are (ω; v), v the velocity of the point at the world's origin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.names import BodyName, JointName, PartName
+
+__all__ = [
+    "JOINT_TYPES",
+    "STATUSES",
+    "Blocker",
+    "Body",
+    "ConstraintMatrix",
+    "Joint",
+    "Kinematics",
+    "Misfit",
+    "Mobility",
+]
+
+Array = NDArray[np.float64]
+
+JOINT_TYPES = (
+    "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal",
+    "general",
+)  # fmt: skip
+STATUSES = ("determined", "inferred", "ambiguous", "blocked")
+
+
+@dataclass(frozen=True)
+class Body:
+    """Parts that move as one. Named after its alphabetically first group, else its first part."""
+
+    name: BodyName
+    parts: tuple[PartName, ...]
+    """Sorted."""
+    ground: bool
+    merged: tuple[str, ...] = ()
+    """Why the parts are one body: "group shoulder", "contact a~b of rank 6", "assumed: reason"."""
+
+
+@dataclass(frozen=True, eq=False)
+class Blocker:
+    """A contact that was left out of the decision, and what it forbids."""
+
+    parts: tuple[PartName, PartName]
+    patch: int
+    """Index into Contacts.patches."""
+    area: float
+    share: float
+    """Of the pair's contact area."""
+    place: Array
+    """(3,) m."""
+    gap: float
+    forbids: str
+    """In words: "rotation about +z", …"""
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """What two bodies may do relative to each other; values are of the second about `axis`
+    relative to the first."""
+
+    name: JointName
+    bodies: tuple[BodyName, BodyName]
+    """Sorted by name."""
+    type: str
+    axis: Array | None
+    """(3,) unit, canonical sign."""
+    point: Array | None
+    """(3,) m: on the axis, near the contact; the centre for spherical."""
+    axis2: Array | None
+    pitch: float | None
+    freedoms: int
+    twists: Array
+    """(freedoms, 6) basis of the relative motions."""
+    evidence: tuple[str, ...]
+    """Sorted names of surface kinds, or "rim", "bolt circle", "assumption", "function"."""
+    status: str
+    reason: str
+    """One sentence: why this type and status."""
+    patches: tuple[int, ...]
+    """Indices into Contacts.patches that carry the joint."""
+    blockers: tuple[Blocker, ...]
+    singular_values: Array
+    """(6,) ascending."""
+    range_lower: float | None = None
+    range_upper: float | None = None
+    range_status: str = "unknown"
+
+
+@dataclass(frozen=True, eq=False)
+class ConstraintMatrix:
+    """The assembly's J: one row a contact sample, six columns a body (ω; v at `centre`, v over `length`).
+
+    Row r, for the bodies a and b: n·(velocity of b − velocity of a) at the sample. J V ≥ 0.
+    """
+
+    bodies: tuple[BodyName, ...]
+    data: Array
+    indices: NDArray[np.int64]
+    indptr: NDArray[np.int64]
+    patch: NDArray[np.int64]
+    """(rows,) index into Contacts.patches."""
+    sample: NDArray[np.int64]
+    """(rows,) index into the patch's points."""
+    centre: Array
+    length: float
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """What snapping did: the greatest change of a direction and of a position, and where."""
+
+    angle: float = 0.0
+    distance: float = 0.0
+    angle_at: str = ""
+    distance_at: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Mobility:
+    """Mobility relative to ground, defined in the results contract."""
+
+    instantaneous: int
+    finite: int | None
+    effective: int
+    idle: int
+    redundant: int
+    blocked: int
+    """Instantaneous mobility when blockers count as constraints (`blocked_mobility`)."""
+    freedoms: Array
+    """(instantaneous, bodies, 6) orthonormal basis of body twists, ground at rest."""
+    idle_bodies: tuple[BodyName, ...]
+    uncertain: tuple[JointName, ...]
+    """Joints that are ambiguous or general or blocked: the counts depend on them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """All of it."""
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    matrix: ConstraintMatrix
+    mobility: Mobility
+    misfit: Misfit
+    misaligned: tuple[tuple[str, float, float], ...] = ()
+    """(joint name, angle rad, offset m) of pairs whose axes were mated beyond what clearance allows."""
+
+    def body_of(self, part: str) -> Body:
+        """The body that contains the part; KeyError otherwise."""
+        for body in self.bodies:
+            if part in body.parts:
+                return body
+        raise KeyError(part)

@@ -1,0 +1,51 @@
+"""A simulated run: poses, joint values, efforts, energy over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Simulation"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """T output times, B bodies, n joint coordinates (order: joint_names with joint_offset).
+
+    `status`: done; not requested; refused (cannot be simulated, see `reason`); stopped (ended early).
+    """
+
+    status: str
+    reason: str
+    level: str
+    """functional, kinematic, dynamic; "" when nothing ran."""
+    time: Array
+    """(T,) s."""
+    body_names: tuple[str, ...]
+    p_WB: Array
+    """(T, B, 3) m."""
+    q_WB: Array
+    """(T, B, 4) wxyz; the body frame is the world frame at the pose of the meshes."""
+    joint_names: tuple[str, ...]
+    joint_types: tuple[str, ...]
+    joint_offset: NDArray[np.int64]
+    """(joints + 1,) first coordinate of each joint."""
+    joint_position: Array
+    """(T, n) rad or m; a joint value is of the second body about the joint's axis."""
+    joint_velocity: Array
+    joint_effort: Array
+    """(T, n) N·m or N that the drive gives; nan where unknown."""
+    energy: Array
+    """(T, 3): kinetic, potential, work put in by drives and loads so far (J); nan below dynamic."""
+    residual: Array
+    """(T,) largest constraint residual (m or rad)."""
+    rank: NDArray[np.int64]
+    """(T,) rank of the loop closures."""
+    assumptions: tuple[str, ...]
+    """Every value that was assumed, in sentences."""
+    failures: tuple[tuple[str, str], ...] = ()
+    """(subject, what cannot be simulated and why)."""
