@@ -13,11 +13,11 @@ class Tolerances:
     """Tolerances of one assembly, SI and radians. None means: derived from the geometry."""
 
     contact: float | None = None
-    """Gap or overlap up to which surfaces mate (m). Default per pair: min(0.5 mm, 3 % of the smaller part)."""
+    """Gap or overlap up to which surfaces mate (m). Default a pair: min(0.5 mm, 3 % of the smaller part)."""
     weld: float | None = None
     """Vertices closer than this are one (m). Default per mesh: 1e-6 of its diagonal."""
     alignment: float = math.radians(0.2)
-    """Axes of one pair closer than this mate; the excess over what the clearance allows is a finding (rad)."""
+    """Axes of one pair closer than this mate; the excess over the clearance is a finding (rad)."""
 
     smooth_edge: float = math.radians(32.0)
     """Dihedral below which an edge is smooth: a 12-gon is a cylinder, an 8-gon stays a prism (rad)."""
