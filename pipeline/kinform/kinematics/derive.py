@@ -1,0 +1,267 @@
+"""The kinematics stage: contacts → bodies, joints, constraint matrix, mobility."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.bodies import Merger
+from kinform.kinematics.constraints import assemble
+from kinform.kinematics.decide import Decision, decide
+from kinform.kinematics.evidence import Evidence, gather
+from kinform.kinematics.idle import idle_freedoms
+from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
+from kinform.kinematics.mobility import body_twists, close
+from kinform.kinematics.screws import twist_at_origin
+from kinform.kinematics.snapping import snap
+from kinform.model.assembly import Assembly, Assumption
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Body, Joint, Kinematics, Misfit, Mobility
+from kinform.model.names import BodyName, JointName, PartName
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["derive", "functional", "mobility_within"]
+
+Array = NDArray[np.float64]
+Pair = tuple[BodyName, BodyName]
+
+
+def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts) -> Kinematics:
+    """Bodies, joints, J and mobility of an assembly whose contacts are known.
+
+    Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
+    bodies are classified again until nothing fuses. Stick bodies take their joints from [function].
+    """
+    del surfaces  # the patches carry the analytic geometry already
+    merger = Merger(assembly)
+    decided = _decide_all(assembly, contacts, merger)
+    bodies = merger.bodies()
+    of_part = {part: body.name for body in bodies for part in body.parts}
+    stated = _stated(assembly, of_part)
+    joints: list[Joint] = []
+    strict: dict[JointName, Array] = {}
+    misaligned: list[tuple[str, float, float]] = []
+    for pair in sorted(set(decided) | set(stated)):
+        if pair in stated:
+            joints.append(stated[pair])
+            continue
+        evidence, decision = decided[pair]
+        joint = joint_from_decision(pair, evidence, decision)
+        joints.append(joint)
+        if decision.status == "blocked":
+            strict[joint.name] = twist_at_origin(decision.strict, evidence.frame).T
+        angle, offset = misalignment(evidence, decision)
+        if angle > 0.0 or offset > 0.0:
+            misaligned.append((joint.name, angle, offset))
+    snapped, misfit = snap(joints, contacts.patches, _size(assembly))
+    return _finish(assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned))
+
+
+def functional(assembly: Assembly) -> Kinematics:
+    """The ball-and-stick model: groups and parts as bodies, joints straight from [function]."""
+    merger = Merger(assembly)
+    for joint in assembly.function.joints:
+        if joint.type == "fixed":
+            first, second = (assembly.parts_of(name)[0] for name in joint.between)
+            merger.fuse(first, second, f"intended joint {joint.name}")
+    bodies = merger.bodies()
+    of_part = {part: body.name for body in bodies for part in body.parts}
+    stated = {}
+    for joint in assembly.function.joints:
+        pair = _pair(assembly, of_part, joint.between)
+        if pair is not None:
+            stated[pair] = _intended(pair, joint)
+    joints = tuple(stated[pair] for pair in sorted(stated))
+    return _finish(assembly, bodies, joints, (), Misfit(), {}, ())
+
+
+def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
+    """Freedoms of some parts among themselves: the bodies they belong to and the joints between
+    those, relative to the first of these bodies (or ground, if it is among them)."""
+    wanted = set(part_names)
+    bodies = [b for b in kinematics.bodies if wanted.intersection(b.parts)]
+    if not bodies:
+        return 0
+    index = {b.name: k for k, b in enumerate(bodies)}
+    joints = [j for j in kinematics.joints if j.bodies[0] in index and j.bodies[1] in index]
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
+    ground = next((k for k, b in enumerate(bodies) if b.ground), 0)
+    return close(len(bodies), edges, [j.twists for j in joints], ground, kinematics.matrix.length).mobility
+
+
+def _decide_all(
+    assembly: Assembly, contacts: Contacts, merger: Merger
+) -> dict[Pair, tuple[Evidence, Decision]]:
+    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
+    known: dict[tuple[int, ...], tuple[Evidence, Decision] | None] = {}
+    names = {part.name: part.name for part in assembly.parts}
+    stated = _stated_roots(assembly, merger)
+    while True:
+        bodies = merger.bodies()
+        of_part = {part: body.name for body in bodies for part in body.parts}
+        touching: dict[Pair, list[tuple[int, Patch, bool]]] = defaultdict(list)
+        for index, patch in enumerate(contacts.patches):
+            a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
+            if a != b:
+                touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
+        out: dict[Pair, tuple[Evidence, Decision]] = {}
+        fused = False
+        for pair in sorted(touching):
+            members = touching[pair]
+            key = tuple(-1 - i if turned else i for i, _, turned in members)
+            if key not in known:
+                contact = max(
+                    contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members
+                )
+                evidence = gather(members, assembly.tolerances, contact)
+                known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
+            found = known[key]
+            if found is None:
+                continue
+            out[pair] = found
+            parts = members[0][1].parts
+            if frozenset(merger.root(p) for p in parts) in stated:
+                continue
+            if found[1].form.type == "fixed" and found[1].status == "determined":
+                merger.fuse(
+                    names[parts[0]], names[parts[1]], f"contact {parts[0]}~{parts[1]} leaves no freedom"
+                )
+                fused = True
+        if not fused:
+            return out
+
+
+def _stated_roots(assembly: Assembly, merger: Merger) -> set[frozenset[int]]:
+    """Pairs of bodies for which an assumption states another joint than fixed: never fused."""
+    out = set()
+    for assumption in assembly.assumptions:
+        if assumption.type not in (None, "fixed"):
+            out.add(frozenset(merger.root(assembly.parts_of(n)[0]) for n in assumption.between))
+    return out
+
+
+def _pair(assembly: Assembly, of_part: Mapping[PartName, BodyName], between: tuple[str, str]) -> Pair | None:
+    a, b = (of_part[assembly.parts_of(name)[0]] for name in between)
+    return None if a == b else ((a, b) if a < b else (b, a))
+
+
+def _stated(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> dict[Pair, Joint]:
+    """Joints that assumptions state, and joints of stick bodies that the function states."""
+    out: dict[Pair, Joint] = {}
+    formless = {
+        body
+        for body in set(of_part.values())
+        if all(part.mesh is None for part in assembly.parts if of_part[part.name] == body)
+    }
+    for joint in assembly.function.joints:
+        pair = _pair(assembly, of_part, joint.between)
+        if pair is not None and formless.intersection(pair):
+            out[pair] = _intended(pair, joint)
+    for assumption in assembly.assumptions:
+        pair = _pair(assembly, of_part, assumption.between)
+        if pair is not None and assumption.type is not None and not assumption.ignore:
+            out[pair] = _assumed(pair, assumption)
+    return out
+
+
+def _intended(pair: Pair, joint: IntendedJoint) -> Joint:
+    return stated_joint(
+        pair, joint.type, joint.axis, joint.point, joint.axis2, joint.pitch,
+        evidence="function", reason=f"intended joint {joint.name}: one side has no geometry",
+    )  # fmt: skip
+
+
+def _assumed(pair: Pair, assumption: Assumption) -> Joint:
+    assert assumption.type is not None
+    return stated_joint(
+        pair, assumption.type, assumption.axis, assumption.point, None, assumption.pitch,
+        evidence="assumption", reason=f"assumed: {assumption.reason}",
+    )  # fmt: skip
+
+
+def _size(assembly: Assembly) -> float:
+    """Diagonal of the assembly's box (m); 1 without meshes."""
+    corners = [
+        part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
+        for part in assembly.parts
+        if part.mesh is not None
+    ]
+    if not corners:
+        return 1.0
+    low = np.min([c.min(axis=0) for c in corners], axis=0)
+    high = np.max([c.max(axis=0) for c in corners], axis=0)
+    return float(np.linalg.norm(high - low))
+
+
+def _finish(
+    assembly: Assembly,
+    bodies: tuple[Body, ...],
+    joints: tuple[Joint, ...],
+    patches: tuple[Patch, ...],
+    misfit: Misfit,
+    strict: Mapping[JointName, Array],
+    misaligned: tuple[tuple[str, float, float], ...],
+) -> Kinematics:
+    index = {body.name: k for k, body in enumerate(bodies)}
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
+    ground = next(k for k, body in enumerate(bodies) if body.ground)
+    spaces = [joint.twists for joint in joints]
+    size = _size(assembly)
+    closure = close(len(bodies), edges, spaces, ground, size)
+    hard = [strict.get(joint.name, joint.twists) for joint in joints]
+    blocked = close(len(bodies), edges, hard, ground, size).mobility if strict else closure.mobility
+    idle = _idle(assembly, bodies, joints, patches)
+    count = closure.mobility
+    mobility = Mobility(
+        instantaneous=count,
+        finite=None,
+        effective=count - sum(idle.values()),
+        idle=sum(idle.values()),
+        redundant=count - (6 * (len(bodies) - 1) - sum(6 - joint.freedoms for joint in joints)),
+        blocked=blocked,
+        freedoms=_orthonormal(body_twists(closure, edges, spaces)),
+        idle_bodies=tuple(sorted(name for name, n in idle.items() if n)),
+        uncertain=tuple(
+            j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"
+        ),
+    )
+    matrix = assemble(bodies, joints, patches)
+    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned)
+
+
+def _orthonormal(twists: Array) -> Array:
+    count, nodes, _ = twists.shape
+    if count == 0:
+        return twists
+    basis, _ = np.linalg.qr(twists.reshape(count, -1).T)
+    return basis.T.reshape(count, nodes, 6)
+
+
+def _idle(
+    assembly: Assembly, bodies: tuple[Body, ...], joints: tuple[Joint, ...], patches: tuple[Patch, ...]
+) -> dict[BodyName, int]:
+    """Idle freedoms of each body."""
+    size = _size(assembly)
+    of_part = {part: body.name for body in bodies for part in body.parts}
+    intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
+    for wanted in assembly.function.joints:
+        pair = _pair(assembly, of_part, wanted.between)
+        if pair is not None:
+            intended[pair].append(wanted)
+    around: dict[BodyName, list[Joint]] = defaultdict(list)
+    for joint in joints:
+        for name in joint.bodies:
+            around[name].append(joint)
+    out: dict[BodyName, int] = {}
+    for body in bodies:
+        mine = around[body.name]
+        carried = [patches[k] for j in mine for k in j.patches]
+        if any(not j.patches for j in mine):
+            continue
+        named = [w for j in mine for w in intended[j.bodies]]
+        out[body.name] = idle_freedoms(body, mine, carried, named, size)
+    return out

@@ -1,0 +1,129 @@
+"""The contact evidence between two bodies, as arrays: patches, samples, rows and their weights.
+
+Every patch counts with the square root of its area, shared over its samples, less where the gap is
+wide: in real joints a small journal decides beside a large thrust face, so neither equal nor area
+weights serve (design section 4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.screws import Frame, rows
+from kinform.model.contacts import Patch
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["COAXIAL", "Evidence", "Item", "gather"]
+
+Array = NDArray[np.float64]
+
+COAXIAL = ("cylinder", "cone")
+GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
+"""(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One patch as seen from the first body of the pair."""
+
+    index: int
+    """Into Contacts.patches."""
+    patch: Patch
+    points: Array
+    normals: Array
+    """(n, 3) out of the first body."""
+    weights: Array
+    """(n,) m², reduced by the gap bands."""
+    area: float
+    """m², reduced by the gap bands."""
+    angle: float
+    """rad: how far the direction of this patch may be off before it is a fact."""
+    position: float
+    """m: likewise for its line or centre."""
+    interferes: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """All patches between two bodies. Rows: relative twist of the second body, scaled in `frame`."""
+
+    items: tuple[Item, ...]
+    frame: Frame
+    rows: Array
+    """(n, 6)."""
+    share: Array
+    """(n,) weight of each row's square; sums to 1."""
+    start: NDArray[np.int64]
+    """(items + 1,) first row of each patch."""
+    angle: Array
+    """(n,) rad, of the patch."""
+    position: Array
+    """(n,) m, of the patch."""
+    arms: Array
+    """(n, 3) samples from the centre, over the length."""
+
+    @property
+    def areas(self) -> Array:
+        """(items,) m²."""
+        return np.array([item.area for item in self.items])
+
+
+def gather(
+    patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float
+) -> Evidence | None:
+    """Evidence of patches given as (index, patch, turned): turned when part a belongs to the second body.
+
+    `contact` is the contact tolerance (m). None when no patch has an area.
+    """
+    items = [
+        _item(index, patch, turned, tolerances, contact)
+        for index, patch, turned in patches
+        if patch.area > 0.0 and len(patch.points) > 0
+    ]
+    if not items:
+        return None
+    points = np.concatenate([item.points for item in items])
+    frame = Frame.of(points)
+    counts = [len(item.points) for item in items]
+    patch_weight = np.sqrt([item.area for item in items])
+    patch_weight /= patch_weight.sum()
+    share = np.concatenate(
+        [w * item.weights / item.weights.sum() for w, item in zip(patch_weight, items, strict=True)]
+    )
+    return Evidence(
+        items=tuple(items),
+        frame=frame,
+        rows=rows(points, np.concatenate([item.normals for item in items]), frame),
+        share=share,
+        start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        angle=np.repeat([item.angle for item in items], counts),
+        position=np.repeat([item.position for item in items], counts),
+        arms=(points - frame.centre) / frame.length,
+    )
+
+
+def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
+    band = np.empty(len(patch.points))
+    relative = np.abs(patch.gaps) / contact
+    for limit, weight in reversed(GAP_BANDS):
+        band[relative <= limit] = weight
+    weights = np.maximum(patch.weights, 1e-30) * band
+    coaxial = patch.kind in (*COAXIAL, "sphere")
+    clearance = max(patch.gap, 0.0) if coaxial else 0.0
+    direction, position = patch.uncertainty
+    loose = patch.one_sided and patch.kind not in ("plane", "sphere", *COAXIAL)
+    return Item(
+        index=index,
+        patch=patch,
+        points=patch.points,
+        normals=-patch.normals if turned else patch.normals,
+        weights=weights,
+        area=float(weights.sum()),
+        angle=0.2 if loose else tolerances.alignment + 3.0 * direction + 0.5 * patch.misalignment,
+        position=3.0 * position + clearance + 0.5 * patch.offset if coaxial else 0.0,
+        interferes=patch.gap < -(patch.chord + 3.0 * position),
+    )

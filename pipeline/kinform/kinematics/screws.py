@@ -1,0 +1,96 @@
+"""Screw algebra: twists and rows in scaled coordinates, canonical axes, motions of lines and points.
+
+A twist is (ω; v), v the velocity of the point at the reference. The scaled twist of a `Frame` with
+centre c and length L is (L·ω; v_c): all six numbers are velocities, so that singular values of
+constraint rows compare rotations with translations at the size of the contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "Frame",
+    "canonical",
+    "perpendicular",
+    "rotation",
+    "rows",
+    "span",
+    "translation",
+    "twist_at_origin",
+]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Centre (3,) m in W and length (m) that scale twists and rows."""
+
+    centre: Array
+    length: float
+
+    @staticmethod
+    def of(points: Array) -> Frame:
+        """Centre and half diagonal of the box of the points (n, 3)."""
+        low, high = points.min(axis=0), points.max(axis=0)
+        half = 0.5 * float(np.linalg.norm(high - low))
+        return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
+
+
+def canonical(axis: Array) -> Array:
+    """Unit vector along `axis` whose largest component is positive; among components within 1e-3 of
+    the largest the first of x, y, z decides."""
+    unit: Array = axis / np.linalg.norm(axis)
+    size = np.abs(unit)
+    first = int(np.flatnonzero(size >= size.max() - 1e-3)[0])
+    # adding zero turns −0 into 0
+    return (unit if unit[first] > 0.0 else -unit) + 0.0
+
+
+def perpendicular(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
+    u = np.cross(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
+    u /= np.linalg.norm(u)
+    return u, np.cross(axis, u)
+
+
+def rows(points: Array, normals: Array, frame: Frame) -> Array:
+    """Constraint rows (n, 6) [((p − c)/L) × n, n] against scaled twists."""
+    return np.hstack([np.cross((points - frame.centre) / frame.length, normals), normals])
+
+
+def rotation(axis: Array, point: Array, frame: Frame) -> Array:
+    """Scaled unit twist (6,) of a rotation about the line (unit axis, point)."""
+    twist = np.concatenate([axis, np.cross(axis, frame.centre - point) / frame.length])
+    unit: Array = twist / np.linalg.norm(twist)
+    return unit
+
+
+def translation(direction: Array) -> Array:
+    """Scaled unit twist (6,) of a translation along the unit direction."""
+    return np.concatenate([np.zeros(3), direction])
+
+
+def twist_at_origin(scaled: Array, frame: Frame) -> Array:
+    """Twists (ω; v at the world's origin), columns (6, k), of scaled twists (6, k)."""
+    omega = scaled[:3] / frame.length
+    return np.vstack([omega, scaled[3:] + np.cross(frame.centre[:, None], omega, axis=0)])
+
+
+def scaled(twists: Array, frame: Frame) -> Array:
+    """Scaled twists (6, k) of twists (ω; v at the world's origin), columns (6, k)."""
+    omega = twists[:3]
+    at_centre = twists[3:] + np.cross(omega, frame.centre[:, None], axis=0)
+    return np.vstack([omega * frame.length, at_centre])
+
+
+def span(vectors: Array, tolerance: float = 1e-6) -> Array:
+    """Orthonormal basis (6, r) of the span of the columns of `vectors` (6, k)."""
+    if vectors.shape[1] == 0:
+        return np.zeros((6, 0))
+    left, values, _ = np.linalg.svd(vectors, full_matrices=False)
+    return left[:, values > tolerance * max(values[0], 1e-300)]
