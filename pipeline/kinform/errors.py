@@ -42,7 +42,11 @@ class InputError(KinformError):
 
 
 class ResultsError(KinformError):
-    """A results file cannot be read or written."""
+    """A results file cannot be read or written; `problem` names it."""
+
+    def __init__(self, problem: Problem | str):
+        self.problem = Problem(problem) if isinstance(problem, str) else problem
+        super().__init__(str(self.problem))
 
 
 class StageError(KinformError):

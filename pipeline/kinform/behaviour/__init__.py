@@ -1,1 +1,54 @@
-"""Package."""
+"""Behaviour: the device as components with ports, joined at nodes. Data only; simulation solves it.
+
+A port carries an across and a through variable whose product is power: for a frame the twist (the
+derivative of ⟨p, R⟩) and the wrench (τ; f), for the shaft of a joint its rates and efforts. At a node
+all across variables are equal and all through variables sum to zero. After section 3 of Sinha,
+Paredis and Khosla, "Kinematics support for design and simulation of mechatronic systems" (2000).
+"""
+
+from __future__ import annotations
+
+from kinform.behaviour.build import Behaviour, build
+from kinform.behaviour.components import (
+    Actor,
+    Component,
+    Damper,
+    EffortDrive,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    Node,
+    Port,
+    RigidBody,
+    Spring,
+    System,
+)
+from kinform.behaviour.count import Count, count
+from kinform.behaviour.signals import Signal, signal, smooth
+
+__all__ = [
+    "CODE_VERSION",
+    "Actor",
+    "Behaviour",
+    "Component",
+    "Count",
+    "Damper",
+    "EffortDrive",
+    "Ground",
+    "JointComponent",
+    "LoadComponent",
+    "MotionDrive",
+    "Node",
+    "Port",
+    "RigidBody",
+    "Signal",
+    "Spring",
+    "System",
+    "build",
+    "count",
+    "signal",
+    "smooth",
+]
+
+CODE_VERSION: int = 1

@@ -1,1 +1,27 @@
-"""Package."""
+"""Compares form, behaviour and function, and reports every inconsistency with place, size and remedy.
+
+`check` runs the rules of `RULES` on a design; each rule passes, fails, is inconclusive or is skipped
+because it does not apply. `verdict` turns a report into the exit code of the gate, `explain` prints
+what a code means.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._check import check, verdict
+from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
+from kinform.consistency._rule import Outcome, Rule
+from kinform.consistency.rules import RULES
+
+__all__ = [
+    "CODE_VERSION",
+    "RULES",
+    "Outcome",
+    "Rule",
+    "UnknownRuleError",
+    "check",
+    "explain",
+    "rules_markdown",
+    "verdict",
+]
+
+CODE_VERSION: int = 1

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.findings import CheckReport
+from kinform.model.fingerprints import Fingerprints
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
@@ -27,3 +28,4 @@ class Design:
     mass: MassReport | None = None
     simulation: Simulation | None = None
     report: CheckReport | None = None
+    fingerprints: Fingerprints = field(default_factory=Fingerprints)

@@ -1,1 +1,8 @@
-"""Package."""
+"""Facets → analytic surfaces: planes, cylinders, cones, spheres with the uncertainty of each fit."""
+
+from kinform.surfaces._recover import recover
+
+__all__ = ["CODE_VERSION", "recover"]
+
+CODE_VERSION: int = 1
+"""Bumped when results change."""

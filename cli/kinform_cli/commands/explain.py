@@ -1,0 +1,38 @@
+"""`kinform explain`: what a finding's code means."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from kinform_cli import console
+from kinform_cli.options import Debug, Quiet, examples
+
+__all__ = ["EXAMPLES", "explain"]
+
+EXAMPLES = examples("kinform explain", "kinform explain KF203")
+
+
+def explain(
+    code: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="CODE", show_default=False, help="Code or name of a rule; without it all are listed."
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Explain a finding by its code: what it means, why it matters, what to do."""
+    from kinform import consistency
+
+    if code is not None:
+        console.emit(consistency.explain(code))
+        return
+    from kinform_cli.text import table
+
+    rows = table("code", "rule", "severity")
+    for rule in consistency.RULES:
+        rows.add_row(rule.code, rule.name, rule.severity)
+    console.out(rows)

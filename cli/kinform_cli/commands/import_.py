@@ -1,0 +1,48 @@
+"""`kinform import`: from a manifest, or from meshes, to a results file that needs no other file."""
+
+from __future__ import annotations
+
+from kinform_cli import console, files
+from kinform_cli.inputs import Sources, is_manifest
+from kinform_cli.options import AllowOutside, Debug, Depfile, Output, Quiet, Units, examples
+from kinform_cli.progress import Working
+from kinform_cli.text import count
+
+__all__ = ["EXAMPLES", "import_"]
+
+EXAMPLES = examples(
+    "kinform import arm.toml -o a.h5",
+    "kinform import housing.stl shaft.stl --units mm -o a.h5",
+    "kinform import arm.toml -o a.h5 --depfile a.d     # for Make: -include a.d",
+)
+
+
+def import_(
+    sources: Sources,
+    output: Output,
+    units: Units = None,
+    allow_outside: AllowOutside = False,
+    depfile: Depfile = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Read a manifest and its meshes into a results file; the other stages need nothing else."""
+    manifest = is_manifest(sources, units)
+    files.check_output(output, inputs=sources)
+    if depfile is not None:
+        files.check_text_output(depfile, inputs=[*sources, output])
+    from kinform import results, stages
+
+    with Working("import"):
+        if manifest:
+            design = stages.import_(sources[0], allow_outside=allow_outside)
+        else:
+            design = stages.import_meshes(sources, units=units)
+    results.write(design, output)
+    if depfile is not None:
+        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources[0])))
+    assembly = design.assembly
+    parts, groups = count(len(assembly.parts), "part"), count(len(assembly.groups), "group")
+    console.say(f"{output}: {assembly.name}, {parts}, {groups}")
+    for note in assembly.notes:
+        console.warn(note)

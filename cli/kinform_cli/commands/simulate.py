@@ -1,0 +1,64 @@
+"""`kinform simulate`: motion at the level that the information allows."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from kinform_cli import console, files
+from kinform_cli.options import Debug, Output, Quiet, Results, examples
+from kinform_cli.progress import Working
+
+__all__ = ["EXAMPLES", "Level", "simulate"]
+
+EXAMPLES = examples(
+    "kinform simulate d.h5 -o e.h5",
+    "kinform simulate d.h5 -o e.h5 --level kinematic",
+    "kinform show e.h5 simulation",
+)
+
+
+class Level(StrEnum):
+    """How much is simulated."""
+
+    functional = "functional"
+    kinematic = "kinematic"
+    dynamic = "dynamic"
+
+
+def simulate(
+    source: Results,
+    output: Output,
+    level: Annotated[
+        Level | None,
+        typer.Option(
+            "--level",
+            show_default=False,
+            help="Force a level; else the one that the manifest states, else the highest that is known.",
+        ),
+    ] = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Simulate the motion that the drives give, and write the trajectories.
+
+    functional: the stated joints alone, as ball and stick.
+    kinematic: the derived joints, moved by the drives.
+    dynamic: with masses and forces.
+    """
+    files.check_output(output)
+    from kinform import results, stages
+
+    design = files.read(source)
+    with files.needing(source), Working("simulation") as progress:
+        design = stages.simulate(design, level=None if level is None else level.value, progress=progress)
+    results.write(design, output)
+    found = design.simulation
+    assert found is not None
+    from kinform_cli.views.simulation import headline
+
+    console.say(f"{output}: {headline(found)}")
+    for subject, message in found.failures:
+        console.warn(f"{subject}: {message}")

@@ -1,0 +1,128 @@
+"""Where the command writes: results to stdout; progress, summaries, warnings and errors to stderr.
+
+Knows about terminals, colour and closed pipes. On a terminal lines wrap to its width; off a terminal
+nothing is wrapped or cut, so that tables can be searched. Names that a user chose are never read as
+markup.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+__all__ = [
+    "Settings",
+    "emit",
+    "flush",
+    "give_up",
+    "out",
+    "say",
+    "settings",
+    "stderr",
+    "tolerate_any_character",
+    "warn",
+]
+
+_UNBOUNDED = 100_000
+"""Width off a terminal: columns take what they need."""
+
+
+@dataclass
+class Settings:
+    """What holds for the whole run of the command: set once, from its options."""
+
+    quiet: bool = False
+    debug: bool = False
+
+
+settings = Settings()
+
+
+def _console(stream: IO[str]) -> Console:
+    from rich.console import Console
+
+    class Patient(Console):
+        """A console whose reader may leave."""
+
+        def on_broken_pipe(self) -> None:
+            _forget(stream)
+
+    return Patient(
+        file=stream,
+        width=None if stream.isatty() else _UNBOUNDED,
+        color_system=None if os.environ.get("NO_COLOR") else "auto",
+        markup=False,
+        highlight=False,
+        emoji=False,
+    )
+
+
+def stderr() -> Console:
+    """The console for people who watch: progress, summaries, warnings, errors."""
+    return _console(sys.stderr)
+
+
+def _forget(stream: IO[str]) -> None:
+    """What is written to the stream from now on goes nowhere."""
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), stream.fileno())
+
+
+def emit(text: str) -> None:
+    """Write text to stdout as it is, and end the line; a reader that left (`| head`) is no error."""
+    try:
+        sys.stdout.write(text if text.endswith("\n") else text + "\n")
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _forget(sys.stdout)
+
+
+def out(item: RenderableType) -> None:
+    """Write a table, a tree or sentences for people to stdout."""
+    _console(sys.stdout).print(item)
+    flush()
+
+
+def flush() -> None:
+    """Hand everything to the reader now; raises OSError where it cannot be (a full disk)."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _forget(sys.stdout)
+
+
+def give_up() -> None:
+    """Flush if that is possible, so that the end of the process has nothing left to fail on."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        _forget(sys.stdout)
+
+
+def say(text: str) -> None:
+    """One line on stderr about what was done; silent with --quiet."""
+    if not settings.quiet:
+        stderr().print(text, soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    """A warning on stderr; silent with --quiet."""
+    if not settings.quiet:
+        from rich.text import Text
+
+        stderr().print(Text.assemble(("warning: ", "bold yellow"), text), soft_wrap=True)
+
+
+def tolerate_any_character() -> None:
+    """Make stdout and stderr write what their encoding lacks as escapes instead of failing."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed by the caller (`>&-`)
+            setattr(sys, name, open(os.devnull, "w"))  # noqa: SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")

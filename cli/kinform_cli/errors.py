@@ -1,0 +1,108 @@
+"""From exceptions to messages and exit codes.
+
+0: written, or verified. 1: findings. 2: not written, or not verified. An exception is always 2: a
+crash must never read as a verdict.
+"""
+
+from __future__ import annotations
+
+import traceback
+from typing import TYPE_CHECKING
+
+from kinform_cli import console
+
+if TYPE_CHECKING:
+    from kinform.errors import Problem
+
+__all__ = ["FINDINGS", "NOT_VERIFIED", "OK", "from_typer", "refuse", "report"]
+
+OK = 0
+FINDINGS = 1
+NOT_VERIFIED = 2
+
+_INTERRUPTED = 130
+"""What typer makes of Ctrl-C."""
+
+
+def refuse(message: str, *, file: object = None, remedy: str | None = None) -> Exception:
+    """The exception to raise when the command line asks for what cannot be done."""
+    from kinform.errors import InputError, Problem
+
+    return InputError([Problem(message, file=None if file is None else str(file), remedy=remedy)])
+
+
+def report(error: BaseException) -> int:
+    """Print what went wrong on stderr; returns the exit code, which is never 0 or 1."""
+    from kinform.errors import InputError, KinformError, ResultsError
+
+    if console.settings.debug and not _is_usage(error):
+        console.stderr().print(_traceback(error), soft_wrap=True)
+    if isinstance(error, InputError):
+        for problem in error.problems:
+            _print_problem(problem)
+        if len(error.problems) > 1:
+            _print("kinform", f"{len(error.problems)} errors; nothing was written")
+    elif isinstance(error, ResultsError):
+        _print_problem(error.problem)
+    elif isinstance(error, KinformError):
+        _print("kinform", str(error))
+    elif isinstance(error, KeyboardInterrupt) or type(error).__name__ == "Abort":
+        _print("kinform", "interrupted; an output file that existed is as it was")
+    elif _is_usage(error):
+        _print_usage(error)
+    elif isinstance(error, OSError):
+        _print_os_error(error)
+    elif isinstance(error, MemoryError):
+        _print("kinform", "out of memory", "use fewer --jobs, coarser meshes, or a larger machine")
+    else:
+        _print(
+            "kinform",
+            f"internal error: {type(error).__name__}: {error}",
+            None if console.settings.debug else "run it again with --debug for the traceback, and report it",
+        )
+    return NOT_VERIFIED
+
+
+def from_typer(code: object) -> int:
+    """The exit code for what typer returned: commands return theirs, Ctrl-C is its own affair."""
+    if code == _INTERRUPTED:
+        return report(KeyboardInterrupt())
+    return code if isinstance(code, int) else OK
+
+
+def _traceback(error: BaseException) -> str:
+    return "".join(traceback.format_exception(error)).rstrip()
+
+
+def _is_usage(error: BaseException) -> bool:
+    """Whether typer raised it; its class moved between modules from one release to the next."""
+    return hasattr(error, "format_message") and hasattr(error, "exit_code")
+
+
+def _print_usage(error: BaseException) -> None:
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "kinform"
+    message = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+    _print(command, message, f"see `{command} --help`")
+
+
+def _print_os_error(error: OSError) -> None:
+    place = str(error.filename) if error.filename is not None else "kinform"
+    _print(place, error.strerror or str(error))
+
+
+def _print_problem(problem: Problem) -> None:
+    place = problem.file if problem.file is not None else "kinform"
+    if problem.line is not None:
+        place += f":{problem.line}"
+    _print(place, problem.message, problem.remedy)
+
+
+def _print(place: str, message: str, remedy: str | None = None) -> None:
+    """`place: error: message`, as compilers write it, so that editors find the place."""
+    from rich.text import Text
+
+    text = Text.assemble((place, "bold"), ": ", ("error:", "bold red"), f" {message}")
+    if remedy:
+        text.append(f"\n  remedy: {remedy}")
+    console.stderr().print(text, soft_wrap=True)

@@ -1,0 +1,148 @@
+"""Options and arguments that several commands share, and how a command's help is laid out."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from kinform_cli import console
+
+__all__ = [
+    "AllowOutside",
+    "Command",
+    "Debug",
+    "Depfile",
+    "FailOn",
+    "FindingsFormat",
+    "Group",
+    "Jobs",
+    "Output",
+    "Quiet",
+    "Results",
+    "Severity",
+    "TableFormat",
+    "Units",
+    "examples",
+]
+
+
+class Severity(StrEnum):
+    """Severities of findings, from the worst."""
+
+    error = "error"
+    warning = "warning"
+    note = "note"
+
+
+class FindingsFormat(StrEnum):
+    """How findings are printed."""
+
+    full = "full"
+    concise = "concise"
+    json = "json"
+
+
+class TableFormat(StrEnum):
+    """How results are printed."""
+
+    table = "table"
+    json = "json"
+
+
+class _WithExamples:
+    """Help at whose end examples stand, line by line as they are written."""
+
+    epilog: str | None
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Print typer's help, then the examples (kept in `epilog`)."""
+        text, self.epilog = self.epilog, None
+        try:
+            super().format_help(ctx, formatter)  # type: ignore[misc]
+        finally:
+            self.epilog = text
+        if text:
+            console.emit(text)
+
+
+class Command(_WithExamples, TyperCommand):
+    """One command."""
+
+
+class Group(_WithExamples, TyperGroup):
+    """The command `kinform` itself."""
+
+
+def examples(*lines: str) -> str:
+    """The epilog that shows these command lines."""
+    return "\n".join([" Examples:", *(f"   {line}" for line in lines)])
+
+
+def _set_quiet(value: bool) -> None:
+    console.settings.quiet = console.settings.quiet or value
+
+
+def _set_debug(value: bool) -> None:
+    console.settings.debug = console.settings.debug or value
+
+
+Quiet = Annotated[
+    bool,
+    typer.Option(
+        "--quiet",
+        "-q",
+        callback=_set_quiet,
+        help="No progress, summaries or warnings on stderr; errors stay.",
+    ),
+]
+Debug = Annotated[
+    bool,
+    typer.Option(
+        "--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1)."
+    ),
+]
+Jobs = Annotated[
+    int,
+    typer.Option("--jobs", "-j", min=1, metavar="N", help="Work on up to N pairs of parts at a time."),
+]
+Results = Annotated[Path, typer.Argument(metavar="F.h5", show_default=False, help="Results file to read.")]
+Output = Annotated[
+    Path,
+    typer.Option(
+        "--output",
+        "-o",
+        metavar="F.h5",
+        show_default=False,
+        help="Results file to write; may be the one that is read.",
+    ),
+]
+AllowOutside = Annotated[
+    bool,
+    typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder."),
+]
+Units = Annotated[
+    str | None,
+    typer.Option(
+        "--units",
+        metavar="UNIT",
+        show_default=False,
+        help="Unit of the meshes named in place of a manifest: m, cm, mm, um, in or ft.",
+    ),
+]
+Depfile = Annotated[
+    Path | None,
+    typer.Option(
+        "--depfile",
+        metavar="FILE",
+        show_default=False,
+        help="Also write a Make rule: the output depends on every file that was read.",
+    ),
+]
+FailOn = Annotated[
+    Severity,
+    typer.Option("--fail-on", help="Least severity of a finding that gives exit code 1."),
+]

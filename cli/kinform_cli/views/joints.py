@@ -1,0 +1,138 @@
+"""Bodies and joints. The JSON form is a contract that scripts rely on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kinform.model.design import Design
+from kinform.model.kinematics import Joint, Kinematics
+from kinform_cli.text import Lengths, count, number, table, vector
+from kinform_cli.views import mobility
+
+__all__ = ["data", "render"]
+
+
+def _known(design: Design) -> Kinematics:
+    assert design.kinematics is not None
+    return design.kinematics
+
+
+def data(design: Design) -> dict[str, Any]:
+    """Bodies, joints and mobility, SI and radians; null for what is not computed yet."""
+    kinematics = _known(design)
+    return {
+        "schema": "kinform/joints/1",
+        "assembly": design.assembly.name,
+        "units": design.assembly.units,
+        "bodies": [
+            {"name": body.name, "parts": body.parts, "ground": body.ground, "merged": body.merged}
+            for body in kinematics.bodies
+        ],
+        "joints": [_joint_data(joint) for joint in kinematics.joints],
+        "mobility": mobility.counts(kinematics.mobility),
+    }
+
+
+def _joint_data(joint: Joint) -> dict[str, Any]:
+    return {
+        "name": joint.name,
+        "bodies": joint.bodies,
+        "type": joint.type,
+        "axis": joint.axis,
+        "point": joint.point,
+        **({"axis2": joint.axis2} if joint.type == "universal" else {}),
+        "pitch": joint.pitch,
+        "freedoms": joint.freedoms,
+        **({"twists": joint.twists} if joint.type == "general" else {}),
+        "evidence": joint.evidence,
+        "status": joint.status,
+        "reason": joint.reason,
+        "range": _range(joint),
+        "patches": joint.patches,
+        "blocked_by": [
+            {
+                "parts": blocker.parts,
+                "patch": blocker.patch,
+                "area": blocker.area,
+                "share": blocker.share,
+                "place": blocker.place,
+                "gap": blocker.gap,
+                "forbids": blocker.forbids,
+            }
+            for blocker in joint.blockers
+        ],
+        "singular_values": joint.singular_values,
+    }
+
+
+def _range(joint: Joint) -> dict[str, Any] | None:
+    if joint.range_status == "unknown" and joint.range_lower is None and joint.range_upper is None:
+        return None
+    return {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
+
+
+def render(design: Design) -> RenderableType:
+    """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
+    kinematics, lengths = _known(design), Lengths.of(design.assembly)
+    title = (
+        f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
+    )
+    rows = table(
+        "name",
+        "type",
+        "axis",
+        f"point {lengths.unit}",
+        "free",
+        "status",
+        "evidence",
+        title=title,
+        right=["free"],
+    )
+    for joint in kinematics.joints:
+        rows.add_row(
+            joint.name,
+            joint.type
+            if joint.pitch is None
+            else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.unit}/turn)",
+            vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
+            lengths.point(joint.point),
+            str(joint.freedoms),
+            joint.status,
+            ", ".join(joint.evidence),
+        )
+    items: list[RenderableType] = [rows]
+    for joint in kinematics.joints:
+        if joint.status != "determined":
+            items += _doubt(joint, lengths)
+    items += _bodies(kinematics)
+    return Group(*items)
+
+
+def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:
+    lines: list[RenderableType] = [Text(f"\n{joint.name} is {joint.status}: {joint.reason}")]
+    if joint.status == "ambiguous":
+        lines.append(
+            f"  singular values: {', '.join(number(float(value)) for value in joint.singular_values)}"
+        )
+    for blocker in joint.blockers:
+        extent = f"{lengths.area(blocker.area)} {lengths.unit}², {100 * blocker.share:.2g} % of the contact"
+        lines.append(
+            f"  {' and '.join(blocker.parts)}, patch {blocker.patch} ({extent}) at "
+            f"({lengths.point(blocker.place)}) {lengths.unit}: forbids {blocker.forbids}"
+        )
+    return lines
+
+
+def _bodies(kinematics: Kinematics) -> list[RenderableType]:
+    bodies = [body for body in kinematics.bodies if body.ground or len(body.parts) > 1]
+    if not bodies:
+        return []
+    lines: list[RenderableType] = [Text("\nBodies", style="bold")]
+    for body in bodies:
+        ground = " (ground)" if body.ground else ""
+        merged = f"  [{'; '.join(body.merged)}]" if body.merged else ""
+        lines.append(f"  {body.name}{ground}: {', '.join(body.parts)}{merged}")
+    return lines

@@ -1,0 +1,51 @@
+"""Everything in short: the assembly, its joints, mobility and mass, and what has not been computed yet."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES
+from kinform_cli.text import count
+from kinform_cli.views import assembly, joints, mass, mobility, simulation
+from kinform_cli.views.topics import TOPICS
+
+__all__ = ["data", "render"]
+
+
+def data(design: Design) -> dict[str, Any]:
+    """All topics by name; null where the stage has not run."""
+    return {
+        "schema": "kinform/design/1",
+        **{name: topic.view.data(design) if topic.known(design) else None for name, topic in TOPICS.items()},
+    }
+
+
+def render(design: Design) -> RenderableType:
+    """Tree, joints, mobility, masses of the bodies, and one line each for the rest."""
+    items: list[RenderableType] = [assembly.render(design), ""]
+    if design.contacts is not None:
+        patches = count(len(design.contacts.patches), "contact patch", "contact patches")
+        items += [f"{patches}, {count(len(design.contacts.interferences), 'overlap')}", ""]
+    if design.kinematics is not None:
+        items += [joints.render(design), "", mobility.render(design), ""]
+    if design.mass is not None:
+        items += [mass.bodies(design), ""]
+    if design.simulation is not None:
+        items.append(simulation.headline(design.simulation))
+    if design.report is not None:
+        severities = [finding.severity for finding in design.report.findings]
+        numbers = [count(severities.count(severity), severity) for severity in reversed(SEVERITIES)]
+        undecided = (
+            f", {count(design.report.inconclusive, 'rule')} inconclusive"
+            if design.report.inconclusive
+            else ""
+        )
+        items.append(f"Findings: {', '.join(numbers)}{undecided}")
+    missing = dict.fromkeys(topic.command for topic in TOPICS.values() if not topic.known(design))
+    if missing:
+        items.append(Text(f"Not computed yet: kinform {', '.join(missing)}", style="yellow"))
+    return Group(*items)

@@ -1,0 +1,130 @@
+"""Drives, gears and loads as components, or why they cannot be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinform.behaviour.components import (
+    Actor,
+    Damper,
+    EffortDrive,
+    Gear,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    Spring,
+)
+from kinform.behaviour.signals import Signal, signal
+from kinform.function import resolve
+from kinform.model.assembly import Assembly
+from kinform.model.function import Coupling, Drive, Load
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassReport
+
+__all__ = ["make_drive", "make_gear", "make_load", "one_freedom"]
+
+Joints = Mapping[str, JointComponent]
+
+
+def one_freedom(
+    assembly: Assembly, kinematics: Kinematics, joints: Joints, name: str
+) -> tuple[JointComponent | None, int, str]:
+    """The joint with one freedom that a name stands for, and the designer's sign, or why there is none."""
+    found = resolve(assembly, kinematics, name)
+    if found.joint is None:
+        return None, 1, found.reason
+    component = joints.get(found.joint.name)
+    if component is None:
+        return None, 1, f'the joint "{found.joint.name}" is {found.joint.type} and {found.joint.status}'
+    if component.kind.rates != 1:
+        kind = component.kind
+        return (
+            None,
+            1,
+            f'the joint "{component.subject}" is {kind.name}: it has {kind.rates} freedoms, not one',
+        )
+    return component, found.sign, ""
+
+
+def make_drive(
+    assembly: Assembly, kinematics: Kinematics, joints: Joints, drive: Drive, number: int
+) -> tuple[Actor | None, str, str, bool]:
+    """(component, joint, why not, whether it would act by force only)."""
+    by_force = drive.kind != "motion"
+    joint, sign, why = one_freedom(assembly, kinematics, joints, drive.joint)
+    if joint is None:
+        return None, "", why, False
+    try:
+        return _actor(drive, joint, sign, f"drive {number} {drive.joint}"), joint.subject, "", by_force
+    except ValueError as error:
+        return None, joint.subject, f"{drive.kind} drive: {error}", by_force
+
+
+def _actor(drive: Drive, joint: JointComponent, sign: int, name: str) -> Actor:
+    """Raises ValueError with what is missing or not modelled."""
+    scale = drive.scale(joint.kind.coordinates[0][1])
+    if drive.kind == "motion":
+        return MotionDrive(name, drive.joint, _signal(drive, sign * scale))
+    if drive.kind == "effort":
+        return EffortDrive(name, drive.joint, _signal(drive, float(sign)))
+    if drive.kind == "spring":
+        rest = sign * scale * drive.parameters.get("rest", 0.0)
+        return Spring(name, drive.joint, _number(drive, "stiffness"), rest)
+    if drive.kind == "damper":
+        return Damper(name, drive.joint, _number(drive, "damping"))
+    raise ValueError("this kind is not simulated")
+
+
+def _signal(drive: Drive, scale: float) -> Signal:
+    if drive.law is None:
+        raise ValueError("it has no law")
+    return signal(drive.law, scale)
+
+
+def _number(drive: Drive, key: str) -> float:
+    value = drive.parameters.get(key)
+    if value is None or not math.isfinite(value):
+        raise ValueError(f"its {key} is not stated")
+    return value
+
+
+def make_gear(
+    assembly: Assembly, kinematics: Kinematics, joints: Joints, coupling: Coupling, number: int
+) -> tuple[Gear | None, tuple[str, str], str]:
+    """(component, joints of its two sides, why not)."""
+    first, sign_first, why_first = one_freedom(assembly, kinematics, joints, coupling.joints[0])
+    second, sign_second, why_second = one_freedom(assembly, kinematics, joints, coupling.joints[1])
+    if first is None or second is None:
+        return None, ("", ""), why_first or why_second
+    ratio = sign_first * sign_second * coupling.ratio
+    if not math.isfinite(ratio):
+        return None, ("", ""), "its ratio is not a number"
+    name = f"gear {number} {coupling.joints[0]} {coupling.joints[1]}"
+    return Gear(name, name, ratio), (first.subject, second.subject), ""
+
+
+def make_load(
+    kinematics: Kinematics, mass: MassReport | None, load: Load, number: int
+) -> tuple[LoadComponent | None, str, str]:
+    """(component, body, why not)."""
+    try:
+        body = kinematics.body_of(load.part).name
+    except KeyError:
+        return None, "", f'a load acts on "{load.part}", which is no part'
+    point = load.point
+    if point is None:
+        known = [
+            p for p in (() if mass is None else mass.parts) if p.name == load.part and p.mass is not None
+        ]
+        if not known:
+            return None, "", "a load acts at its centre of mass, which is not known"
+        point = known[0].centre_of_mass
+    force = np.zeros(3) if load.force is None else load.force
+    torque = np.zeros(3) if load.torque is None else load.torque
+    if not np.all(np.isfinite(np.concatenate([force, torque, point]))):
+        return None, "", "a load on it contains a value that is not a number"
+    name = f"load {number} {load.part}"
+    return LoadComponent(name, load.part, force, torque, point, load.frame == "body"), body, ""

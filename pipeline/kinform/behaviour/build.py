@@ -1,0 +1,123 @@
+"""Makes the port model of a design from its joints, its masses and what acts on it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour.acting import make_drive, make_gear, make_load
+from kinform.behaviour.components import Component, Ground, JointComponent, Node, RigidBody, System
+from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.model.assembly import Assembly
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.mass import MassReport
+
+__all__ = ["Behaviour", "build"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Behaviour:
+    """The port model of a design, and what could not be made part of it."""
+
+    system: System
+    failures: tuple[tuple[str, str], ...]
+    """(subject, why) of joints and drives without which the model is not that of the design."""
+    forces_missing: tuple[tuple[str, str], ...]
+    """(subject, why) of what acts only by forces: dynamics would be wrong without, kinematics is not."""
+
+
+class _Builder:
+    """Collects components and which ports meet."""
+
+    def __init__(self) -> None:
+        self.components: list[Component] = []
+        self.meetings: dict[str, list[tuple[str, str]]] = defaultdict(list)
+        self.sizes: dict[str, int] = {}
+
+    def add(self, component: Component, **nodes: str) -> None:
+        """Add a component whose ports go to the nodes of these keys."""
+        self.components.append(component)
+        for port in component.ports:
+            key = nodes[port.name]
+            self.meetings[key].append((component.name, port.name))
+            self.sizes[key] = port.size
+
+    def system(self) -> System:
+        nodes = tuple(Node(tuple(ports), self.sizes[key]) for key, ports in self.meetings.items())
+        return System(tuple(self.components), nodes)
+
+
+def build(
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, gears: bool = False
+) -> Behaviour:
+    """The port model: bodies and ground, joints, drives, loads, and with `gears` the couplings of
+    `[function]`, which geometry does not show.
+
+    Joints that are ambiguous or general are failures, as are drives on freedoms that do not exist.
+    """
+    builder = _Builder()
+    failures: list[tuple[str, str]] = []
+    forces_missing: list[tuple[str, str]] = []
+    masses = {} if mass is None else {body.name: body for body in mass.bodies}
+    for body in kinematics.bodies:
+        name = f"body {body.name}"
+        if body.ground:
+            builder.add(Ground(name, body.name), frame=name)
+            continue
+        known = masses.get(body.name)
+        if known is None or known.mass is None:
+            nothing = np.full(3, np.nan), np.full((3, 3), np.nan)
+            builder.add(RigidBody(name, body.name, None, *nothing), frame=name)
+        else:
+            rigid = RigidBody(name, body.name, known.mass, known.centre_of_mass, known.inertia)
+            builder.add(rigid, frame=name)
+    for joint in kinematics.joints:
+        if joint.type == "general" and joint.freedoms == 6:
+            continue
+        component, why = _joint(joint)
+        if component is None:
+            failures.append((joint.name, why))
+            continue
+        first, second = (f"body {name}" for name in joint.bodies)
+        builder.add(component, a=first, b=second, shaft=f"shaft {joint.name}")
+    modelled = {c.subject: c for c in builder.components if isinstance(c, JointComponent)}
+    for number, drive in enumerate(assembly.function.drives, start=1):
+        actor, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number)
+        if actor is not None:
+            builder.add(actor, shaft=f"shaft {joint_name}")
+        else:
+            (forces_missing if by_force else failures).append((drive.joint, why))
+    if gears:
+        for number, coupling in enumerate(assembly.function.couplings, start=1):
+            gear, sides, why = make_gear(assembly, kinematics, modelled, coupling, number)
+            if gear is not None:
+                builder.add(gear, a=f"shaft {sides[0]}", b=f"shaft {sides[1]}")
+            else:
+                failures.append(("coupling of " + " and ".join(coupling.joints), why))
+    for number, load in enumerate(assembly.function.loads, start=1):
+        component_load, body_name, why = make_load(kinematics, mass, load, number)
+        if component_load is not None:
+            builder.add(component_load, frame=f"body {body_name}")
+        else:
+            forces_missing.append((load.part, why))
+    return Behaviour(builder.system(), tuple(failures), tuple(forces_missing))
+
+
+def _joint(joint: Joint) -> tuple[JointComponent | None, str]:
+    """The component of a derived joint, or why it has none."""
+    if joint.type == "general" or joint.type not in KINDS:
+        return None, f"the joint is {joint.type} with {joint.freedoms} freedoms: {joint.reason}"
+    if joint.status == "ambiguous":
+        return None, f"the joint is ambiguous: {joint.reason}"
+    geometry = JointGeometry(joint.axis, joint.point, joint.axis2, joint.pitch)
+    kind = KINDS[joint.type]
+    try:
+        kind.chain(geometry)
+    except ValueError as error:
+        return None, f"the {joint.type} joint cannot be placed: {error}"
+    return JointComponent(f"joint {joint.name}", joint.name, kind, geometry), ""

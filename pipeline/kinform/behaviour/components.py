@@ -1,0 +1,274 @@
+"""Components, their ports, and the nodes that join ports: the device as a network."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour.joints import JointGeometry, JointKind
+from kinform.behaviour.signals import Signal
+
+__all__ = [
+    "Actor",
+    "Component",
+    "Damper",
+    "EffortDrive",
+    "Gear",
+    "Ground",
+    "JointComponent",
+    "LoadComponent",
+    "MotionDrive",
+    "Node",
+    "Port",
+    "RigidBody",
+    "Spring",
+    "System",
+]
+
+Array = NDArray[np.float64]
+
+FRAME = 6
+"""Across: a twist (ω; v). Through: a wrench (τ; f)."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A place where a component exchanges power: so many across and as many through variables."""
+
+    name: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Component:
+    """Something with ports. `name` is unique in its system; `subject` is what the user calls it."""
+
+    name: str
+    subject: str
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Its ports in their fixed order."""
+        return (Port("frame", FRAME),)
+
+    @property
+    def equations(self) -> int:
+        """How many equations its behaviour makes between its port variables."""
+        return FRAME
+
+
+@dataclass(frozen=True)
+class Ground(Component):
+    """Six equations: its frame is at rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBody(Component):
+    """Six equations: Newton and Euler. World frame at the pose of the meshes."""
+
+    mass: float | None
+    """kg; None when unknown: the body then moves in kinematics only."""
+    centre_of_mass: Array
+    """(3,) m."""
+    inertia: Array
+    """(3, 3) kg·m² about the centre of mass."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointComponent(Component):
+    """Ports a and b at its first and second body, and the shaft with its rates and efforts.
+
+    Six equations: the wrenches at a and b balance. Six: b's twist less a's is that of the shaft's
+    rates. As many as rates: the wrench at b along the freedoms is the shaft's effort.
+    """
+
+    kind: JointKind
+    geometry: JointGeometry
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        frames = (Port("a", FRAME), Port("b", FRAME))
+        return (*frames, Port("shaft", self.kind.rates)) if self.kind.rates else frames
+
+    @property
+    def equations(self) -> int:
+        return 2 * FRAME + self.kind.rates
+
+
+@dataclass(frozen=True)
+class _OnShaft(Component):
+    """Something on the shaft of a joint with one freedom; one equation."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("shaft", 1),)
+
+    @property
+    def equations(self) -> int:
+        return 1
+
+
+@dataclass(frozen=True, eq=False)
+class MotionDrive(_OnShaft):
+    """The joint's value follows the signal, whatever effort that takes."""
+
+    signal: Signal
+
+
+@dataclass(frozen=True, eq=False)
+class EffortDrive(_OnShaft):
+    """The effort follows the signal (N·m or N)."""
+
+    signal: Signal
+
+
+@dataclass(frozen=True)
+class Spring(_OnShaft):
+    """effort = stiffness · (rest − value); N·m/rad and rad, or N/m and m."""
+
+    stiffness: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Damper(_OnShaft):
+    """effort = −damping · rate; N·m·s/rad or N·s/m."""
+
+    damping: float
+
+
+Actor = MotionDrive | EffortDrive | Spring | Damper
+
+
+@dataclass(frozen=True)
+class Gear(Component):
+    """value at a = ratio · value at b; the efforts do no work between them. Two equations."""
+
+    ratio: float
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("a", 1), Port("b", 1))
+
+    @property
+    def equations(self) -> int:
+        return 2
+
+
+@dataclass(frozen=True, eq=False)
+class LoadComponent(Component):
+    """A given wrench on a body at a point; six equations."""
+
+    force: Array
+    """(3,) N."""
+    torque: Array
+    """(3,) N·m."""
+    point: Array
+    """(3,) m, of the body, in the world at the pose of the meshes."""
+    turning: bool
+    """True: force and torque turn with the body."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """Ports joined: across variables equal, through variables summing to zero."""
+
+    ports: tuple[tuple[str, str], ...]
+    """(component, port) by name."""
+    size: int
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Components and the nodes between them; every port is in exactly one node."""
+
+    components: tuple[Component, ...]
+    nodes: tuple[Node, ...]
+    _by_name: dict[str, Component] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        by_name = {component.name: component for component in self.components}
+        if len(by_name) != len(self.components):
+            raise ValueError("two components of a system have the same name")
+        object.__setattr__(self, "_by_name", by_name)
+        self._check_ports()
+
+    def _check_ports(self) -> None:
+        """Every port is in exactly one node, and fits it."""
+        sizes = {(c.name, port.name): port.size for c in self.components for port in c.ports}
+        for node in self.nodes:
+            for port in node.ports:
+                if sizes.pop(port, None) != node.size:
+                    raise ValueError(f"port {port[1]} of {port[0]} is joined twice, or does not fit")
+        if sizes:
+            component, name = min(sizes)
+            raise ValueError(f"port {name} of {component} is in no node")
+
+    @cached_property
+    def _node_of(self) -> dict[tuple[str, str], Node]:
+        return {port: node for node in self.nodes for port in node.ports}
+
+    def component(self, name: str) -> Component:
+        """The component of that name; KeyError otherwise."""
+        return self._by_name[name]
+
+    def node(self, component: str, port: str) -> Node:
+        """The node that a port is in; KeyError for unknown ports."""
+        return self._node_of[component, port]
+
+    def at(self, component: str, port: str) -> Iterable[tuple[Component, str]]:
+        """The other components at the node of a port, each with its port there."""
+        for name, other in self.node(component, port).ports:
+            if (name, other) != (component, port):
+                yield self._by_name[name], other
+
+    @property
+    def ground(self) -> Ground:
+        """The ground; ValueError when there is not exactly one."""
+        (only,) = (c for c in self.components if isinstance(c, Ground))
+        return only
+
+    @property
+    def bodies(self) -> tuple[Ground | RigidBody, ...]:
+        """Ground and bodies in order."""
+        return tuple(c for c in self.components if isinstance(c, Ground | RigidBody))
+
+    @property
+    def joints(self) -> tuple[JointComponent, ...]:
+        """Joints in order."""
+        return tuple(c for c in self.components if isinstance(c, JointComponent))
+
+    @property
+    def gears(self) -> tuple[Gear, ...]:
+        """Gears in order."""
+        return tuple(c for c in self.components if isinstance(c, Gear))
+
+    @property
+    def loads(self) -> tuple[LoadComponent, ...]:
+        """Loads in order."""
+        return tuple(c for c in self.components if isinstance(c, LoadComponent))
+
+    def actors(self, joint: str) -> tuple[Actor, ...]:
+        """What acts on the shaft of the joint component of that name."""
+        component = self._by_name[joint]
+        if not isinstance(component, JointComponent) or component.kind.rates == 0:
+            return ()
+        return tuple(
+            c
+            for c, _ in self.at(joint, "shaft")
+            if isinstance(c, MotionDrive | EffortDrive | Spring | Damper)
+        )
+
+    def body_at(self, component: str, port: str) -> Ground | RigidBody:
+        """The body or ground at the node of a port; ValueError when there is not exactly one."""
+        (only,) = (c for c, _ in self.at(component, port) if isinstance(c, Ground | RigidBody))
+        return only
+
+    def joint_at(self, component: str, port: str) -> JointComponent:
+        """The joint at the node of a port; ValueError when there is not exactly one."""
+        (only,) = (c for c, _ in self.at(component, port) if isinstance(c, JointComponent))
+        return only

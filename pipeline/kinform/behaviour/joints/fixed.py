@@ -1,0 +1,5 @@
+"""Fixed: no freedom; the two bodies move as one."""
+
+from kinform.behaviour.joints._base import JointKind
+
+FIXED = JointKind("fixed", (), 0, lambda geometry: (), ())

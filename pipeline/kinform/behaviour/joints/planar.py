@@ -1,0 +1,20 @@
+"""Planar: slides along two directions u, v of the first body across the axis, and a turn about the axis
+through `point` of the second. Coordinates: angle (rad), then the distances along u and v (m), where
+(u, v, axis) is the right-handed frame of `kinform.kinematics.screws.perpendicular`."""
+
+from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.prismatic import slide
+from kinform.behaviour.joints.revolute import turn
+from kinform.behaviour.primitives import OneFreedom
+from kinform.kinematics.screws import perpendicular
+
+__all__ = ["PLANAR"]
+
+
+def _chain(geometry: JointGeometry) -> tuple[OneFreedom, ...]:
+    axis = geometry.needed("axis")
+    u, v = perpendicular(axis)
+    return (slide(u), slide(v), turn(axis, geometry.needed("point")))
+
+
+PLANAR = JointKind("planar", (("angle", True), ("u", False), ("v", False)), 3, _chain, (1, 2, 0))

@@ -1,0 +1,172 @@
+"""Laws of the manifest as functions of time in SI: value, rate and acceleration."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from kinform.model.function import Law
+
+__all__ = ["Constant", "Ramp", "Signal", "Sine", "Spline", "Table", "signal", "smooth"]
+
+
+class Signal(Protocol):
+    """A function of time (s)."""
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Times at which it is not smooth."""
+
+    def value(self, t: float) -> float:
+        """Value at t."""
+
+    def rate(self, t: float) -> float:
+        """First derivative just after t."""
+
+    def acceleration(self, t: float) -> float:
+        """Second derivative just after t, where it is finite."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """`level` for ever."""
+
+    level: float
+    knots: tuple[float, ...] = ()
+
+    def value(self, t: float) -> float:
+        return self.level
+
+    def rate(self, t: float) -> float:
+        return 0.0
+
+    def acceleration(self, t: float) -> float:
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """offset + slope·t."""
+
+    offset: float
+    slope: float
+    knots: tuple[float, ...] = ()
+
+    def value(self, t: float) -> float:
+        return self.offset + self.slope * t
+
+    def rate(self, t: float) -> float:
+        return self.slope
+
+    def acceleration(self, t: float) -> float:
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Sine:
+    """offset + amplitude·sin(speed·t + phase); speed in rad/s, phase in rad."""
+
+    offset: float
+    amplitude: float
+    speed: float
+    phase: float
+    knots: tuple[float, ...] = ()
+
+    def value(self, t: float) -> float:
+        return self.offset + self.amplitude * math.sin(self.speed * t + self.phase)
+
+    def rate(self, t: float) -> float:
+        return self.amplitude * self.speed * math.cos(self.speed * t + self.phase)
+
+    def acceleration(self, t: float) -> float:
+        return -self.amplitude * self.speed**2 * math.sin(self.speed * t + self.phase)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Straight lines between (times, levels), held outside; its rate jumps at the knots."""
+
+    knots: tuple[float, ...]
+    levels: tuple[float, ...]
+
+    def value(self, t: float) -> float:
+        return float(np.interp(t, self.knots, self.levels))
+
+    def rate(self, t: float) -> float:
+        k = bisect.bisect_right(self.knots, t)
+        if k == 0 or k == len(self.knots):
+            return 0.0
+        return (self.levels[k] - self.levels[k - 1]) / (self.knots[k] - self.knots[k - 1])
+
+    def acceleration(self, t: float) -> float:
+        return 0.0
+
+
+class Spline:
+    """The cubic spline through a table that comes to rest at both ends, held outside.
+
+    Its rate is continuous, so that a finite effort can follow it.
+    """
+
+    def __init__(self, table: Table):
+        from scipy.interpolate import CubicSpline
+
+        self.knots = table.knots
+        self._ends = (table.levels[0], table.levels[-1])
+        self._value: Any = CubicSpline(table.knots, table.levels, bc_type="clamped")
+        self._rate: Any = self._value.derivative(1)
+        self._acceleration: Any = self._value.derivative(2)
+        middles = np.linspace(table.knots[:-1], table.knots[1:], 17).ravel()
+        gap = self._value(middles) - np.interp(middles, table.knots, table.levels)
+        self.deviation = float(np.abs(gap).max())
+        """Greatest difference from the straight lines of the table."""
+
+    def value(self, t: float) -> float:
+        if t <= self.knots[0]:
+            return self._ends[0]
+        return self._ends[1] if t >= self.knots[-1] else float(self._value(t))
+
+    def rate(self, t: float) -> float:
+        return float(self._rate(t)) if self.knots[0] < t < self.knots[-1] else 0.0
+
+    def acceleration(self, t: float) -> float:
+        return float(self._acceleration(t)) if self.knots[0] <= t < self.knots[-1] else 0.0
+
+
+def signal(law: Law, scale: float) -> Signal:
+    """The law with its values times `scale`, which makes them SI and gives them kinform's sign.
+
+    Raises ValueError, with what is wrong, for a law that is no function of time.
+    """
+    numbers = (law.value, law.amplitude, law.frequency, law.phase, law.offset, law.rate)
+    if not all(math.isfinite(x) for x in (*numbers, *law.times, *law.values, scale)):
+        raise ValueError("its law contains a value that is not a finite number")
+    if law.type == "constant":
+        return Constant(scale * law.value)
+    if law.type == "ramp":
+        return Ramp(scale * law.offset, scale * law.rate)
+    if law.type == "sine":
+        speed, phase = 2.0 * math.pi * law.frequency, math.radians(law.phase)
+        return Sine(scale * law.offset, scale * law.amplitude, speed, phase)
+    if law.type == "table":
+        return _table(law, scale)
+    raise ValueError(f'its law is of the unknown type "{law.type}"')
+
+
+def smooth(given: Signal) -> Signal:
+    """The same signal, or for a table the spline that a body with mass can follow."""
+    return Spline(given) if isinstance(given, Table) else given
+
+
+def _table(law: Law, scale: float) -> Signal:
+    if not law.times or len(law.times) != len(law.values):
+        raise ValueError(f"its table has {len(law.times)} times and {len(law.values)} values")
+    if any(later <= earlier for earlier, later in zip(law.times, law.times[1:], strict=False)):
+        raise ValueError("the times of its table do not increase")
+    if len(law.times) == 1:
+        return Constant(scale * law.values[0])
+    return Table(law.times, tuple(scale * value for value in law.values))

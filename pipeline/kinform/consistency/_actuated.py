@@ -1,0 +1,39 @@
+"""Whether something that acts on one freedom of a joint finds that freedom."""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._words import counted
+from kinform.function import resolve
+from kinform.model.kinematics import Kinematics
+
+__all__ = ["actuated"]
+
+DRIVEN = ("revolute", "prismatic", "screw")
+"""Joints with one freedom, on which a single value acts."""
+
+
+def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, str]:
+    """("", "") when the joint of this name has exactly one freedom; else ("absent" or "unknown", why)."""
+    resolution = resolve(context.assembly, kinematics, name)
+    joint = resolution.joint
+    if joint is None:
+        return _not_joined(context, name) or ("absent", resolution.reason)
+    if joint.status == "ambiguous":
+        return "unknown", f"joint '{joint.name}' is ambiguous: {joint.reason}"
+    if joint.type in DRIVEN:
+        return "", ""
+    if joint.type == "general" and joint.freedoms > 0:
+        return "unknown", f"joint '{joint.name}' is general, with {counted(joint.freedoms, 'freedom')}"
+    return "absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}"
+
+
+def _not_joined(context: Context, name: str) -> tuple[str, str] | None:
+    """Where the freedom is carried by loose parts, it exists but nothing can act on it yet."""
+    compared = context.comparisons
+    if not isinstance(compared, tuple):
+        return None
+    for comparison in compared:
+        if comparison.intended.name == name and comparison.through and comparison.right_type:
+            return "unknown", f"joint '{name}' is carried by loose parts between its bodies"
+    return None

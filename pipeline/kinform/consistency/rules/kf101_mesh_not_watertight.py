@@ -1,0 +1,52 @@
+"""The mesh of a solid part is open: some edges do not belong to exactly two facets.
+
+Why it matters: an open mesh encloses no volume, so the part has no mass, its overlap with other parts
+cannot be measured, and facets may be missing where another part touches.
+
+What to do: close the holes in the CAD program and export again, or repair the mesh. If the part is
+meant to be incomplete, state `solid = false` for it: it then takes part in contacts but has no mass.
+
+Example: a bracket exported with one face hidden has 24 edges with a facet on one side only.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency._words import counted, listed
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Solid parts with edges that are not shared by exactly two facets."""
+    solids = [use for use in context.meshes if use.solid]
+    if not solids:
+        return skipped("no part is a solid with a mesh")
+    findings = []
+    for use in solids:
+        health = use.mesh.health
+        if health.watertight:
+            continue
+        causes = []
+        if health.open_edges:
+            causes.append(f"{counted(health.open_edges, 'edge')} with only one facet")
+        if health.overused_edges:
+            causes.append(f"{counted(health.overused_edges, 'edge')} with more than two facets")
+        if health.duplicate_facets:
+            causes.append(counted(health.duplicate_facets, "duplicate facet"))
+        findings.append(
+            RULE.finding(
+                [part.name for part in use.parts if part.solid],
+                f"the mesh {use.label} is not watertight" + (f": {listed(causes)}" if causes else ""),
+                found=listed(causes) or None,
+                intended="a closed surface, every edge with two facets",
+                declared=next(part.source for part in use.parts if part.solid),
+                remedy="Close the mesh and export it again, or state `solid = false` for a part that is "
+                "meant to be incomplete.",
+            )
+        )
+    return decided(findings)
+
+
+RULE = Rule("KF101", "mesh-not-watertight", "error", __doc__, check)

@@ -1,0 +1,36 @@
+"""Neighbouring facets of a mesh disagree about which side is outside.
+
+Why it matters: where the normals point the wrong way, surfaces do not mate and contacts are lost, and
+the volume is wrong by twice what the flipped facets enclose.
+
+What to do: unify the normals of the mesh and export again.
+
+Example: a plate of which one face was flipped by hand.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Meshes with facets in opposite senses; edges with more than two facets have no sense of their own."""
+    if not context.meshes:
+        return skipped("no part has a mesh")
+    return decided(
+        RULE.finding(
+            use.subject,
+            f"the facets of the mesh {use.label} do not all face the same way",
+            intended="every edge run through once in each direction",
+            declared=use.parts[0].source,
+            remedy="Unify the normals of the mesh and export it again.",
+        )
+        for use in context.meshes
+        if not use.mesh.health.consistent_winding and use.mesh.health.overused_edges == 0
+    )
+
+
+RULE = Rule("KF103", "mesh-winding-inconsistent", "error", __doc__, check)

@@ -1,0 +1,42 @@
+"""A joint follows from indirect evidence, such as coaxial rims or a bolt circle, not from its contact alone.
+
+Why it matters: the contact alone allows more. The evidence is usually right, and cannot be proved.
+
+What to do: look at the evidence. If it is right, nothing, or say it by `[[assume]]`. Otherwise model the
+journal, or correct the joint by `[[assume]]`.
+
+Example: a servo horn that lies flat on a bracket: the common centre of their rims suggests the axis.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._words import listed, quoted
+
+__all__ = ["RULE"]
+
+STATED = frozenset({"assumption", "function"})
+"""Evidence that somebody stated: reported by KF207, or the function itself."""
+
+
+def check(context: Context) -> Outcome:
+    """Joints whose status is inferred, except from statements."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    return decided(
+        RULE.finding(
+            [joint.name],
+            f"the {joint.type} joint of {quoted(joint.bodies)} is inferred from {listed(joint.evidence)}: "
+            f"{joint.reason}",
+            found=f"{joint.type}, inferred",
+            place=context.place_of(joint),
+            remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
+        )
+        for joint in kinematics.joints
+        if joint.status == "inferred" and not STATED.intersection(joint.evidence)
+    )
+
+
+RULE = Rule("KF205", "joint-inferred", "note", __doc__, check)

@@ -1,0 +1,49 @@
+"""The two sides of a joint have axes that differ by more than their clearance allows.
+
+Axes within `tolerances.alignment` are mated all the same, so that the joint is recognised; what is left
+over beyond clearance and the uncertainty of the fits is reported here.
+
+Why it matters: the parts bind, or bend when they are assembled.
+
+What to do: make both sides coaxial, or give the joint more clearance.
+
+Example: a shaft tilted by 0.15° in a bearing of 40 mm length with 0.02 mm of clearance, which allows 0.06°.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._words import angle, length, listed, quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Joints whose axes were mated beyond what the clearance allows."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    findings = []
+    for name, tilt, offset in kinematics.misaligned:
+        joint = context.joint(name)
+        parts = []
+        if tilt > 0.0:
+            parts.append(f"{angle(tilt)} in direction")
+        if offset > 0.0:
+            parts.append(f"{length(offset, context.units, 3)} in position")
+        excess = listed(parts) or "a small amount"
+        findings.append(
+            RULE.finding(
+                [name],
+                f"the axes of the two sides of {quoted([name])} differ by {excess} more than the clearance allows",
+                found=excess,
+                intended="axes that agree within the clearance",
+                place=context.place_of(joint) if joint is not None else None,
+                remedy="Make both sides coaxial, or give the joint more clearance.",
+            )
+        )
+    return decided(findings)
+
+
+RULE = Rule("KF206", "axes-misaligned", "warning", __doc__, check)

@@ -1,0 +1,38 @@
+"""The manifest states by `[[assume]]` what geometry would otherwise decide.
+
+Why it matters: it holds even when the geometry changes, and nothing checks it.
+
+What to do: keep assumptions few and their `reason` true; remove those that geometry proves by now.
+
+Example: a horn assumed fixed to a bracket because they are screwed together at assembly.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency._words import quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Every assumption of the manifest."""
+    if not context.assembly.assumptions:
+        return skipped("the manifest assumes nothing")
+    return decided(
+        RULE.finding(
+            assumption.between,
+            f"{quoted(assumption.between)} are assumed "
+            + ("not to touch" if assumption.ignore else f"to be joined: {assumption.type}")
+            + (f" ({assumption.reason})" if assumption.reason else ""),
+            found="ignored contact" if assumption.ignore else f"{assumption.type}, assumed",
+            place=assumption.point,
+            declared=assumption.source,
+            remedy="Nothing while the reason holds.",
+        )
+        for assumption in context.assembly.assumptions
+    )
+
+
+RULE = Rule("KF207", "joint-assumed", "note", __doc__, check)

@@ -1,0 +1,64 @@
+"""The assembly has more or fewer freedoms than `function.mobility` states.
+
+Compared with the *effective* mobility: independent motions of the whole assembly relative to ground,
+without freedoms that only spin or slide a single body on itself and that no intended joint names.
+Blocked joints count by their type. Inconclusive when a joint is ambiguous.
+
+Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
+drive holds.
+
+What to do: `kinform show F.h5 mobility` lists the freedoms and what moves in each. Findings on single
+joints (KF203, KF204, KF401, KF402) are usually the cause: begin there.
+
+Example: a gimbal that shall turn about two axes has three freedoms, because the pitch shaft has no shoulder.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import counted, quoted
+from kinform.model.kinematics import Kinematics
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Stated against effective mobility."""
+    intended = context.function.mobility
+    if intended is None:
+        return skipped("the function states no mobility")
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    ambiguous = [joint.name for joint in kinematics.joints if joint.status == "ambiguous"]
+    if ambiguous:
+        return inconclusive(f"the mobility depends on joints that are ambiguous: {quoted(ambiguous)}")
+    mobility = kinematics.mobility
+    if mobility.effective == intended:
+        return decided(reason=f"{counted(intended, 'freedom')}, as intended")
+    finding = RULE.finding(
+        (context.assembly.name,),
+        f"the assembly has {counted(mobility.effective, 'freedom')}, intended are {intended}{_details(kinematics)}",
+        found=str(mobility.effective),
+        intended=str(intended),
+        declared=context.assembly.source,
+        line=context.function.mobility_line,
+        remedy="See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`.",
+    )
+    return decided([finding])
+
+
+def _details(kinematics: Kinematics) -> str:
+    mobility = kinematics.mobility
+    notes = []
+    if mobility.idle:
+        notes.append(f"{counted(mobility.idle, 'idle freedom')} not counted")
+    if mobility.blocked != mobility.instantaneous:
+        notes.append(f"{mobility.blocked} of {mobility.instantaneous} left when blockers hold")
+    if mobility.finite is not None and mobility.finite != mobility.instantaneous:
+        notes.append(f"{mobility.instantaneous - mobility.finite} only infinitesimal")
+    return f" ({'; '.join(notes)})" if notes else ""
+
+
+RULE = Rule("KF301", "mobility-differs", "error", __doc__, check)

@@ -1,0 +1,55 @@
+"""A sub-assembly, taken alone, has more or fewer freedoms than its manifest states.
+
+Why it matters: a sub-assembly that is reused, such as a motor, must move inside every design as it does
+on its own. Contacts with the surrounding parts are left out.
+
+What to do: check the sub-assembly on its own with `kinform run`; correct it, or its `mobility`.
+
+Example: a motor with `mobility = 1` whose rotor is fused to its stator by a wrong `[[group]]`.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import counted, quoted
+from kinform.kinematics import mobility_within
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Stated against derived mobility of each sub-assembly."""
+    stated = [s for s in context.assembly.subassemblies if s.mobility is not None]
+    if not stated:
+        return skipped("no sub-assembly states a mobility")
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    findings, unknown = [], []
+    for sub in stated:
+        parts = tuple(p.name for p in context.assembly.parts if p.name.startswith(f"{sub.name}/"))
+        bodies = {kinematics.body_of(part).name for part in parts}
+        inside = [j for j in kinematics.joints if bodies.issuperset(j.bodies)]
+        if any(joint.status == "ambiguous" for joint in inside):
+            unknown.append(sub.name)
+            continue
+        found = mobility_within(kinematics, parts)
+        if found != sub.mobility:
+            findings.append(
+                RULE.finding(
+                    [sub.name],
+                    f"the sub-assembly {quoted([sub.name])} has {counted(found, 'freedom')} of its own, "
+                    f"intended are {sub.mobility}",
+                    found=str(found),
+                    intended=str(sub.mobility),
+                    declared=sub.source,
+                    remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
+                )
+            )
+    if unknown:
+        return inconclusive(f"joints inside are ambiguous: {quoted(unknown)}", findings)
+    return decided(findings)
+
+
+RULE = Rule("KF302", "subassembly-mobility-differs", "error", __doc__, check)

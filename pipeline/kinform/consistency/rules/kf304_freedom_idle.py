@@ -1,0 +1,40 @@
+"""A body can spin or slide on itself without moving anything else.
+
+Such freedoms are not counted in the effective mobility: all contact surfaces of the body slide on
+themselves, and no intended joint names it.
+
+Why it matters: a bolt or roller that spins is harmless, a shaft that should be driven is not.
+
+What to do: nothing if the part may spin. Otherwise give it a flat, a key or a group.
+
+Example: a pin that turns in both of its holes.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._words import quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Idle bodies."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    bodies = {body.name: body for body in kinematics.bodies}
+    return decided(
+        RULE.finding(
+            [name],
+            f"{quoted([name])} can move on its own without moving anything else; this freedom is not counted",
+            found="idle freedom",
+            declared=context.assembly.part(bodies[name].parts[0]).source,
+            remedy="Nothing if the part may spin or slide; otherwise hold it by a flat, a key or a [[group]].",
+        )
+        for name in sorted(kinematics.mobility.idle_bodies)
+    )
+
+
+RULE = Rule("KF304", "freedom-idle", "note", __doc__, check)

@@ -1,0 +1,63 @@
+"""The function intends a joint between two bodies that do not touch.
+
+Contact through loose parts between them (a pin, a bearing) counts, if the function does not name them.
+
+Why it matters: nothing carries the joint; the bodies move independently.
+
+What to do: check the poses and the clearance (surfaces mate up to `tolerances.contact`); add the missing
+pin or bearing; or correct `between`.
+
+Example: the pin of a hinge was left out, and the two leaves are 2 mm apart.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._compare import Comparison
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._words import counted, length, quoted
+from kinform.model.kinematics import Body
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Intended joints without any contact."""
+    compared = context.comparisons
+    if isinstance(compared, Outcome):
+        return compared
+    return decided(
+        (
+            RULE.finding(
+                [c.intended.name],
+                f"the intended {c.intended.type} joint '{c.intended.name}' is missing: {_reason(context, c)}",
+                found="no contact",
+                intended=f"{c.intended.type} joint of {quoted(c.intended.between)}",
+                place=c.intended.point,
+                declared=c.intended,
+                remedy="Check poses and clearances, add the part that carries the joint, or correct `between`.",
+            )
+            for c in compared
+            if c.state == "absent"
+        ),
+        reason=f"{counted(len(compared), 'joint')} compared",
+    )
+
+
+def _reason(context: Context, comparison: Comparison) -> str:
+    kinematics = context.design.kinematics
+    touched = {name for joint in kinematics.joints for name in joint.bodies} if kinematics else set()
+    lonely = [body for body in comparison.bodies if body.name not in touched]
+    limit = context.assembly.tolerances.contact
+    within = f" within {length(limit, context.units)}" if limit is not None else ""
+    if len(lonely) == 1:
+        return f"{_named(lonely[0])} touches no other body{within}"
+    first, second = comparison.bodies
+    return f"{_named(first)} and {_named(second)} do not touch{within}"
+
+
+def _named(body: Body) -> str:
+    return quoted([body.name])
+
+
+RULE = Rule("KF401", "joint-missing", "error", __doc__, check)

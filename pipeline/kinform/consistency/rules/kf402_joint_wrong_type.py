@@ -1,0 +1,88 @@
+"""Geometry gives a joint of another type than the function intends.
+
+Two sides that are one body have no motion and satisfy only `fixed`. Joints that are ambiguous, and types
+that geometry cannot prove yet (screw, universal), leave the rule inconclusive. Loose parts between the
+bodies that the function does not name, such as a pin, take part in the decision.
+
+Why it matters: the mechanism moves in a way that is not wanted, or does not move.
+
+What to do: `kinform show F.h5 joints` shows the evidence. A revolute joint that comes out cylindrical
+lacks a shoulder; one that comes out planar lacks the journal; one that comes out fixed is held by a
+locator, a misaligned surface or a wrong `[[group]]`.
+
+Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._compare import Comparison
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency._words import counted, direction, quoted
+from kinform.model.findings import Finding
+
+__all__ = ["RULE"]
+
+FREEDOMS = {
+    "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
+    "spherical": 3, "planar": 3,
+}  # fmt: skip
+
+
+def check(context: Context) -> Outcome:
+    """Intended joints of which another type was found."""
+    compared = context.comparisons
+    if isinstance(compared, Outcome):
+        return compared
+    present = [c for c in compared if c.state in ("found", "one body")]
+    findings = [_finding(context, c) for c in present if not c.right_type]
+    unknown = [f"'{c.intended.name}': {c.reason}" for c in compared if c.state == "undecided"]
+    if unknown:
+        return inconclusive("; ".join(unknown), findings)
+    return decided(findings, reason=f"{counted(len(present), 'joint')} compared")
+
+
+def _finding(context: Context, c: Comparison) -> Finding:
+    intended = c.intended
+    found = _found(c)
+    return RULE.finding(
+        [intended.name],
+        f"joint '{intended.name}' is {found}, intended is {intended.type}{_consequence(c)}",
+        found=found + (f" about {direction(c.axis)}" if c.axis is not None else ""),
+        intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
+        place=c.point if c.point is not None else intended.point,
+        declared=intended,
+        remedy=_remedy(c),
+    )
+
+
+def _found(c: Comparison) -> str:
+    if c.state == "one body":
+        why = f" ({c.reason})" if c.reason else ""
+        return f"fixed: {quoted(c.intended.between)} are parts of one body{why}"
+    text = c.type if c.type != "general" else f"general with {counted(c.freedoms, 'freedom')}"
+    return text + (f" (through {quoted(c.through)})" if c.through else "")
+
+
+def _consequence(c: Comparison) -> str:
+    """What the difference means, in freedoms."""
+    wanted = FREEDOMS.get(c.intended.type)
+    if wanted is None or wanted == c.freedoms:
+        return ""
+    more = c.freedoms - wanted
+    return f": {counted(abs(more), 'freedom')} too {'many' if more > 0 else 'few'}"
+
+
+def _remedy(c: Comparison) -> str:
+    if c.state == "one body":
+        return "Take the two sides out of the common [[group]], or see what fuses them: `kinform show F.h5 joints`."
+    if c.intended.type == "revolute" and c.type == "cylindrical":
+        return "Give the shaft shoulders or clips that hold it along the axis."
+    if c.intended.type == "revolute" and c.type == "planar":
+        return "Give the joint a journal and a bore; a flat face alone does not hold the axis."
+    return (
+        "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
+    )
+
+
+RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check)

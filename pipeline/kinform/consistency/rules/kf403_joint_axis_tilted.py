@@ -1,0 +1,66 @@
+"""The axis of a joint points in another direction than intended.
+
+A finding when the angle exceeds `tolerances.alignment` (default 0.2°) by more than the uncertainty of the
+found axis; inconclusive when the uncertainty decides. The sense of the axis does not count. Only joints
+of the right type are compared.
+
+Why it matters: over 100 mm, 0.5° is 0.9 mm; optical and bearing axes are rarely allowed as much.
+
+What to do: correct the bore or the shaft, or `axis` of the intended joint. Raise `tolerances.alignment`
+if the difference is acceptable.
+
+Example: the pitch axis of a gimbal was drilled 0.5° off square.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._compare import Comparison
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import angle, counted, direction
+from kinform.model.findings import Finding
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Angles between intended and found axes."""
+    compared = context.comparisons
+    if isinstance(compared, Outcome):
+        return compared
+    limit = context.assembly.tolerances.alignment
+    findings, unknown, count = [], [], 0
+    for c in compared:
+        off = c.angle
+        if off is None:
+            continue
+        count += 1
+        if off > limit + c.angle_slack:
+            findings.append(_finding(c, off, limit))
+        elif off > limit:
+            unknown.append(f"'{c.intended.name}' is {angle(off)} off, known to {angle(c.angle_slack)}")
+    if unknown:
+        return inconclusive("; ".join(unknown), findings)
+    return (
+        decided(findings, f"{counted(count, 'axis', 'axes')} compared")
+        if count
+        else skipped("no axis to compare")
+    )
+
+
+def _finding(c: Comparison, off: float, limit: float) -> Finding:
+    assert c.axis is not None and c.intended.axis is not None
+    sense = 1.0 if float(c.axis @ c.intended.axis) >= 0.0 else -1.0
+    return RULE.finding(
+        [c.intended.name],
+        f"the axis of joint '{c.intended.name}' is {angle(off)} off the intended direction "
+        f"(allowed {angle(limit)})",
+        found=f"axis {direction(sense * c.axis)}",
+        intended=f"axis {direction(c.intended.axis)}",
+        place=c.point if c.point is not None else c.intended.point,
+        declared=c.intended,
+        remedy="Correct the mating surfaces, or `axis` of the intended joint.",
+    )
+
+
+RULE = Rule("KF403", "joint-axis-tilted", "error", __doc__, check)

@@ -1,0 +1,66 @@
+"""The axis, or the centre, of a joint lies beside the intended one.
+
+A finding when the distance exceeds the contact tolerance of the parts that carry the joint (default
+0.5 mm, or 3 % of the smaller part where that is less) by more than the uncertainty of the found axis;
+inconclusive when the uncertainty decides. Axes are lines: their least distance over the stretch between
+the intended point and the joint counts, so that a tilt alone is reported by KF403 only.
+
+Why it matters: levers, strokes and clearances are computed from wrong places.
+
+What to do: correct the position of the bore or the pose of the part, or `point` of the intended joint.
+
+Example: a hinge that was moved 2 mm in the CAD model, and not in the manifest.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._compare import Comparison
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import counted, length, place
+from kinform.model.findings import Finding
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Distances between intended and found axes or centres."""
+    compared = context.comparisons
+    if isinstance(compared, Outcome):
+        return compared
+    units = context.units
+    findings, unknown, count = [], [], 0
+    for c in compared:
+        off = c.offset
+        if off is None:
+            continue
+        count += 1
+        if off > c.tolerance + c.position_slack:
+            findings.append(_finding(c, off, units))
+        elif off > c.tolerance:
+            unknown.append(
+                f"'{c.intended.name}' is {length(off, units)} off, known to {length(c.position_slack, units)}"
+            )
+    if unknown:
+        return inconclusive("; ".join(unknown), findings)
+    return (
+        decided(findings, f"{counted(count, 'place')} compared") if count else skipped("no axis to compare")
+    )
+
+
+def _finding(c: Comparison, off: float, units: str) -> Finding:
+    assert c.point is not None and c.intended.point is not None
+    what = "centre" if c.type in ("spherical", "universal") else "axis"
+    return RULE.finding(
+        [c.intended.name],
+        f"the {what} of joint '{c.intended.name}' is {length(off, units)} beside the intended one "
+        f"(allowed {length(c.tolerance, units)})",
+        found=f"through {place(c.point, units)}",
+        intended=f"through {place(c.intended.point, units)}",
+        place=c.point,
+        declared=c.intended,
+        remedy="Correct the pose or the mating surfaces, or `point` of the intended joint.",
+    )
+
+
+RULE = Rule("KF404", "joint-axis-displaced", "error", __doc__, check)

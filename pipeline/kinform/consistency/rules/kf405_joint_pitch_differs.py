@@ -1,0 +1,51 @@
+"""A screw joint has another pitch than intended, or the other hand.
+
+A finding when the pitches differ by more than 0.1 %.
+
+Why it matters: every turn moves the nut by another distance, or the other way.
+
+What to do: correct the thread, the assumption that states the joint, or `pitch` (positive: right-handed).
+
+Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency._words import length
+
+__all__ = ["RULE"]
+
+ALLOWED = 1e-3
+"""Relative difference of pitches that counts as equal."""
+
+
+def check(context: Context) -> Outcome:
+    """Pitches of screw joints."""
+    compared = context.comparisons
+    if isinstance(compared, Outcome):
+        return compared
+    findings, count = [], 0
+    for c in compared:
+        wanted = c.intended.pitch
+        if not c.right_type or c.type != "screw" or wanted is None or c.pitch is None:
+            continue
+        count += 1
+        if abs(c.pitch - wanted) > ALLOWED * abs(wanted):
+            found, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
+            findings.append(
+                RULE.finding(
+                    [c.intended.name],
+                    f"joint '{c.intended.name}' advances {found}, intended are {intended}",
+                    found=found,
+                    intended=intended,
+                    place=c.point,
+                    declared=c.intended,
+                    remedy="Correct the thread, or `pitch` of the intended joint (positive: right-handed).",
+                )
+            )
+    return decided(findings) if count else skipped("no screw joint to compare")
+
+
+RULE = Rule("KF405", "joint-pitch-differs", "error", __doc__, check)

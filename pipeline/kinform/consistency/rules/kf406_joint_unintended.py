@@ -1,0 +1,51 @@
+"""Two bodies of the function are joined by a joint that the function does not intend.
+
+Applies when `[[function.joint]]` is stated at all, to bodies that an intended joint names. Joints to
+other bodies (pins, bearings, screws) are means and are not compared; those bodies are listed by KF408.
+Flat or irregular contact is KF407. Inconclusive when the joint is ambiguous.
+
+Why it matters: a guide, journal or socket that nobody wanted takes freedoms away.
+
+What to do: separate the bodies, or add the joint to the function if it is wanted.
+
+Example: a cable duct on the arm fits around the base like a bearing.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency._unintended import unintended
+from kinform.consistency._words import direction, quoted
+from kinform.model.findings import Finding
+from kinform.model.kinematics import Joint
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Lower pairs, other than planar, between bodies of the function that no intended joint joins."""
+    joints = unintended(context)
+    if isinstance(joints, Outcome):
+        return joints
+    findings = [_finding(context, joint) for joint in joints if joint.type not in ("planar", "general")]
+    unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
+    if unknown:
+        return inconclusive(f"not intended and ambiguous: {quoted(unknown)}", findings)
+    return decided(findings)
+
+
+def _finding(context: Context, joint: Joint) -> Finding:
+    found = joint.type + (f" about {direction(joint.axis)}" if joint.axis is not None else "")
+    return RULE.finding(
+        [joint.name],
+        f"{quoted(joint.bodies)} are joined by a {joint.type} joint that the function does not intend",
+        found=found,
+        intended="no joint",
+        place=context.place_of(joint),
+        declared=context.assembly.source,
+        remedy="Separate the two bodies, or add the joint to [function].",
+    )
+
+
+RULE = Rule("KF406", "joint-unintended", "error", __doc__, check)

@@ -1,0 +1,49 @@
+"""Two bodies of the function touch, and the function intends no joint between them.
+
+Like KF406, for contact that is no joint by itself: flat faces, or irregular contact.
+
+Why it matters: the bodies may rub or stop each other. Sometimes it is an end stop that is meant.
+
+What to do: give the bodies a gap; if the contact is meant, add it to the function or state
+`[[assume]] ignore = true` with the reason.
+
+Example: the side of a link slides along the base.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._unintended import unintended
+from kinform.consistency._words import area, counted, quoted
+from kinform.model.findings import Finding
+from kinform.model.kinematics import Joint
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Planar and general contact between bodies of the function that no intended joint joins."""
+    joints = unintended(context)
+    if isinstance(joints, Outcome):
+        return joints
+    touching = [j for j in joints if j.type in ("planar", "general") and j.status != "ambiguous"]
+    return decided(_finding(context, joint) for joint in touching)
+
+
+def _finding(context: Context, joint: Joint) -> Finding:
+    contacts = context.design.contacts
+    size = sum(contacts.patches[k].area for k in joint.patches) if contacts is not None else 0.0
+    over = f" over {area(size, context.units)}" if size > 0.0 else ""
+    return RULE.finding(
+        [joint.name],
+        f"{quoted(joint.bodies)} touch{over}, which the function does not intend",
+        found=f"{joint.type} contact, {counted(joint.freedoms, 'freedom')} left",
+        intended="no contact",
+        place=context.place_of(joint),
+        declared=context.assembly.source,
+        remedy="Give the bodies a gap, or state the contact in [function] or by [[assume]].",
+    )
+
+
+RULE = Rule("KF407", "contact-unintended", "warning", __doc__, check)

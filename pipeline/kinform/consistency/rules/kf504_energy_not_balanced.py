@@ -1,0 +1,58 @@
+"""Energy appears or disappears in a dynamic simulation.
+
+Kinetic plus potential energy minus the work of drives and loads must stay constant. A finding when it
+drifts by more than a thousandth of the energy that is exchanged.
+
+Why it matters: the motion and the torques are then inaccurate.
+
+What to do: report it; it is a fault of the solver, or of mass properties that are nearly singular.
+
+Example: a pendulum that swings 2 % higher after ten periods.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import number
+
+__all__ = ["RULE"]
+
+ALLOWED = 1e-3
+"""Drift relative to the energy exchanged."""
+NOTHING = 1e-15
+"""Energy exchanged (J) below which there is nothing to compare."""
+
+
+def check(context: Context) -> Outcome:
+    """Drift of the energy balance."""
+    simulation = context.simulation
+    if isinstance(simulation, Outcome):
+        return simulation
+    if simulation.level != "dynamic" or not len(simulation.energy):
+        return skipped("no dynamic simulation was run")
+    if not np.isfinite(simulation.energy).all():
+        return inconclusive("the energy was not recorded at every time")
+    balance = simulation.energy @ np.array([1.0, 1.0, -1.0])
+    drift = np.abs(balance - balance[0])
+    exchanged = float(np.ptp(simulation.energy, axis=0).max())
+    worst = int(np.argmax(drift))
+    if float(drift[worst]) <= max(ALLOWED * exchanged, NOTHING):
+        return decided(
+            reason=f"drift {number(float(drift[worst]), 2)} J of {number(exchanged, 3)} J exchanged"
+        )
+    finding = RULE.finding(
+        (context.assembly.name,),
+        f"the energy balance is off by {number(float(drift[worst]), 3)} J "
+        f"at t = {number(float(simulation.time[worst]))} s, of {number(exchanged, 3)} J exchanged",
+        found=f"{number(float(drift[worst]), 3)} J",
+        intended=f"at most {number(ALLOWED * exchanged, 3)} J",
+        declared=context.assembly.source,
+        remedy="Check the mass properties, and report the case.",
+    )
+    return decided([finding])
+
+
+RULE = Rule("KF504", "energy-not-balanced", "warning", __doc__, check)

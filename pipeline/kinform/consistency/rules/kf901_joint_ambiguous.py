@@ -1,0 +1,60 @@
+"""The contact of two bodies neither clearly holds nor clearly frees a motion.
+
+Inconclusive when an intended joint is between the two bodies. Without an intended joint it is a warning.
+
+Why it matters: a guess could be wrong either way. Very short journals, slight tapers, noisy meshes and
+coarse facets are the usual causes.
+
+What to do: export a finer mesh, make the locating surface longer, or state the joint by `[[assume]]`.
+
+Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency._words import quoted
+from kinform.model.findings import Finding
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Joints whose status is ambiguous."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    ambiguous = [joint for joint in kinematics.joints if joint.status == "ambiguous"]
+    wanted = {joint.name: _wanted(context, joint) for joint in ambiguous}
+    findings = [_finding(context, joint, wanted[joint.name]) for joint in ambiguous]
+    intended = [want.name for want in wanted.values() if want is not None]
+    if intended:
+        return inconclusive(f"ambiguous: {quoted(intended)}", findings)
+    return decided(findings)
+
+
+def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:
+    for intended in context.function.joints:
+        if {context.body(name) for name in intended.between} == set(joint.bodies):
+            return intended
+    return None
+
+
+def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> Finding:
+    values = ", ".join(f"{value:.2g}" for value in joint.singular_values)
+    return RULE.finding(
+        [joint.name if intended is None else intended.name],
+        f"the joint of {quoted(joint.bodies)} is ambiguous: {joint.reason}",
+        severity="warning" if intended is None else None,
+        found=f"{joint.type}, or another; singular values {values}",
+        intended=intended.type if intended is not None else None,
+        place=context.place_of(joint),
+        declared=intended,
+        remedy="Export a finer mesh, lengthen the locating surface, or state the joint by [[assume]].",
+    )
+
+
+RULE = Rule("KF901", "joint-ambiguous", "note", __doc__, check)

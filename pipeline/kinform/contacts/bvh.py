@@ -1,0 +1,108 @@
+"""Bounding volume hierarchies of meshes, one for each distinct mesh, and sliver probes against them.
+
+A contact list of FCL between two meshes is not usable as a patch: it misses facets that touch exactly
+and facets that penetrate in parallel. A thin triangle that stands across the surface does hit, whatever
+the gap, so every question here is put as one BVH of such slivers against the BVH of a mesh. Slivers are
+given in the mesh's own frame: the BVH never has to be built again for another pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.assembly import Mesh
+
+__all__ = ["Hits", "MeshIndex", "MeshStore"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_WIDTH = 1e-3
+"""Width of a sliver relative to its length: zero width misses most facets."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Facets that probes hit, ordered by probe, then by facet."""
+
+    probe: Ints
+    """(h,) index of the probe."""
+    facet: Ints
+    """(h,) index of the facet."""
+    along: Array
+    """(h,) m: where the probe's line meets the plane of the facet, from the probe's point."""
+    facing: Array
+    """(h,) cosine between the probe's direction and the facet's outward normal."""
+
+
+def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(np.ascontiguousarray(vertices), np.ascontiguousarray(faces))
+    model.endModel()
+    return model
+
+
+class MeshIndex:
+    """One mesh with its facet normals and areas, and its BVH, built when first asked for."""
+
+    def __init__(self, mesh: Mesh):
+        self.mesh = mesh
+        corners = mesh.vertices[mesh.faces]
+        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.linalg.norm(cross, axis=1)
+        self.areas: Array = 0.5 * length
+        """(F,) m²."""
+        self.normals: Array = cross / np.where(length > 0.0, length, 1.0)[:, None]
+        """(F, 3) unit, part frame."""
+        self._bvh: fcl.BVHModel | None = None
+
+    @property
+    def bvh(self) -> fcl.BVHModel:
+        """FCL's model of the mesh in the part frame (m)."""
+        if self._bvh is None:
+            self._bvh = _model(self.mesh.vertices, self.mesh.faces)
+        return self._bvh
+
+    def cast(self, points: Array, directions: Array, reach: Array) -> Hits:
+        """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame."""
+        count = len(points)
+        empty = np.zeros(0)
+        if count == 0:
+            return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
+        least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
+        across = np.cross(directions, least)
+        across *= (_WIDTH * reach / np.linalg.norm(across, axis=1))[:, None]
+        tip = points + reach[:, None] * directions
+        slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
+        probe_model = _model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
+        request = fcl.CollisionRequest(num_max_contacts=256 * count + 4096, enable_contact=False)
+        result = fcl.CollisionResult()
+        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
+        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
+        pairs = np.unique(pairs, axis=0)
+        probe, facet = pairs[:, 0], pairs[:, 1]
+        normal = self.normals[facet]
+        facing = np.einsum("ij,ij->i", normal, directions[probe])
+        height = np.einsum("ij,ij->i", normal, self.mesh.vertices[self.mesh.faces[facet, 0]] - points[probe])
+        steep = np.abs(facing) > 1e-3
+        along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
+        return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
+
+
+@dataclass
+class MeshStore:
+    """The indices of all distinct meshes, by digest."""
+
+    indices: dict[str, MeshIndex] = field(default_factory=dict)
+
+    def index(self, mesh: Mesh) -> MeshIndex:
+        """The index of a mesh; meshes of one digest share it."""
+        if mesh.digest not in self.indices:
+            self.indices[mesh.digest] = MeshIndex(mesh)
+        return self.indices[mesh.digest]

@@ -1,0 +1,108 @@
+"""The stage: broad phase, then every pair on its own, in the order of names."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from typing import Any
+
+from kinform.contacts.broad import Pair, candidate_pairs
+from kinform.contacts.bvh import MeshStore
+from kinform.contacts.pair import PairContacts, pair_contacts
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["find"]
+
+Progress = Callable[[int, int], None]
+
+
+class _Work:
+    """What a worker needs for any pair; meshes are indexed when first met."""
+
+    def __init__(self, assembly: Assembly, surfaces: dict[str, MeshSurfaces], tolerance: dict[Pair, float]):
+        self.assembly, self.surfaces, self.tolerance = assembly, surfaces, tolerance
+        self.parts = {part.name: part for part in assembly.parts}
+        self.store = MeshStore()
+
+    def contacts(self, pair: Pair) -> PairContacts:
+        first, second = (self.parts[name] for name in pair)
+        tolerance, tolerances = self.tolerance[pair], self.assembly.tolerances
+        return pair_contacts(first, second, self.surfaces, self.store, tolerance, tolerances)
+
+
+_worker: _Work | None = None
+
+
+def _start_worker(work: _Work) -> None:
+    global _worker
+    _worker = work
+
+
+def _in_worker(pair: Pair) -> PairContacts:
+    assert _worker is not None
+    return _worker.contacts(pair)
+
+
+def _computed(work: _Work, pairs: list[Pair], jobs: int) -> Iterator[PairContacts]:
+    """Contacts of the pairs, in their order, whatever the number of jobs."""
+    if jobs <= 1 or len(pairs) < 2:
+        yield from map(work.contacts, pairs)
+        return
+    pool: Any
+    if "fork" in multiprocessing.get_all_start_methods():
+        context = multiprocessing.get_context("fork")
+        pool = ProcessPoolExecutor(jobs, context, initializer=_start_worker, initargs=(work,))
+        task: Callable[[Pair], PairContacts] = _in_worker
+    else:
+        pool, task = ThreadPoolExecutor(jobs), work.contacts
+    with pool:
+        yield from pool.map(task, pairs)
+
+
+def find(
+    assembly: Assembly,
+    surfaces: dict[str, MeshSurfaces],
+    *,
+    jobs: int = 1,
+    reuse: Contacts | None = None,
+    reuse_pairs: frozenset[tuple[str, str]] = frozenset(),
+    progress: Progress | None = None,
+) -> Contacts:
+    """All contacts of the assembly at its pose, in the world (SI).
+
+    `surfaces` by mesh digest. Pairs of parts without mesh, pairs inside one group, and pairs that an
+    assumption declares not to touch are not looked at. Pairs named in `reuse_pairs` (sorted names) are
+    taken from `reuse` where it has them. `progress(done, total)` counts pairs. The result does not
+    depend on `jobs`.
+    """
+    tolerance = candidate_pairs(assembly)
+    known = (
+        {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
+    )
+    wanted = [pair for pair in tolerance if pair not in known]
+    work = _Work(assembly, surfaces, tolerance)
+    done: dict[Pair, PairContacts] = {}
+    for count, (pair, contacts) in enumerate(
+        zip(wanted, _computed(work, wanted, jobs), strict=True), start=1
+    ):
+        done[pair] = contacts
+        if progress is not None:
+            progress(count, len(wanted))
+    if reuse is not None:
+        done |= {pair: _taken(reuse, pair) for pair in known}
+    return Contacts(
+        patches=tuple(patch for pair in tolerance for patch in done[pair].patches),
+        interferences=tuple(found for pair in tolerance if (found := done[pair].interference) is not None),
+        candidates=tuple(tolerance),
+        tolerance=tolerance,
+    )
+
+
+def _taken(reuse: Contacts, pair: Pair) -> PairContacts:
+    """What earlier contacts say of one pair."""
+    overlaps = [found for found in reuse.interferences if found.parts == pair]
+    patches = tuple(patch for patch in reuse.patches if patch.parts == pair)
+    return PairContacts(patches, overlaps[0] if overlaps else None)

@@ -1,0 +1,80 @@
+"""All that one pair of parts has to say: its patches, and its overlap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.contacts.bvh import MeshStore
+from kinform.contacts.coaxial import cone_mates, cylinder_mates
+from kinform.contacts.mates import Mate, box_overlap
+from kinform.contacts.patches import mated_patches, placed_in_world
+from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place
+from kinform.contacts.planes import plane_mates
+from kinform.contacts.spheres import sphere_mates
+from kinform.model.assembly import Part
+from kinform.model.contacts import Interference, Patch
+from kinform.model.surfaces import MeshSurfaces
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["PairContacts", "pair_contacts"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class PairContacts:
+    """Contacts of one pair, in the world."""
+
+    patches: tuple[Patch, ...]
+    interference: Interference | None
+
+
+def pair_contacts(
+    first: Part,
+    second: Part,
+    surfaces: dict[str, MeshSurfaces],
+    store: MeshStore,
+    tolerance: float,
+    tolerances: Tolerances,
+) -> PairContacts:
+    """Contacts between two meshed parts (first < second by name), within `tolerance` (m)."""
+    assert first.mesh is not None
+    assert second.mesh is not None
+    X_FB = _inverse(first.X_WP) @ second.X_WP
+    a = place(first, store.index(first.mesh), surfaces[first.mesh.digest], np.eye(4))
+    b = place(second, store.index(second.mesh), surfaces[second.mesh.digest], X_FB)
+    reach = _reach(a, b, tolerance)
+    low = np.maximum(a.vertices.min(axis=0), b.vertices.min(axis=0)) - reach
+    high = np.minimum(a.vertices.max(axis=0), b.vertices.max(axis=0)) + reach
+    if (low > high).any():
+        return PairContacts((), None)
+    near = (near_surfaces(a, low, high), near_surfaces(b, low, high))
+    patches = mated_patches(a, b, near, _mates(near, reach, tolerance, tolerances), tolerance, tolerances)
+    patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
+    return PairContacts(tuple(placed_in_world(patch, first.X_WP) for patch in patches), None)
+
+
+def _inverse(X: Array) -> Array:
+    inverse = np.eye(4)
+    inverse[:3, :3] = X[:3, :3].T
+    inverse[:3, 3] = -X[:3, :3].T @ X[:3, 3]
+    return inverse
+
+
+def _reach(a: PlacedPart, b: PlacedPart, tolerance: float) -> float:
+    """How far apart mating surfaces of the two parts may be: clearances grow with the radius."""
+    radii = [max((s.radius for s in part.surfaces.surfaces), default=0.0) for part in (a, b)]
+    return max(tolerance, 0.03 * min(radii))
+
+
+def _mates(
+    near: tuple[NearSurfaces, NearSurfaces], reach: float, tolerance: float, tolerances: Tolerances
+) -> list[Mate]:
+    overlap = box_overlap(*near, reach)
+    mates: list[Mate] = []
+    for kind in (plane_mates, cylinder_mates, cone_mates, sphere_mates):
+        mates += kind(*near, overlap, tolerance, tolerances)
+    return mates

@@ -1,0 +1,160 @@
+"""Lines of tables and keys in a TOML text.
+
+tomllib gives values without their places. This scanner walks a text that tomllib has accepted, and keeps
+only the line on which each key, table and array element begins. It follows TOML 1.0 and checks nothing.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+__all__ = ["LineTable", "Path"]
+
+Path = tuple[str | int, ...]
+
+_BLANK = re.compile(r"[ \t]*")
+_GAP = re.compile(r"(?:[ \t\n]|#[^\n]*)*")
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_SCALAR = re.compile(r"[^,\]}\n#]+")
+_BASIC = re.compile(r'"(?:[^"\\]|\\.)*"')
+_LITERAL = re.compile(r"'[^']*'")
+_LONG_BASIC = re.compile(r'"""(?:[^"\\]|\\.|"(?!"")|\\\n)*"{3,5}', re.DOTALL)
+_LONG_LITERAL = re.compile(r"'''(?:[^']|'(?!''))*'{3,5}", re.DOTALL)
+
+
+class LineTable:
+    """The 1-based line of each path, such as ("part", 2, "mesh")."""
+
+    def __init__(self, text: str):
+        """Scan a text that tomllib accepts."""
+        self._text = text.replace("\r\n", "\n")
+        self._position = 0
+        self._line = 1
+        self._counted_to = 0
+        self._lines: dict[Path, int] = {}
+        self._elements: dict[Path, int] = {}
+        self._scan()
+
+    def line(self, path: Path) -> int:
+        """Line of the path, or of the closest table or key around it (1 for an empty path)."""
+        for length in range(len(path), 0, -1):
+            found = self._lines.get(path[:length])
+            if found is not None:
+                return found
+        return 1
+
+    def _scan(self) -> None:
+        table: Path = ()
+        while True:
+            self._skip(_GAP)
+            if self._position >= len(self._text):
+                return
+            if self._peek("["):
+                table = self._header()
+            else:
+                self._pair(table)
+
+    def _header(self) -> Path:
+        line = self._here()
+        many = self._text.startswith("[[", self._position)
+        self._position += 2 if many else 1
+        keys = self._keys()
+        self._position += 2 if many else 1
+        path: Path = ()
+        for key in keys[:-1]:
+            path = self._enter((*path, key), line)
+        path = (*path, keys[-1])
+        if many:
+            self._lines.setdefault(path, line)
+            self._elements[path] = self._elements.get(path, -1) + 1
+            path = (*path, self._elements[path])
+        else:
+            path = self._enter(path, line)
+        self._lines[path] = line
+        return path
+
+    def _enter(self, path: Path, line: int) -> Path:
+        self._lines.setdefault(path, line)
+        return (*path, self._elements[path]) if path in self._elements else path
+
+    def _pair(self, table: Path) -> None:
+        line = self._here()
+        path = table
+        for key in self._keys():
+            path = (*path, key)
+            self._lines.setdefault(path, line)
+        self._position += 1
+        self._skip(_BLANK)
+        self._value(path)
+
+    def _keys(self) -> list[str]:
+        keys = []
+        while True:
+            self._skip(_BLANK)
+            keys.append(self._key())
+            self._skip(_BLANK)
+            if not self._peek("."):
+                return keys
+            self._position += 1
+
+    def _key(self) -> str:
+        for pattern in (_BASIC, _LITERAL):
+            found = pattern.match(self._text, self._position)
+            if found:
+                self._position = found.end()
+                return str(tomllib.loads("k = " + found[0])["k"])
+        return self._skip(_BARE)
+
+    def _value(self, path: Path) -> None:
+        for pattern in (_LONG_BASIC, _LONG_LITERAL, _BASIC, _LITERAL):
+            if self._skip(pattern):
+                return
+        if self._peek("["):
+            self._array(path)
+        elif self._peek("{"):
+            self._inline(path)
+        else:
+            self._skip(_SCALAR)
+
+    def _array(self, path: Path) -> None:
+        self._position += 1
+        index = 0
+        while True:
+            self._skip(_GAP)
+            if self._peek("]"):
+                break
+            if self._peek(","):
+                self._position += 1
+                continue
+            self._lines[(*path, index)] = self._here()
+            self._value((*path, index))
+            index += 1
+        self._position += 1
+
+    def _inline(self, path: Path) -> None:
+        self._position += 1
+        while True:
+            self._skip(_GAP)
+            if self._peek("}"):
+                break
+            if self._peek(","):
+                self._position += 1
+                continue
+            self._pair(path)
+        self._position += 1
+
+    def _peek(self, character: str) -> bool:
+        return self._text.startswith(character, self._position)
+
+    def _skip(self, pattern: re.Pattern[str]) -> str:
+        found = pattern.match(self._text, self._position)
+        if not found:
+            return ""
+        self._position = found.end()
+        return found[0]
+
+    def _here(self) -> int:
+        self._line += self._text.count("\n", self._counted_to, self._position)
+        self._counted_to = self._position
+        return self._line

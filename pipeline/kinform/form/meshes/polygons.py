@@ -1,0 +1,96 @@
+"""Polygons into triangles, concave ones too.
+
+A convex polygon becomes a fan. Whatever does not is projected along its Newell normal (Sutherland et al.,
+A characterization of ten hidden-surface algorithms, 1974) and triangulated by manifold3d.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["triangulate"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_SLACK = 1e-9
+"""Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""
+
+
+def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:
+    """Triangles (T, 3), the polygon of each (T,), and the polygons that cross themselves (k,).
+
+    vertices: (n, 3). corners: vertex indices of all polygons, one after the other. sizes: (P,) at least 3.
+    Triangles come in the order of the polygons.
+    """
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
+    triangles, owners, crossed = [], [], []
+    for size in np.unique(sizes):
+        which = np.flatnonzero(sizes == size)
+        polygons = corners[starts[which][:, None] + np.arange(size)]
+        if size == 3:
+            triangles.append(polygons)
+            owners.append(which)
+            continue
+        fan, ok = _fans(vertices, polygons)
+        triangles.append(fan[ok].reshape(-1, 3))
+        owners.append(np.repeat(which[ok], size - 2))
+        for polygon, index in zip(polygons[~ok], which[~ok], strict=True):
+            cut = _cut(vertices, polygon)
+            if cut is None:
+                crossed.append(index)
+                continue
+            triangles.append(cut)
+            owners.append(np.full(len(cut), index))
+    owner = np.concatenate(owners)
+    order = np.argsort(owner, kind="stable")
+    return np.concatenate(triangles)[order], owner[order], np.array(sorted(crossed), dtype=np.int64)
+
+
+def _fans(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
+    """Fans (P, size − 2, 3) from the first corner, or from the second where only that one works."""
+    first, first_ok = _fan(vertices, polygons)
+    second, second_ok = _fan(vertices, np.roll(polygons, -1, axis=1))
+    return np.where(first_ok[:, None, None], first, second), first_ok | second_ok
+
+
+def _fan(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
+    size = polygons.shape[1]
+    fan = np.stack(
+        [np.broadcast_to(polygons[:, :1], (len(polygons), size - 2)), polygons[:, 1:-1], polygons[:, 2:]], axis=2
+    )
+    p = vertices[fan]
+    doubled = np.cross(p[:, :, 1] - p[:, :, 0], p[:, :, 2] - p[:, :, 0])
+    normal = doubled.sum(axis=1)
+    length = np.linalg.norm(normal, axis=1)
+    along = np.einsum("pti,pi->pt", doubled, normal)
+    flat = np.linalg.norm(doubled, axis=2).max(axis=1) == 0
+    return fan, flat | (along > _SLACK * (length**2)[:, None]).all(axis=1)
+
+
+def _cut(vertices: Array, polygon: Ints) -> Ints | None:
+    """Triangles of one polygon by manifold3d; None if it crosses itself."""
+    from manifold3d import triangulate as cut
+
+    p = vertices[polygon] - vertices[polygon].mean(axis=0)
+    normal = np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
+    area = float(np.linalg.norm(normal))
+    spread = float(np.abs(p).max())
+    if area <= _SLACK * spread**2:
+        fan = np.stack([np.full(len(p) - 2, polygon[0]), polygon[1:-1], polygon[2:]], axis=1)
+        a, b, c = (vertices[fan[:, i]] for i in range(3))
+        collinear = np.abs(np.cross(b - a, c - a)).max() <= _SLACK * spread**2
+        return fan if collinear else None
+    normal /= area
+    u = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    u /= np.linalg.norm(u)
+    flat = np.stack([p @ u, p @ np.cross(normal, u)], axis=1)
+    triangles = np.asarray(cut([flat]), dtype=np.int64)
+    if len(triangles) != len(p) - 2:
+        return None
+    a, b, c = (flat[triangles[:, i]] for i in range(3))
+    doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    if doubled.min() < -_SLACK * area or abs(doubled.sum() - area) > 1e-6 * area:
+        return None
+    return polygon[triangles]

@@ -1,0 +1,64 @@
+"""Facets as a file states them, before welding and without units, and what a reader complains about."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Fault", "Labelling", "MeshError", "RawMesh"]
+
+REEXPORT = "export the mesh again"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with a mesh file; `line` (1-based) where the format has lines."""
+
+    message: str
+    remedy: str
+    line: int | None = None
+
+
+class MeshError(Exception):
+    """A mesh file cannot be used. Carries its faults; the caller adds file and manifest line."""
+
+    def __init__(self, faults: Sequence[Fault]):
+        self.faults = tuple(faults)
+        super().__init__("; ".join(fault.message for fault in self.faults))
+
+
+@dataclass(frozen=True, eq=False)
+class Labelling:
+    """One way in which a file divides its facets: OBJ objects, OBJ groups, or ASCII solids."""
+
+    kind: str
+    """object, group or solid."""
+    names: tuple[str, ...]
+    """Distinct, in the order of the file; "" for facets before the first name."""
+    labels: NDArray[np.int64]
+    """(F,) index into names."""
+
+
+@dataclass(frozen=True, eq=False)
+class RawMesh:
+    """Vertices (n, 3) float32 or float64 in file units, faces (F, 3), and how the file divides them."""
+
+    vertices: NDArray[np.floating]
+    faces: NDArray[np.int64]
+    labellings: tuple[Labelling, ...] = ()
+
+
+def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = ()) -> RawMesh:
+    """A raw mesh of (F, 3, 3) facet corners, none of them shared."""
+    faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
+    return RawMesh(corners.reshape(-1, 3), faces, labellings)
+
+
+def plural(count: int, noun: str) -> str:
+    """ "1 facet", "3 facets". """
+    if noun.endswith("x"):
+        return f"{count} {noun}" if count == 1 else f"{count} {noun[:-2]}ices"
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -1,0 +1,122 @@
+"""Welding: vertices that are one become one.
+
+Exact copies first (hash and sort), then vertices within the welding distance of each other (k-d tree).
+A cluster gathers about its first vertex and reaches no further than the distance from it, so that a chain of
+close vertices never draws a small feature together.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.form.meshes.raw import Fault, MeshError
+
+__all__ = ["merge_close", "merge_exact", "used_only"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_SAMPLE, _CROWD = 500, 50
+"""Vertices whose surroundings are counted, and the mean count above which a mesh would collapse."""
+
+_MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
+
+
+def used_only(vertices: NDArray[np.floating], faces: Ints) -> tuple[NDArray[np.floating], Ints]:
+    """Vertices that faces use, in the order of their index, and the faces renumbered."""
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces.ravel()] = True
+    if used.all():
+        return vertices, faces
+    return vertices[used], (np.cumsum(used) - 1)[faces]
+
+
+def merge_exact(vertices: NDArray[np.floating]) -> tuple[Ints, Ints]:
+    """First index of each distinct vertex, ascending, and for every vertex its place in that list.
+
+    vertices: (n, 3) float32 or float64, finite. −0 equals 0.
+    """
+    clean = np.ascontiguousarray(vertices) + vertices.dtype.type(0)
+    word = np.uint32 if clean.dtype == np.float32 else np.uint64
+    key = _hash(clean.view(word).astype(np.uint64))
+    first, place = _groups(key, np.argsort(key, kind="stable"))
+    if not np.array_equal(clean[first[place]], clean):
+        # two different vertices share a hash: sort by coordinates instead
+        order = np.lexsort(clean.T)
+        _, rank = np.unique(clean[order], axis=0, return_inverse=True)
+        key = np.empty(len(clean), dtype=np.uint64)
+        key[order] = rank.ravel().astype(np.uint64)
+        first, place = _groups(key, np.argsort(key, kind="stable"))
+    return first, place
+
+
+def _hash(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    mixed: NDArray[np.uint64] = words[:, 0] * _MIX[0]
+    for column in (1, 2):
+        mixed ^= mixed >> np.uint64(29)
+        mixed = mixed * _MIX[column] + words[:, column] * _MIX[0]
+    return mixed ^ (mixed >> np.uint64(32))
+
+
+def _groups(key: NDArray[np.uint64], order: Ints) -> tuple[Ints, Ints]:
+    """Equal keys are one group; groups are numbered by their first member."""
+    ordered = key[order]
+    new = np.empty(len(key), dtype=bool)
+    new[:1] = True
+    np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
+    first = order[new]
+    rank = np.argsort(first)
+    number = np.empty_like(rank)
+    number[rank] = np.arange(len(rank))
+    place = np.empty(len(key), dtype=np.int64)
+    place[order] = number[np.cumsum(new) - 1]
+    return first[rank], place
+
+
+def merge_close(vertices: Array, distance: float) -> tuple[Ints, Ints]:
+    """As merge_exact, for vertices no further than `distance` (same unit) from the first of their cluster.
+
+    Raises MeshError where the distance is so coarse that it would swallow the mesh.
+    """
+    every = np.arange(len(vertices))
+    if distance <= 0 or len(vertices) < 2:
+        return every, every
+    pairs = _close_pairs(vertices, distance)
+    if not len(pairs):
+        return every, every
+    first, place = np.unique(_leaders(len(vertices), pairs), return_inverse=True)
+    return first, place.ravel()
+
+
+def _close_pairs(vertices: Array, distance: float) -> Ints:
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(vertices, compact_nodes=False, balanced_tree=False)
+    sample = vertices[:: max(1, len(vertices) // _SAMPLE)]
+    crowd = tree.query_ball_point(sample, distance, return_length=True).mean()
+    if crowd > _CROWD:
+        raise MeshError([Fault(
+            f"would collapse: within the welding distance ({distance:.3g} m) of a vertex lie {crowd:.0f} "
+            "others on average",
+            "state a smaller [tolerances] weld, and look for a stray vertex far from the part",
+        )])  # fmt: skip
+    pairs: Ints = tree.query_pairs(distance, output_type="ndarray")
+    return pairs
+
+
+def _leaders(count: int, pairs: Ints) -> Ints:
+    """The leader of each vertex: going through them in order, one leads unless it is close to a leader."""
+    leader = np.arange(count)
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    while len(low):
+        follows = np.zeros(count, dtype=bool)
+        follows[high] = True
+        settled = ~follows[low]
+        found = np.full(count, count)
+        np.minimum.at(found, high[settled], low[settled])
+        led = found < count
+        leader[led] = found[led]
+        keep = ~(settled | led[low] | led[high])
+        low, high = low[keep], high[keep]
+    return leader

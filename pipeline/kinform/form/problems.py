@@ -1,0 +1,58 @@
+"""Collects everything that is wrong with the input, so that all of it is reported at once."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+from kinform.errors import InputError, Problem
+
+__all__ = ["Problems", "did_you_mean", "listed", "quoted"]
+
+
+def quoted(name: object) -> str:
+    """A name as messages show it: in double quotes, control characters escaped."""
+    text = str(name).encode("unicode_escape").decode("ascii") if not str(name).isprintable() else str(name)
+    return f'"{text}"'
+
+
+def listed(names: Iterable[str], limit: int = 12) -> str:
+    """Names in order, comma separated; beyond the limit only their number."""
+    names = list(names)
+    text = ", ".join(names[:limit])
+    return f"{text} and {len(names) - limit} more" if len(names) > limit else text
+
+
+def did_you_mean(name: str, known: Iterable[str], what: str) -> str:
+    """A remedy for a name that is not known: the closest known names, else all of them."""
+    known = sorted(set(known))
+    close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
+    folded = [k for k in known if k.casefold() == name.casefold()]
+    tails = [k for k in known if k.rpartition("/")[2] == name]
+    best = folded or close or tails
+    if best:
+        return f"did you mean {' or '.join(quoted(b) for b in best[:2])}?"
+    return f"{what}: {listed(known)}" if known else f"there are no {what}"
+
+
+class Problems:
+    """A list of problems that raises itself."""
+
+    def __init__(self) -> None:
+        self._items: list[Problem] = []
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def add(self, message: str, file: str | None, line: int | None, remedy: str) -> None:
+        """Note a problem; the same problem is kept once."""
+        problem = Problem(message=message, file=file, line=line, remedy=remedy)
+        if problem not in self._items:
+            self._items.append(problem)
+
+    def raise_if_any(self) -> None:
+        """Raise InputError with all problems, by file in the order of their first problem, then by line."""
+        if not self._items:
+            return
+        order = {file: i for i, file in reversed(list(enumerate(p.file for p in self._items)))}
+        raise InputError(sorted(self._items, key=lambda p: (order[p.file], p.line or 0)))

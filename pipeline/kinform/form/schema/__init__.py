@@ -1,0 +1,63 @@
+"""The manifest, schema 1, as pydantic tables. Types and shapes only; see `common` for why."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from kinform.form.schema import common, function, parts, require
+from kinform.form.schema.common import Finite, Positive, Table, Vector
+from kinform.form.schema.function import FunctionTable
+from kinform.form.schema.parts import (
+    AssemblyTable,
+    Assume,
+    Fasteners,
+    Group,
+    Material,
+    Part,
+    Subassembly,
+    TolerancesTable,
+)
+
+__all__ = ["Initial", "Manifest", "SimulationTable", "common", "function", "json_schema", "parts", "require"]
+
+
+class Initial(Table):
+    """`[simulation.initial.JOINT]`."""
+
+    position: Finite = Field(0.0, description="degrees or lengths; 0 is the pose of the meshes")
+    velocity: Finite = Field(0.0, description="degrees or lengths a second")
+
+
+class SimulationTable(Table):
+    """`[simulation]`."""
+
+    level: Literal["functional", "kinematic", "dynamic"] | None = Field(
+        None, description="default the highest that is known"
+    )
+    duration: Positive = Field(1.0, description="seconds")
+    step: Positive = Field(0.01, description="seconds between outputs")
+    gravity: Vector = Field([0.0, 0.0, -9.81], description="m/s², whatever the units of the file")
+    initial: dict[str, Initial] = Field({}, description="by name of a function.joint, or as kinform names it")
+
+
+class Manifest(Table):
+    """A kinform manifest, schema 1."""
+
+    schema_: int = Field(alias="schema", ge=1, le=1, description="version of this format: 1")
+    assembly: AssemblyTable = Field(description="name, units and ground")
+    materials: dict[str, Material] = Field({}, description="materials by name")
+    part: list[Part] = Field([], description="the parts")
+    group: list[Group] = Field([], description="parts that are fastened together")
+    subassembly: list[Subassembly] = Field([], description="other manifests, placed as a whole")
+    assume: list[Assume] = Field([], description="what the user overrides")
+    tolerances: TolerancesTable = Field(TolerancesTable(), description="lengths and angles that decide")
+    fasteners: Fasteners = Field(Fasteners(), description="fastening by suggestion")
+    function: FunctionTable | None = Field(None, description="what the device is for")
+    simulation: SimulationTable | None = Field(None, description="the motion to simulate")
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of the manifest, for editors."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Manifest.model_json_schema()

@@ -1,0 +1,72 @@
+"""Types that several tables of the manifest share.
+
+Pydantic checks shapes and types here; what one key says about another is checked in `checks`, where
+every problem can be given the line of its own key.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+__all__ = [
+    "Finite",
+    "JointType",
+    "Matrix",
+    "Name",
+    "NonNegative",
+    "Pair",
+    "Positive",
+    "Posed",
+    "Quantity",
+    "Reference",
+    "Table",
+    "Unit",
+    "Vector",
+]
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Vector = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
+Name = Annotated[str, StringConstraints(min_length=1, pattern=r"^[^/\x00]+$")]
+Reference = Annotated[str, StringConstraints(min_length=1)]
+Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]
+Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+JointType = Literal[
+    "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"
+]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What the value of a requirement's key is, so that it can be brought to SI, the world and full names.
+
+    length, angle: a number or list of numbers. point, direction, vector: three numbers, or a list of such.
+    joint_value: degrees or lengths by the type of the joint that `joint` names. joint_values: a list of
+    tables of them by joint. place, part, joint: a name or list of names. frame: lengths that stay in the
+    manifest's frame, whose pose is then added to the table as `X_WF`.
+    """
+
+    kind: str
+
+
+class Table(BaseModel):
+    """A table of the manifest: exact types, no unknown keys."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class Posed(Table):
+    """Something with a pose in the frame of its manifest: position, and quaternion or rpy."""
+
+    position: Vector | None = Field(None, description="three lengths; default the origin")
+    quaternion: Annotated[list[Finite], Field(min_length=4, max_length=4)] | None = Field(
+        None, description="unit quaternion [w, x, y, z]; not together with rpy"
+    )
+    rpy: Vector | None = Field(
+        None, description="degrees [roll, pitch, yaw], R = Rz(yaw)·Ry(pitch)·Rx(roll); not with quaternion"
+    )

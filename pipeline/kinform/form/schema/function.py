@@ -1,0 +1,155 @@
+"""Tables that state function: intended joints, couplings, drives with their laws, loads."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from kinform.form.schema.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
+from kinform.form.schema.require import Require
+
+__all__ = ["Coupling", "Drive", "FunctionTable", "IntendedJointTable", "LawTable", "Load"]
+
+
+class IntendedJointTable(Table):
+    """`[[function.joint]]`: values are of the second of `between` about `axis`, relative to the first."""
+
+    name: Name = Field(description="name of the joint, any text but '/'")
+    between: Pair = Field(description="two parts or groups; each stands for the body that contains it")
+    type: JointType = Field(description="type of the joint")
+    axis: Vector | None = Field(None, description="direction of the axis; the normal of a planar joint")
+    axis2: Vector | None = Field(None, description="second axis of a universal joint")
+    point: Vector | None = Field(None, description="point on the axis; the centre of a spherical joint")
+    pitch: float | None = Field(
+        None, allow_inf_nan=False, description="length a turn of a screw, right-handed positive"
+    )
+    range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
+        None, description="[lower, upper] in degrees (prismatic: lengths); inf for a free side"
+    )
+
+
+class Coupling(Table):
+    """`[[function.coupling]]`: value(first) = ratio · value(second)."""
+
+    joints: Pair = Field(description="two joints of [[function.joint]]")
+    ratio: Finite = Field(description="value(first) / value(second), values in degrees or lengths; not zero")
+
+
+class Constant(Table):
+    """A constant."""
+
+    type: Literal["constant"]
+    value: Finite = Field(description="the constant")
+
+
+class Sine(Table):
+    """offset + amplitude·sin(2π·frequency·t + phase)."""
+
+    type: Literal["sine"]
+    amplitude: Finite = Field(description="greatest deviation from offset")
+    frequency: NonNegative = Field(description="Hz")
+    phase: Finite = Field(0.0, description="degrees")
+    offset: Finite = Field(0.0, description="mean value")
+
+
+class Ramp(Table):
+    """offset + rate·t."""
+
+    type: Literal["ramp"]
+    rate: Finite = Field(description="change a second")
+    offset: Finite = Field(0.0, description="value at time zero")
+
+
+class CsvTable(Table):
+    """Linear between the rows of a CSV file of time and value; the first and last value hold outside."""
+
+    type: Literal["table"]
+    file: Annotated[str, Field(min_length=1)] = Field(
+        description="CSV file of time (s) and value, relative to the manifest"
+    )
+
+
+LawTable = Annotated[Constant | Sine | Ramp | CsvTable, Field(discriminator="type")]
+
+
+class _Drive(Table):
+    joint: Reference = Field(description="a [[function.joint]], or a joint as kinform names it")
+
+
+class Motion(_Drive):
+    """The joint follows the law (degrees or lengths)."""
+
+    kind: Literal["motion"]
+    law: LawTable = Field(description="position over time, degrees or lengths")
+
+
+class Effort(_Drive):
+    """A torque (N·m) or force (N) on the joint."""
+
+    kind: Literal["effort"]
+    law: LawTable = Field(description="N·m or N over time")
+
+
+class Spring(_Drive):
+    """A spring towards its rest position."""
+
+    kind: Literal["spring"]
+    stiffness: Positive = Field(description="N·m/rad or N/m, whatever the units of the file")
+    rest: Finite = Field(0.0, description="position without effort, degrees or lengths")
+
+
+class Damper(_Drive):
+    """A viscous damper."""
+
+    kind: Literal["damper"]
+    damping: Positive = Field(description="N·m·s/rad or N·s/m, whatever the units of the file")
+
+
+class Servo(_Drive):
+    """A position controller with limited effort."""
+
+    kind: Literal["servo"]
+    law: LawTable = Field(description="target position over time, degrees or lengths")
+    kp: Positive = Field(description="N·m/rad or N/m")
+    kd: NonNegative = Field(0.0, description="N·m·s/rad or N·s/m")
+    ki: NonNegative = Field(0.0, description="N·m/(rad·s) or N/(m·s)")
+    limit: Positive | None = Field(None, description="greatest effort, N·m or N")
+
+
+class DcMotor(_Drive):
+    """A DC motor with a gear; the voltage is a number or a law."""
+
+    kind: Literal["dc_motor"]
+    resistance: Positive = Field(description="ohm")
+    inductance: NonNegative = Field(0.0, description="henry")
+    constant: Positive = Field(description="N·m/A, which equals V·s/rad")
+    gear: Finite = Field(1.0, description="motor turns a turn of the joint; not zero")
+    voltage: Finite | None = Field(None, description="volt; or give a law")
+    law: LawTable | None = Field(None, description="volt over time; in place of voltage")
+
+
+Drive = Annotated[Motion | Effort | Spring | Damper | Servo | DcMotor, Field(discriminator="kind")]
+
+
+class Load(Table):
+    """`[[function.load]]`: a force or torque on a part."""
+
+    part: Reference = Field(description="the part that is loaded")
+    force: Vector | None = Field(None, description="N")
+    torque: Vector | None = Field(None, description="N·m")
+    point: Vector | None = Field(
+        None, description="where the force acts, at the pose of the meshes; default the centre of mass"
+    )
+    frame: Literal["world", "body"] = Field("world", description="fixed in the world, or turning with the body")
+
+
+class FunctionTable(Table):
+    """`[function]`: what the device is for."""
+
+    mobility: Annotated[int, Field(ge=0)] | None = Field(None, description="compared with the effective mobility")
+    joint: list[IntendedJointTable] = Field([], description="intended joints")
+    coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
+    drive: list[Drive] = Field([], description="what acts on joints")
+    load: list[Load] = Field([], description="forces and torques on parts")
+    require: list[Require] = Field([], description="requirements")

@@ -1,0 +1,113 @@
+"""Tables that state form: assembly, materials, parts, groups, sub-assemblies, assumptions, tolerances."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from kinform.form.schema.common import (
+    JointType,
+    Matrix,
+    Name,
+    NonNegative,
+    Pair,
+    Posed,
+    Positive,
+    Reference,
+    Table,
+    Unit,
+    Vector,
+)
+
+__all__ = ["AssemblyTable", "Assume", "Fasteners", "Group", "Material", "Part", "Subassembly", "TolerancesTable"]
+
+
+class AssemblyTable(Table):
+    """`[assembly]`."""
+
+    name: Name = Field(description="name of the assembly, any text but '/'")
+    units: Unit = Field(description="lengths of this file and of its meshes: m, cm, mm, um, in or ft")
+    ground: Reference | None = Field(
+        None, description="the part or group at rest; default the heaviest body (largest without densities)"
+    )
+
+
+class Material(Table):
+    """`[materials.NAME]`."""
+
+    density: Positive = Field(description="kg/m³, whatever the units of the file")
+
+
+class Part(Posed):
+    """`[[part]]`."""
+
+    name: Name = Field(description="name of the part, any text but '/', which separates sub-assemblies")
+    mesh: Annotated[str, Field(min_length=1)] | None = Field(
+        None, description="STL or OBJ file, relative to the manifest; absent: a stick body"
+    )
+    body: Annotated[str, Field(min_length=1)] | None = Field(
+        None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
+    )
+    units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
+    material: Reference | None = Field(None, description="a [materials.NAME] or a built-in material")
+    density: Positive | None = Field(None, description="kg/m³; in place of material")
+    mass: Positive | None = Field(
+        None, description="kg; overrides the geometry, with centre_of_mass and inertia"
+    )
+    centre_of_mass: Vector | None = Field(None, description="three lengths in the part frame; with mass")
+    inertia: Matrix | None = Field(
+        None, description="3×3, kg·m², about the centre of mass, part axes; with mass"
+    )
+    solid: bool = Field(True, description="false: surfaces only; contacts yes, mass no, need not be watertight")
+
+
+class Group(Table):
+    """`[[group]]`: parts fastened by means that the geometry does not show."""
+
+    name: Name = Field(description="name of the group, any text but '/'")
+    parts: Annotated[list[Reference], Field(min_length=1)] = Field(
+        description="names of the parts, those of sub-assemblies as 'sub-assembly/part'"
+    )
+
+
+class Subassembly(Posed):
+    """`[[subassembly]]`: another manifest, placed as a whole."""
+
+    name: Name = Field(description="prefix of its parts, groups and joints, any text but '/'")
+    file: Annotated[str, Field(min_length=1)] = Field(description="manifest, relative to this one")
+
+
+class Assume(Table):
+    """`[[assume]]`: the user overrides what geometry says of two parts or groups."""
+
+    between: Pair = Field(description="two parts or groups")
+    type: JointType | None = Field(None, description="the joint that is assumed")
+    ignore: bool = Field(False, description="true: these two do not touch")
+    axis: Vector | None = Field(None, description="direction of the axis; the normal of a planar joint")
+    axis2: Vector | None = Field(None, description="second axis of a universal joint")
+    point: Vector | None = Field(None, description="point on the axis; the centre of a spherical joint")
+    pitch: float | None = Field(
+        None, allow_inf_nan=False, description="length a turn of a screw, right-handed positive"
+    )
+    reason: str = Field("", description="why; shown wherever the assumption has an effect")
+
+
+class TolerancesTable(Table):
+    """`[tolerances]`."""
+
+    contact: Positive | None = Field(
+        None, description="gap or overlap up to which surfaces mate; default min(0.5 mm, 3 % of the smaller part)"
+    )
+    weld: NonNegative | None = Field(
+        None, description="vertices closer than this are one; default 1e-6 of the part's size"
+    )
+    alignment: Annotated[float, Field(ge=0, le=45, allow_inf_nan=False)] | None = Field(
+        None, description="degrees within which two axes of one pair mate; default 0.2"
+    )
+
+
+class Fasteners(Table):
+    """`[fasteners]`."""
+
+    infer: bool = Field(False, description="true: suggested fastenings are applied, and labelled")

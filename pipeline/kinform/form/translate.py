@@ -1,0 +1,213 @@
+"""Pydantic's complaints about a manifest, in the user's words, each at the line of its key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pydantic import ValidationError
+
+from kinform.form.lines import LineTable, Path
+from kinform.form.problems import Problems, did_you_mean, listed, quoted
+from kinform.form.schema import json_schema
+
+__all__ = ["report", "without_errors"]
+
+_UNITS = "lengths have no default unit: write units = \"mm\" (or m, cm, um, in, ft)"
+
+
+def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems) -> None:
+    """Add each of pydantic's errors to the problems."""
+    schema = json_schema()
+    for item in error.errors(include_url=False):
+        path = _real_path(item["loc"], raw)
+        where = _label(path if item["type"] == "missing" else path[:-1], raw)
+        line = lines.line(path)
+        node = _node(schema, item["loc"])
+        owner = _node(schema, item["loc"][:-1])
+        message, remedy = _words(item, path, where, node, owner)
+        problems.add(message, file, line, remedy)
+
+
+def _words(
+    item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[str, Any]
+) -> tuple[str, str]:
+    kind, context = item["type"], item.get("ctx", {})
+    key = str(item["loc"][-1]) if item["loc"] else ""
+    expected = node.get("description", "")
+    if kind == "missing":
+        remedy = _UNITS if key == "units" else f"add {key}: {expected}" if expected else f"add {key}"
+        if key == "schema":
+            remedy = "write schema = 1 as the first line"
+        return f"{where}: {key} is missing", remedy
+    if kind == "extra_forbidden":
+        known = sorted(owner.get("properties", {}))
+        return f"{where}: unknown key {quoted(key)}", did_you_mean(key, known, "the keys here")
+    name = _shown_key(path)
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        tag = context["discriminator"].strip("'")
+        inner = _label(path, {}) if not where else where
+        if kind == "union_tag_not_found":
+            return f"{inner}: {name} has no {tag}", f"add {tag}: {_choices(node)}"
+        choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
+        remedy = did_you_mean(str(context["tag"]), choices, f"the values of {tag}")
+        return f"{inner}: {name}: {tag} cannot be {quoted(context['tag'])}", remedy
+    if kind == "literal_error":
+        choices = node.get("enum") or [node.get("const", "")]
+        remedy = did_you_mean(str(item["input"]), [str(c) for c in choices], "the choices")
+        return f"{where}: {name} cannot be {_value(item['input'])}", remedy
+    if kind == "string_pattern_mismatch":
+        return (
+            f'{where}: {name} {_value(item["input"])} contains "/" or a null character',
+            'take another name: "/" separates sub-assemblies',
+        )
+    if key == "schema":
+        return f"schema {_value(item['input'])} is not one that this version reads", "write schema = 1"
+    told = item["msg"].replace("Input should be", "must be").replace(" after validation", "")
+    message = f"{where}: {name} {told[:1].lower()}{told[1:]}, not {_value(item['input'])}"
+    if kind in ("too_short", "too_long"):
+        bound = context.get("min_length", context.get("max_length"))
+        exact = node.get("minItems") == node.get("maxItems")
+        need = f"{bound}" if exact else f"at {'least' if kind == 'too_short' else 'most'} {bound}"
+        message = f"{where}: {name} has {context['actual_length']} entries and needs {need}"
+    return message, f"{name} is: {expected}" if expected else f"correct {name}"
+
+
+def without_errors(error: ValidationError, raw: dict[str, Any]) -> dict[str, Any]:
+    """The raw manifest less what pydantic refused, so that the rest can be checked as well.
+
+    An unknown key goes alone; another error takes its table (`[[part]]`, a material, a joint) with it.
+    """
+    drop: set[Path] = set()
+    for item in error.errors(include_url=False):
+        path = _real_path(item["loc"], raw)
+        drop.add(path if item["type"] == "extra_forbidden" else _unit_of(path))
+    kept: dict[str, Any] = _pruned(raw, (), drop)
+    kept.setdefault("schema", 1)
+    assembly = kept.setdefault("assembly", {})
+    if isinstance(assembly, dict):
+        assembly.setdefault("name", "?")
+        assembly.setdefault("units", "m")
+    return kept
+
+
+def _unit_of(path: Path) -> Path:
+    """The table that an error invalidates: down to the first list index or the second key."""
+    for i, step in enumerate(path):
+        if isinstance(step, int):
+            return path[: i + 1]
+    return path[:2]
+
+
+def _pruned(value: Any, path: Path, drop: set[Path]) -> Any:
+    if isinstance(value, dict):
+        return {k: _pruned(v, (*path, k), drop) for k, v in value.items() if (*path, k) not in drop}
+    if isinstance(value, list):
+        return [_pruned(v, (*path, i), drop) for i, v in enumerate(value) if (*path, i) not in drop]
+    return value
+
+
+def _real_path(loc: tuple[str | int, ...], raw: Any) -> Path:
+    """Pydantic's location without the tags of unions, which are not keys of the file."""
+    path: list[str | int] = []
+    value = raw
+    for i, step in enumerate(loc):
+        if isinstance(value, dict) and step in value:
+            value = value[step]
+        elif isinstance(value, list) and isinstance(step, int) and step < len(value):
+            value = value[step]
+        elif i < len(loc) - 1:
+            continue
+        else:
+            break
+        path.append(step)
+    return tuple(path)
+
+
+def _label(path: Path, raw: Any) -> str:
+    """The table around a key as the file shows it: `[assembly]`, `[[part]] "base"`."""
+    keys: list[str] = []
+    name, value, listed_table = "", raw, False
+    for step in path:
+        value = value[step] if isinstance(value, dict | list) and _has(value, step) else None
+        if isinstance(step, int):
+            if isinstance(value, dict):
+                listed_table = True
+        else:
+            keys.append(step)
+            listed_table = False
+        if isinstance(value, dict) and isinstance(value.get("name"), str):
+            name = value["name"]
+    if not keys:
+        return "the manifest"
+    label = f"[[{'.'.join(keys)}]]" if listed_table else f"[{'.'.join(keys)}]"
+    return f"{label} {quoted(name)}" if name and keys[0] != "assembly" else label
+
+
+def _has(value: Any, step: str | int) -> bool:
+    return step in value if isinstance(value, dict) else isinstance(step, int) and step < len(value)
+
+
+def _shown_key(path: Path) -> str:
+    text = ""
+    for step in reversed(path):
+        text = f"[{step + 1}]{text}" if isinstance(step, int) else f"{step}{text}"
+        if isinstance(step, str):
+            break
+    return text or "the manifest"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return quoted(value)
+    if isinstance(value, dict):
+        return "a table"
+    return str(value) if len(str(value)) <= 60 else f"{str(value)[:57]}…"
+
+
+def _choices(node: dict[str, Any]) -> str:
+    return listed(_tags(node))
+
+
+def _tags(node: dict[str, Any]) -> Iterator[str]:
+    yield from sorted(node.get("discriminator", {}).get("mapping", {}))
+
+
+def _node(schema: dict[str, Any], loc: tuple[str | int, ...]) -> dict[str, Any]:
+    """The part of the JSON Schema that a location stands for; {} where there is none."""
+    node = schema
+    described: dict[str, Any] = {}
+    for step in loc:
+        node = _resolved(node, schema)
+        described = _below(node, step, schema)
+        node = described
+        if not node:
+            return {}
+    return {**_resolved(node, schema), **{k: v for k, v in described.items() if k == "description"}}
+
+
+def _below(node: dict[str, Any], step: str | int, schema: dict[str, Any]) -> dict[str, Any]:
+    tags = node.get("discriminator", {}).get("mapping", {})
+    if step in tags:
+        return {"$ref": tags[step]}
+    if isinstance(step, int):
+        items: dict[str, Any] = node.get("items", {})
+        return {"description": node["description"], **items} if "description" in node else items
+    for source in (node.get("properties", {}).get(step), node.get("additionalProperties")):
+        if isinstance(source, dict):
+            return source
+    return {}
+
+
+def _resolved(node: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
+    """The node without $ref and without the null alternative of an optional key."""
+    follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][n["$ref"].rpartition("/")[2]]  # noqa: E731
+    own = {k: v for k, v in node.items() if k not in ("anyOf", "$ref")}
+    if "$ref" in node:
+        return {**_resolved(follow(node), schema), **own}
+    options = [o for o in node.get("anyOf", []) if o.get("type") != "null"]
+    if len(options) == 1:
+        return {**_resolved(options[0], schema), **own}
+    return node

@@ -1,0 +1,89 @@
+"""Finds the joint that a name stands for, and how the designer's value of it reads in kinform's.
+
+A name is that of a `[[function.joint]]`, or of a joint as kinform names it ("base~shoulder"). The
+designer may list the bodies in the other order and turn the axis round; each reverses the value.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.model.assembly import Assembly
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint, Kinematics
+
+__all__ = ["Resolution", "resolve"]
+
+
+@dataclass(frozen=True, eq=False)
+class Resolution:
+    """What a name stands for. `joint` is None when there is no such joint; `reason` says why."""
+
+    name: str
+    intended: IntendedJoint | None
+    """None when the name is one of kinform's own, or unknown."""
+    bodies: tuple[str, str]
+    """Bodies of the two sides in the designer's order; "" for a side that is unknown."""
+    joint: Joint | None
+    sign: int
+    """Designer's value = sign · kinform's joint value."""
+    reason: str = ""
+
+
+def resolve(assembly: Assembly, kinematics: Kinematics, name: str) -> Resolution:
+    """The joint that `name` stands for; never raises, a miss says its reason.
+
+    A `[[function.joint]]` of that name goes before a joint that kinform names so.
+    """
+    for intended in assembly.function.joints:
+        if intended.name == name:
+            return _resolve_intended(assembly, kinematics, intended)
+    for joint in kinematics.joints:
+        if joint.name == name:
+            return Resolution(name, None, joint.bodies, joint, 1)
+    known = ", ".join([j.name for j in assembly.function.joints] + [j.name for j in kinematics.joints])
+    return Resolution(name, None, ("", ""), None, 1, f'there is no joint "{name}"; known: {known or "none"}')
+
+
+def _resolve_intended(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> Resolution:
+    """The joint between the bodies that contain the two sides."""
+
+    def missing(reason: str) -> Resolution:
+        return Resolution(intended.name, intended, (first, second), None, 1, reason)
+
+    first, why_first = _body(assembly, kinematics, intended.between[0])
+    second, why_second = _body(assembly, kinematics, intended.between[1])
+    if why_first or why_second:
+        return missing(why_first or why_second)
+    if first == second:
+        return missing(f'both sides belong to the body "{first}"')
+    pair = tuple(sorted((first, second)))
+    found = [joint for joint in kinematics.joints if tuple(sorted(joint.bodies)) == pair]
+    if not found:
+        return missing(f'the bodies "{first}" and "{second}" do not touch')
+    if len(found) > 1:
+        names = ", ".join(joint.name for joint in found)
+        return missing(f'the bodies "{first}" and "{second}" have several joints: {names}')
+    joint = found[0]
+    return Resolution(intended.name, intended, (first, second), joint, _sign(intended, joint, first))
+
+
+def _body(assembly: Assembly, kinematics: Kinematics, side: str) -> tuple[str, str]:
+    """Name of the body that contains a part or group, or "" and the reason."""
+    try:
+        bodies = sorted({kinematics.body_of(part).name for part in assembly.parts_of(side)})
+    except KeyError:
+        return "", f'there is no part or group "{side}"'
+    if len(bodies) != 1:
+        return "", f'"{side}" is spread over the bodies {", ".join(bodies)}'
+    return bodies[0], ""
+
+
+def _sign(intended: IntendedJoint, joint: Joint, first: str) -> int:
+    """+1 when the designer's value grows with kinform's, else −1."""
+    sign = 1 if first == joint.bodies[0] else -1
+    if intended.axis is not None and joint.axis is not None and np.dot(intended.axis, joint.axis) < 0.0:
+        sign = -sign
+    return sign

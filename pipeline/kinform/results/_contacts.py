@@ -1,0 +1,101 @@
+"""`/contacts`: candidate pairs, patches with their samples, and interferences, in the world frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import h5py
+import numpy as np
+
+from kinform.model.assembly import freeze
+from kinform.model.contacts import Contacts, Interference, Patch
+from kinform.model.names import PartName
+from kinform.results._table import (
+    flag,
+    integer,
+    pair,
+    read_columns,
+    read_records,
+    read_rows,
+    real,
+    text,
+    vector,
+    write_columns,
+    write_records,
+    write_rows,
+)
+
+__all__ = ["read", "write"]
+
+Pair = tuple[PartName, PartName]
+
+_PARTS = pair("parts", text, ("part_a", "part_b"))
+_PAIRS = (_PARTS, flag("candidate"), real("tolerance", "m"), text("fingerprint"))
+_PATCHES = (
+    _PARTS, pair("surfaces", integer, ("surface_a", "surface_b")), text("kind"), flag("one_sided"),
+    real("area", "m²"), real("gap", "m"), vector("axis", "1"), vector("point", "m"),
+    pair("radii", real, ("radius_a", "radius_b"), "m (cones: rad)"), real("misalignment", "rad"),
+    real("offset", "m"), pair("uncertainty", real, ("axis_uncertainty", "point_uncertainty"), "rad, m"),
+    real("chord", "m"), text("fit"),
+)  # fmt: skip
+_SAMPLES = {
+    "x": "m", "y": "m", "z": "m", "normal_x": "1", "normal_y": "1", "normal_z": "1", "gap": "m", "weight": "m²",
+}  # fmt: skip
+_INTERFERENCES = (
+    _PARTS, real("volume", "m³"), real("depth", "m"), vector("place", "m"), flag("mated"), text("method"),
+)  # fmt: skip
+
+
+def write(group: h5py.Group, contacts: Contacts, fingerprints: Mapping[Pair, str]) -> None:
+    """Write all contacts, with the fingerprint of each pair."""
+    candidates = set(contacts.candidates)
+    rows = [
+        {
+            "parts": parts,
+            "candidate": parts in candidates,
+            "tolerance": contacts.tolerance.get(parts),
+            "fingerprint": fingerprints.get(parts),
+        }
+        for parts in sorted(candidates | set(contacts.tolerance))
+    ]
+    write_rows(group, "pairs", _PAIRS, rows)
+    write_records(group, "patches", _PATCHES, contacts.patches)
+    _write_samples(group, contacts.patches)
+    write_records(group, "interferences", _INTERFERENCES, contacts.interferences)
+
+
+def read(group: h5py.Group) -> tuple[Contacts, dict[Pair, str]]:
+    """The contacts, and the fingerprints by pair."""
+    pairs = read_rows(group, "pairs", _PAIRS)
+    samples = _read_samples(group)
+    rows = read_rows(group, "patches", _PATCHES)
+    contacts = Contacts(
+        patches=tuple(Patch(**row, **owned) for row, owned in zip(rows, samples, strict=True)),
+        interferences=read_records(group, "interferences", _INTERFERENCES, Interference),
+        candidates=tuple(row["parts"] for row in pairs if row["candidate"]),
+        tolerance={row["parts"]: row["tolerance"] for row in pairs if row["tolerance"] is not None},
+    )
+    return contacts, {row["parts"]: row["fingerprint"] for row in pairs if row["fingerprint"] is not None}
+
+
+def _write_samples(group: h5py.Group, patches: tuple[Patch, ...]) -> None:
+    counts = [len(patch.points) for patch in patches]
+    numbers = np.concatenate(
+        [np.zeros((0, len(_SAMPLES)))]
+        + [np.column_stack([p.points, p.normals, p.gaps, p.weights]) for p in patches if len(p.points)]
+    )
+    columns = {"patch": ("1", np.repeat(np.arange(len(patches), dtype="<i8"), counts))}
+    for i, (label, unit) in enumerate(_SAMPLES.items()):
+        columns[label] = (unit, numbers[:, i].astype("<f8"))
+    write_columns(group, "samples", columns)
+
+
+def _read_samples(group: h5py.Group) -> list[dict[str, np.ndarray]]:
+    table = read_columns(group, "samples")
+    numbers = np.column_stack([table[label] for label in _SAMPLES])
+    ends = np.cumsum(np.bincount(table["patch"], minlength=len(group["patches"])))
+    samples = []
+    for part in np.split(numbers, ends[:-1]) if len(ends) else []:
+        fields = {"points": part[:, :3], "normals": part[:, 3:6], "gaps": part[:, 6], "weights": part[:, 7]}
+        samples.append({name: freeze(np.array(values)) for name, values in fields.items()})
+    return samples

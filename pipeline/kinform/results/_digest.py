@@ -1,0 +1,65 @@
+"""One hash for any value of the model: equal content, equal hash, on every machine."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import struct
+from typing import Any
+
+import numpy as np
+
+from kinform.model.assembly import Mesh
+
+__all__ = ["digest"]
+
+
+def digest(*values: Any) -> str:
+    """SHA-256 (hex) of the content of the values: types, lengths and bits, nothing else.
+
+    A mesh counts by its own digest, with its health and its file. Raises TypeError for values that are
+    neither scalars, text, containers of such, arrays, nor dataclasses.
+    """
+    hasher = hashlib.sha256()
+    for value in values:
+        _feed(hasher, value)
+    return hasher.hexdigest()
+
+
+def _feed(hasher: Any, value: Any) -> None:
+    if value is None or isinstance(value, (bool, int, np.bool_, np.integer)):
+        hasher.update(f"{int(value) if value is not None else value};".encode())
+    elif isinstance(value, float):
+        hasher.update(b"f" + struct.pack("<d", value))
+    elif isinstance(value, str):
+        encoded = value.encode(errors="surrogatepass")
+        hasher.update(f"s{len(encoded)};".encode() + encoded)
+    elif isinstance(value, (tuple, list)):
+        hasher.update(f"t{len(value)};".encode())
+        for item in value:
+            _feed(hasher, item)
+    elif isinstance(value, dict):
+        hasher.update(f"d{len(value)};".encode())
+        for key in sorted(value):
+            _feed(hasher, key)
+            _feed(hasher, value[key])
+    elif isinstance(value, np.ndarray):
+        array = np.ascontiguousarray(value, dtype=value.dtype.newbyteorder("<"))
+        hasher.update(f"a{array.dtype.str}{np.shape(value)};".encode() + array.tobytes())
+    elif dataclasses.is_dataclass(value):
+        _feed_record(hasher, value)
+    else:
+        raise TypeError(f"cannot hash a {type(value).__name__}")
+
+
+def _feed_record(hasher: Any, record: Any) -> None:
+    hasher.update(f"c{type(record).__name__};".encode())
+    for name in _fields(type(record)):
+        _feed(hasher, getattr(record, name))
+
+
+@functools.cache
+def _fields(cls: type) -> tuple[str, ...]:
+    names = tuple(field.name for field in dataclasses.fields(cls))
+    return tuple(name for name in names if name not in ("vertices", "faces")) if cls is Mesh else names

@@ -1,0 +1,90 @@
+"""`/joints`: bodies, joints with what carries and what blocks them, and what snapping left over."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import h5py
+
+from kinform.model.kinematics import Blocker, Body, Joint, Kinematics, Misfit
+from kinform.results._table import (
+    flag,
+    integer,
+    pair,
+    read_ragged,
+    read_records,
+    read_rows,
+    real,
+    text,
+    texts,
+    vector,
+    write_ragged,
+    write_records,
+    write_rows,
+)
+
+__all__ = ["read", "write"]
+
+_BODIES = (text("name"), texts("parts"), flag("ground"), texts("merged"))
+_JOINTS = (
+    text("name"), pair("bodies", text, ("body_a", "body_b")), text("type"), vector("axis", "1"),
+    vector("point", "m"), vector("axis2", "1"), real("pitch", "m a turn"), integer("freedoms"),
+    texts("evidence"), text("status"), text("reason"), real("range_lower", "rad or m"),
+    real("range_upper", "rad or m"), text("range_status"),
+)  # fmt: skip
+_BLOCKERS = (
+    integer("joint"), pair("parts", text, ("part_a", "part_b")), integer("patch"), real("area", "m²"),
+    real("share", "1"), vector("place", "m"), real("gap", "m"), text("forbids"),
+)  # fmt: skip
+_MISFIT = (real("angle", "rad"), real("distance", "m"), text("angle_at"), text("distance_at"))
+_MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
+
+
+def write(group: h5py.Group, kinematics: Kinematics) -> None:
+    """Write bodies and joints; twists, patches and singular values are ragged, one item a joint."""
+    joints = kinematics.joints
+    write_records(group, "bodies", _BODIES, kinematics.bodies)
+    write_records(group, "joints", _JOINTS, joints)
+    write_ragged(group, "twists", [joint.twists for joint in joints], "rad/s, m/s (ω; v)", width=6)
+    write_ragged(group, "singular_values", [joint.singular_values for joint in joints], "1")
+    write_ragged(group, "patches", [joint.patches for joint in joints], "1", dtype="<i8")
+    blockers = [vars(blocker) | {"joint": i} for i, joint in enumerate(joints) for blocker in joint.blockers]
+    write_rows(group, "blockers", _BLOCKERS, blockers)
+    write_records(group, "misfit", _MISFIT, [kinematics.misfit])
+    fields = [column.field for column in _MISALIGNED]
+    rows = [dict(zip(fields, row, strict=True)) for row in kinematics.misaligned]
+    write_rows(group, "misaligned", _MISALIGNED, rows)
+
+
+def read(group: h5py.Group) -> dict[str, Any]:
+    """The fields `bodies`, `joints`, `misfit` and `misaligned` of Kinematics."""
+    (misfit,) = read_records(group, "misfit", _MISFIT, Misfit)
+    return {
+        "bodies": read_records(group, "bodies", _BODIES, Body),
+        "joints": _read_joints(group),
+        "misfit": misfit,
+        "misaligned": tuple(tuple(row.values()) for row in read_rows(group, "misaligned", _MISALIGNED)),
+    }
+
+
+def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:
+    rows = read_rows(group, "joints", _JOINTS)
+    blockers: list[list[Blocker]] = [[] for _ in rows]
+    for row in read_rows(group, "blockers", _BLOCKERS):
+        blockers[row.pop("joint")].append(Blocker(**row))
+    ragged = zip(
+        read_ragged(group, "twists"),
+        read_ragged(group, "singular_values"),
+        read_ragged(group, "patches"),
+        strict=True,
+    )
+    return tuple(
+        Joint(
+            **row,
+            twists=twists,
+            singular_values=singular,
+            patches=tuple(patches.tolist()),
+            blockers=tuple(owned),
+        )
+        for row, owned, (twists, singular, patches) in zip(rows, blockers, ragged, strict=True)
+    )

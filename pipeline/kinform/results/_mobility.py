@@ -1,0 +1,42 @@
+"""`/mobility`: the counts, and the motions that they count."""
+
+from __future__ import annotations
+
+import h5py
+
+from kinform.model.kinematics import Mobility
+from kinform.results._table import (
+    integer,
+    read_array,
+    read_rows,
+    read_texts,
+    write_array,
+    write_records,
+    write_texts,
+)
+
+__all__ = ["read", "write"]
+
+_COUNTS = (
+    integer("instantaneous"), integer("finite", optional=True), integer("effective"), integer("idle"),
+    integer("redundant"), integer("blocked"),
+)  # fmt: skip
+
+
+def write(group: h5py.Group, mobility: Mobility) -> None:
+    """Write the counts; `freedoms` has one item a freedom: a twist a body, in the order of the bodies."""
+    write_records(group, "counts", _COUNTS, [mobility])
+    write_array(group, "freedoms", mobility.freedoms, "rad/s, m/s (ω; v)")
+    write_texts(group, "idle_bodies", mobility.idle_bodies)
+    write_texts(group, "uncertain", mobility.uncertain)
+
+
+def read(group: h5py.Group) -> Mobility:
+    """The mobility that `write` wrote."""
+    (counts,) = read_rows(group, "counts", _COUNTS)
+    return Mobility(
+        **counts,
+        freedoms=read_array(group, "freedoms"),
+        idle_bodies=read_texts(group, "idle_bodies"),
+        uncertain=read_texts(group, "uncertain"),
+    )

@@ -1,0 +1,66 @@
+"""`/simulation`: trajectories, under the names that the results contract fixes."""
+
+from __future__ import annotations
+
+import h5py
+
+from kinform.model.assembly import freeze
+from kinform.model.simulation import Simulation
+from kinform.results._table import (
+    TEXT,
+    read_array,
+    read_columns,
+    read_rows,
+    read_texts,
+    text,
+    write_array,
+    write_columns,
+    write_records,
+    write_rows,
+    write_texts,
+)
+
+__all__ = ["read", "write"]
+
+_SUMMARY = (text("status"), text("reason"), text("level"))
+_FAILURES = (text("subject"), text("reason"))
+_ARRAYS = {
+    "time": "s", "p_WB": "m", "q_WB": "1", "joint_position": "rad or m", "joint_velocity": "rad/s or m/s",
+    "joint_effort": "N·m or N", "energy": "J",
+}  # fmt: skip
+_NAMES = ("body_names", "joint_names", "joint_types")
+
+
+def write(group: h5py.Group, simulation: Simulation) -> None:
+    """Write the run; coordinates of joint j are joint_offset[j] to joint_offset[j+1]."""
+    write_records(group, "summary", _SUMMARY, [simulation])
+    for name, unit in _ARRAYS.items():
+        write_array(group, name, getattr(simulation, name), unit)
+    group["energy"].attrs.create("columns", ["kinetic", "potential", "work"], dtype=TEXT)
+    for name in _NAMES:
+        write_texts(group, name, getattr(simulation, name))
+    write_array(group, "joint_offset", simulation.joint_offset, "1", "<i8")
+    monitors = {
+        "residual": ("m or rad", simulation.residual.astype("<f8")),
+        "rank": ("1", simulation.rank.astype("<i8")),
+    }
+    write_columns(group, "monitors", monitors)
+    write_texts(group, "assumptions", simulation.assumptions)
+    failures = [{"subject": subject, "reason": reason} for subject, reason in simulation.failures]
+    write_rows(group, "failures", _FAILURES, failures)
+
+
+def read(group: h5py.Group) -> Simulation:
+    """The run that `write` wrote."""
+    (summary,) = read_rows(group, "summary", _SUMMARY)
+    monitors = read_columns(group, "monitors")
+    return Simulation(
+        **summary,
+        **{name: read_array(group, name) for name in _ARRAYS},
+        **{name: read_texts(group, name) for name in _NAMES},
+        joint_offset=read_array(group, "joint_offset"),
+        residual=freeze(monitors["residual"].copy()),
+        rank=freeze(monitors["rank"].copy()),
+        assumptions=read_texts(group, "assumptions"),
+        failures=tuple((row["subject"], row["reason"]) for row in read_rows(group, "failures", _FAILURES)),
+    )

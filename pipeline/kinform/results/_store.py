@@ -1,0 +1,91 @@
+"""Replacing a results file: all of the new one or none of it, and never a file that is not ours.
+
+The new bytes go to a temporary file in the same folder, are synchronised to disk, and take the place of
+the old file in one step. Identical bytes leave the file alone and touch its time, so that Make converges.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import stat
+from pathlib import Path
+
+from kinform.errors import Problem, ResultsError
+
+__all__ = ["check_target", "refuse", "replace"]
+
+
+def refuse(path: str | Path, message: str, remedy: str) -> ResultsError:
+    """The error that says what is wrong with the file, and what to do."""
+    return ResultsError(Problem(message, file=str(path), remedy=remedy))
+
+
+def check_target(path: str | Path) -> None:
+    """Raise ResultsError when a file could not be written there, before hours of work are lost."""
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise refuse(
+            path, "this is a folder, not a file", f"name a file in it, such as {Path(path) / 'results.h5'}"
+        )
+    if not target.parent.is_dir():
+        missing = Path(path).parent
+        raise refuse(path, f"the folder {missing} does not exist", f"create it: mkdir -p {missing}")
+    if target.exists() and not target.is_file():
+        raise refuse(path, "this is a device or a pipe, not a file", "name a regular file")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise refuse(path, "the file is read-only", "make it writable, or name another file")
+    if not os.access(target.parent, os.W_OK | os.X_OK):
+        raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
+
+
+def replace(path: str | Path, data: bytes) -> None:
+    """Put `data` at `path` in one step; keep a file that has these bytes already, with a new time.
+
+    Raises ResultsError when that is not possible; the old file is then as it was.
+    """
+    check_target(path)
+    target = Path(os.path.realpath(path))
+    try:
+        if _holds(target, data):
+            os.utime(target)
+        else:
+            _swap(target, data)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise refuse(
+            path, f"cannot be written: {reason}", "name a file in a writable folder with enough space"
+        ) from error
+
+
+def _holds(target: Path, data: bytes) -> bool:
+    return target.exists() and target.stat().st_size == len(data) and target.read_bytes() == data
+
+
+def _swap(target: Path, data: bytes) -> None:
+    temporary = target.parent / f".kinform-{secrets.token_hex(8)}.tmp"
+    try:
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+        with open(os.open(temporary, flags, 0o666), "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if target.exists():
+            os.chmod(temporary, stat.S_IMODE(target.stat().st_mode))
+        os.replace(temporary, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise
+    _synchronise(target.parent)
+
+
+def _synchronise(folder: Path) -> None:
+    """Make the renaming durable, where the system can synchronise folders."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

@@ -1,0 +1,305 @@
+"""How records and arrays become HDF5 datasets that other programs read.
+
+Tables are compound datasets of scalars (a vector takes one column a component), so that h5py, pandas,
+HDFView and h5dump read them without kinform. Every dataset carries `units`: one text for an array, one
+text a column for a table; "1" is a pure number and "" is text. What a dataset cannot say plainly:
+
+- no number (None) is R's NA, a NaN whose payload is 1954: NaN for everybody, NA for R, None for kinform;
+- no count or line number is -1;
+- no text is the character ␀; text that HDF5 cannot hold (NUL, lone surrogates), or that begins with ␀,
+  is ␀ followed by the text as JSON;
+- lists of names and free-form values are JSON text.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.errors import ResultsError
+from kinform.model.assembly import freeze
+
+__all__ = [
+    "TEXT",
+    "Column",
+    "flag",
+    "integer",
+    "matrix",
+    "pair",
+    "read_array",
+    "read_columns",
+    "read_ragged",
+    "read_records",
+    "read_rows",
+    "read_texts",
+    "real",
+    "text",
+    "texts",
+    "values",
+    "vector",
+    "write_array",
+    "write_columns",
+    "write_ragged",
+    "write_records",
+    "write_rows",
+    "write_texts",
+]
+
+Record = TypeVar("Record")
+
+TEXT = h5py.string_dtype()
+_NOTHING = "␀"
+_MISSING_BITS = struct.pack("<Q", 0x7FF8_0000_0000_0000 | 1954)
+(_MISSING,) = struct.unpack("<d", _MISSING_BITS)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One field of a record, and the column or columns that hold it."""
+
+    field: str
+    """Attribute of the record."""
+    labels: tuple[str, ...]
+    """Names of the columns."""
+    dtype: Any
+    unit: str
+    split: Callable[[Any], Sequence[Any]]
+    """The field's value → one scalar a label."""
+    join: Callable[[Sequence[Any]], Any]
+    """The scalars → the field's value."""
+
+
+def _write_text(value: str | None) -> str:
+    if value is None:
+        return _NOTHING
+    if value.startswith(_NOTHING) or "\0" in value or (not value.isascii() and _has_surrogates(value)):
+        return _NOTHING + json.dumps(value)
+    return value
+
+
+def _has_surrogates(value: str) -> bool:
+    return any("\ud800" <= character <= "\udfff" for character in value)
+
+
+def _read_text(stored: bytes | str) -> str | None:
+    value = stored.decode() if isinstance(stored, bytes) else stored
+    if not value.startswith(_NOTHING):
+        return value
+    return None if value == _NOTHING else str(json.loads(value[1:]))
+
+
+def _write_real(value: float | None) -> float:
+    return _MISSING if value is None else float(value)
+
+
+def _read_real(value: float) -> float | None:
+    return None if struct.pack("<d", value) == _MISSING_BITS else float(value)
+
+
+def _write_integer(value: int | None) -> int:
+    if value is None:
+        return -1
+    if value < 0:
+        raise ResultsError(f"the count {value} is negative: the results file has no place for it")
+    return int(value)
+
+
+def _write_json(value: Any) -> str:
+    dumped = json.dumps(value, ensure_ascii=False, sort_keys=True)
+    return json.dumps(value, sort_keys=True) if _has_surrogates(dumped) else dumped
+
+
+def text(field: str) -> Column:
+    """A text, or None."""
+    return Column(field, (field,), TEXT, "", lambda v: (_write_text(v),), lambda s: _read_text(s[0]))
+
+
+def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
+    """An integer; with `optional`, a count or a line number, or None."""
+    if optional:
+        return Column(
+            field, (field,), "<i8", unit,
+            lambda v: (_write_integer(v),), lambda s: None if s[0] == -1 else int(s[0]),
+        )  # fmt: skip
+    return Column(field, (field,), "<i8", unit, lambda v: (int(v),), lambda s: int(s[0]))
+
+
+def real(field: str, unit: str) -> Column:
+    """A float, or None."""
+    return Column(field, (field,), "<f8", unit, lambda v: (_write_real(v),), lambda s: _read_real(s[0]))
+
+
+def flag(field: str) -> Column:
+    """A bool."""
+    return Column(field, (field,), np.bool_, "1", lambda v: (bool(v),), lambda s: bool(s[0]))
+
+
+def texts(field: str) -> Column:
+    """A tuple of texts, as a JSON list."""
+    return Column(
+        field, (field,), TEXT, "",
+        lambda v: (_write_json(list(v)),), lambda s: tuple(json.loads(s[0])),
+    )  # fmt: skip
+
+
+def values(field: str) -> Column:
+    """A dict of free-form values, as JSON."""
+    return Column(
+        field, (field,), TEXT, "",
+        lambda v: (_write_json(v),), lambda s: json.loads(s[0]),
+    )  # fmt: skip
+
+
+def pair(field: str, kind: Callable[..., Column], labels: tuple[str, ...], *unit: str) -> Column:
+    """A tuple of scalars (or None) of one kind, a column each."""
+    scalar = kind(field, *unit)
+
+    def split(value: Sequence[Any] | None) -> Sequence[Any]:
+        parts = [None] * len(labels) if value is None else value
+        return [scalar.split(part)[0] for part in parts]
+
+    def join(stored: Sequence[Any]) -> tuple[Any, ...] | None:
+        parts = tuple(scalar.join((item,)) for item in stored)
+        return None if all(part is None for part in parts) else parts
+
+    return Column(field, labels, scalar.dtype, scalar.unit, split, join)
+
+
+def vector(field: str, unit: str, axes: Sequence[str] = ("x", "y", "z")) -> Column:
+    """An array of one number an axis, or None."""
+    return _numbers(field, unit, axes, (len(axes),))
+
+
+def matrix(field: str, unit: str, axes: Sequence[str] = ("x", "y", "z")) -> Column:
+    """A square array, or None; columns run through its rows."""
+    return _numbers(field, unit, [a + b for a in axes for b in axes], (len(axes), len(axes)))
+
+
+def _numbers(field: str, unit: str, suffixes: Sequence[str], shape: tuple[int, ...]) -> Column:
+    labels = tuple(f"{field}_{suffix}" for suffix in suffixes)
+
+    def split(value: NDArray[np.float64] | None) -> Sequence[float]:
+        if value is None:
+            return [_MISSING] * len(labels)
+        array = np.asarray(value, dtype=np.float64)
+        if array.shape != shape:
+            raise ResultsError(f"{field} has the shape {array.shape}; expected {shape}")
+        return array.ravel().tolist()
+
+    def join(stored: Sequence[float]) -> NDArray[np.generic] | None:
+        if _read_real(stored[0]) is None:
+            return None
+        return freeze(np.array(stored, dtype=np.float64).reshape(shape))
+
+    return Column(field, labels, "<f8", unit, split, join)
+
+
+def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str, Any]]) -> None:
+    """Write a table from whole columns: label → (unit, values as an array)."""
+    dtype = np.dtype([(label, data.dtype) for label, (_, data) in columns.items()])
+    table = np.zeros(len(next(iter(columns.values()))[1]), dtype=dtype)
+    for label, (_, data) in columns.items():
+        table[label] = data
+    dataset = group.create_dataset(name, data=table, dtype=dtype, track_times=False)
+    dataset.attrs["units"] = np.array([unit for unit, _ in columns.values()], dtype=TEXT)
+
+
+def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = None) -> Any:
+    """The table as a structured array: all of it, or only these columns."""
+    return group[name][()] if labels is None else group[name].fields(list(labels))[()]
+
+
+def write_rows(
+    group: h5py.Group, name: str, columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]
+) -> None:
+    """Write a table from rows: field → value."""
+    split = [[scalar for column in columns for scalar in column.split(row[column.field])] for row in rows]
+    flat = [(label, column) for column in columns for label in column.labels]
+    data = list(zip(*split, strict=True)) if split else [()] * len(flat)
+    write_columns(
+        group,
+        name,
+        {
+            label: (column.unit, np.array(stored, dtype=column.dtype))
+            for (label, column), stored in zip(flat, data, strict=True)
+        },
+    )
+
+
+def read_rows(group: h5py.Group, name: str, columns: Sequence[Column]) -> list[dict[str, Any]]:
+    """The rows that `write_rows` wrote."""
+    table = read_columns(group, name)
+    stored = {label: table[label].tolist() for column in columns for label in column.labels}
+    return [
+        {column.field: column.join([stored[label][i] for label in column.labels]) for column in columns}
+        for i in range(len(table))
+    ]
+
+
+def write_records(group: h5py.Group, name: str, columns: Sequence[Column], records: Iterable[object]) -> None:
+    """Write a table with one row a record; fields are attributes."""
+    fields = [column.field for column in columns]
+    write_rows(group, name, columns, ({f: getattr(record, f) for f in fields} for record in records))
+
+
+def read_records(
+    group: h5py.Group, name: str, columns: Sequence[Column], cls: Callable[..., Record]
+) -> tuple[Record, ...]:
+    """The records that `write_records` wrote."""
+    return tuple(cls(**row) for row in read_rows(group, name, columns))
+
+
+def write_array(
+    group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8"
+) -> h5py.Dataset:
+    """Write one array, contiguous and uncompressed."""
+    data = np.ascontiguousarray(array, dtype=dtype).reshape(np.shape(array))
+    dataset = group.create_dataset(name, data=data, track_times=False)
+    dataset.attrs["units"] = unit
+    return dataset
+
+
+def read_array(group: h5py.Group, name: str) -> NDArray[Any]:
+    """One array, read-only."""
+    return freeze(np.asarray(group[name][()]))
+
+
+def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
+    """Write a list of texts."""
+    data = np.array([_write_text(item) for item in items], dtype=object)
+    dataset = group.create_dataset(name, shape=data.shape, dtype=TEXT, track_times=False)
+    if len(items):
+        dataset[...] = data
+    dataset.attrs["units"] = ""
+
+
+def read_texts(group: h5py.Group, name: str) -> tuple[Any, ...]:
+    """The texts that `write_texts` wrote."""
+    return tuple(_read_text(item) for item in group[name][()])
+
+
+def write_ragged(
+    group: h5py.Group, name: str, arrays: Sequence[Any], unit: str, *, width: int = 0, dtype: str = "<f8"
+) -> None:
+    """Write arrays of different lengths one after the other: item i is NAME[NAME_offset[i] : NAME_offset[i+1]].
+
+    `width` is the number of columns of each, 0 for one-dimensional ones.
+    """
+    empty = np.zeros((0, width) if width else (0,), dtype=dtype)
+    parts = [np.asarray(array, dtype=dtype) if len(array) else empty for array in arrays]
+    write_array(group, name, np.concatenate([empty, *parts]), unit, dtype)
+    offset = np.cumsum([0, *(len(part) for part in parts)])
+    write_array(group, f"{name}_offset", offset, "1", "<i8")
+
+
+def read_ragged(group: h5py.Group, name: str) -> list[NDArray[Any]]:
+    """The arrays that `write_ragged` wrote, read-only."""
+    data, offset = read_array(group, name), read_array(group, f"{name}_offset")
+    return [freeze(data[start:end].copy()) for start, end in zip(offset[:-1], offset[1:], strict=True)]

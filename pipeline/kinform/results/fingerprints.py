@@ -1,0 +1,107 @@
+"""From what a result was computed, as one hash a result; and in words, what changed since.
+
+A fingerprint covers the content of a stage's inputs (`inputs`), the settings, and the version of the code
+that runs: no time of a file, no path, no order of events. Equal fingerprints are the licence to reuse.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+
+from kinform._version import __version__
+from kinform.model.assembly import Assembly, Mesh
+from kinform.model.design import Design
+from kinform.model.surfaces import MeshSurfaces
+from kinform.model.tolerances import Tolerances
+from kinform.results import inputs
+from kinform.results._digest import digest
+
+__all__ = ["Inputs", "changes", "listed", "mark", "of_assembly", "of_mesh", "of_pair", "of_parts", "of_stage"]
+
+Inputs = Mapping[str, str]
+"""Hash of each input, by its name in words."""
+
+_CODE = {
+    "assembly": ("form",),
+    "surfaces": ("surfaces",),
+    "contacts": ("contacts",),
+    "joints": ("kinematics",),
+    "mass": ("mass",),
+    "simulation": ("simulation", "function", "kinematics"),
+    "findings": ("consistency", "function", "kinematics"),
+}
+"""Packages whose code decides the result of each stage."""
+
+_ASSEMBLY_FIELDS = (
+    "name", "units", "parts", "groups", "assumptions", "ground", "tolerances", "infer_fasteners", "function",
+    "simulation", "subassemblies", "source", "files", "notes",
+)  # fmt: skip
+
+
+def mark(stage: str, found: Inputs) -> str:
+    """The fingerprint of a result of this stage with these inputs, computed by the present code."""
+    versions = [importlib.import_module(f"kinform.{name}").CODE_VERSION for name in _CODE[stage]]
+    return digest(stage, __version__, versions, dict(found))
+
+
+def of_assembly(assembly: Assembly) -> Inputs:
+    """Everything that was read."""
+    return {"the input": digest(assembly)}
+
+
+def of_mesh(mesh: Mesh, tolerances: Tolerances) -> Inputs:
+    """Inputs of the surfaces of one mesh."""
+    return {"the shape": digest(inputs.bare_mesh(mesh)), "the tolerances": digest(tolerances)}
+
+
+def of_parts(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces]) -> dict[str, Inputs]:
+    """What each meshed part, as the contacts stage sees it, brings to the contacts of its pairs."""
+    meshes = {part.mesh.digest: part.mesh for part in assembly.parts if part.mesh is not None}
+    shapes = {key: digest(mesh, surfaces[key]) for key, mesh in meshes.items() if key in surfaces}
+    return {
+        part.name: {
+            f"the shape of {part.name}": shapes[part.mesh.digest],
+            f"the pose of {part.name}": digest(part.X_WP),
+            f"whether {part.name} is solid": digest(part.solid),
+        }
+        for part in assembly.parts
+        if part.mesh is not None and part.mesh.digest in shapes
+    }
+
+
+def of_pair(tolerances: Tolerances, first: Inputs, second: Inputs) -> Inputs:
+    """Inputs of the contacts of two parts, from what each brings."""
+    return {"the tolerances": digest(tolerances), **first, **second}
+
+
+def of_stage(stage: str, design: Design, level: str | None = None) -> Inputs:
+    """Inputs of a whole stage: contacts, joints, mass, simulation or findings."""
+    view = inputs.assembly_for(stage, design.assembly)
+    found = {name.replace("_", " "): digest(getattr(view, name)) for name in _ASSEMBLY_FIELDS}
+    if stage in ("contacts", "joints", "mass", "findings"):
+        found["surfaces"] = digest(design.surfaces)
+    if stage in ("joints", "findings"):
+        found["contacts"] = digest(design.contacts)
+    if stage == "mass" and design.kinematics is not None:
+        found["bodies"] = digest(design.kinematics.bodies)
+    if stage in ("simulation", "findings"):
+        found["joints"] = digest(design.kinematics)
+        found["mass"] = digest(design.mass)
+    if stage == "findings":
+        found["the simulated motion"] = digest(design.simulation)
+    return found if level is None else found | {"level": level}
+
+
+def changes(before: Inputs | None, after: Inputs) -> str:
+    """In words, why a result with the inputs `before` is not one with the inputs `after`."""
+    if before is None:
+        return "not computed before"
+    changed = [name for name in after if before.get(name) != after[name]]
+    return f"{listed(changed)} changed" if changed else "computed by another version of kinform"
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first few of some names, as a sentence lists them."""
+    shown = list(names) if len(names) <= 4 else [*names[:3], f"{len(names) - 3} more"]
+    return " and ".join(([", ".join(shown[:-1])] if len(shown) > 1 else []) + shown[-1:])

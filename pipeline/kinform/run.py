@@ -1,0 +1,56 @@
+"""The method, one line a stage: form → surfaces and contacts → joints → mass → motion → findings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from kinform import stages
+from kinform.api import Outcome
+from kinform.ledger import Ledger
+
+__all__ = ["Progress", "run"]
+
+Progress = Callable[[str, int, int], None]
+"""Called with the name of the stage, its steps done, and its steps in all."""
+
+
+def run(
+    manifest: str | Path | Sequence[str | Path],
+    output: str | Path | None = None,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    allow_outside: bool = False,
+    units: str | None = None,
+) -> Outcome:
+    """Everything about a design, from its manifest to the findings.
+
+    `manifest` is a TOML file, or one or several mesh files, which need `units`. With `output` the results
+    are written there in one step, and what is still valid in an earlier file is reused; the result is the
+    same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
+    manifest's folder need `allow_outside`.
+
+    Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
+    """
+    ledger = Ledger.of(output)
+    design = _import(manifest, units, allow_outside)
+    design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
+    design = stages.joints(design, ledger=ledger)
+    design = stages.mass(design, ledger=ledger)
+    design = stages.simulate(design, progress=_steps(progress, "simulation"), ledger=ledger)
+    design = stages.check(design, ledger=ledger)
+    if output is not None:
+        from kinform import results
+
+        results.write(design, output)
+    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed))
+
+
+def _import(manifest, units, allow_outside):
+    ...
+
+
+def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:
+    """The progress of one stage, as the stage reports it."""
+    return None if progress is None else lambda done, total: progress(stage, done, total)

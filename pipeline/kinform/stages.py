@@ -1,0 +1,194 @@
+"""The stages of the method, one function each: a design goes in, a design with more in it comes out.
+
+A stage takes over what an earlier run has left in the ledger if its fingerprint says that it would come
+out the same, computes it otherwise, and drops whatever later stages had made of the old result. Packages
+are imported by the stage that needs them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from kinform.errors import StageError
+from kinform.ledger import Ledger
+from kinform.model.assembly import Assembly
+from kinform.model.design import Design
+from kinform.model.fingerprints import Fingerprints
+
+__all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
+
+Progress = Callable[[int, int], None]
+"""Called with the steps done and the steps in all."""
+
+Result = TypeVar("Result")
+
+_FIELDS = {
+    "contacts": "contacts", "joints": "kinematics", "mass": "mass", "simulation": "simulation",
+    "findings": "report",
+}  # fmt: skip
+"""Stages after the import in their order, and the field of Design that each fills."""
+
+
+def import_(manifest: str | Path, *, allow_outside: bool = False) -> Design:
+    """The assembly that a manifest describes, meshes included. Raises InputError with every problem."""
+    from kinform import form
+
+    return _imported(form.load(Path(manifest), allow_outside=allow_outside))
+
+
+def import_meshes(
+    meshes: Sequence[str | Path], *, units: str, name: str | None = None, density: float | None = None
+) -> Design:
+    """An assembly of meshes without a manifest: one file with several bodies, or several files.
+
+    `units` is the length unit of the files, `density` of all parts (kg/m³). Raises InputError.
+    """
+    from kinform import form
+
+    return _imported(form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density))
+
+
+def contacts(
+    design: Design, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
+) -> Design:
+    """Analytic surfaces of each mesh, and the contacts between parts.
+
+    Earlier surfaces are reused mesh by mesh, earlier contacts pair by pair.
+    """
+    from kinform import touching
+    from kinform.results import fingerprints, inputs
+
+    ledger = ledger or Ledger()
+    view = inputs.assembly_for("contacts", design.assembly)
+    start = _without(design, "contacts")
+    surfaces, meshes = touching.surfaces(view, jobs, progress, ledger)
+    start = replace(start, surfaces=surfaces)
+    mark = fingerprints.mark("contacts", fingerprints.of_stage("contacts", start))
+    found, pairs = touching.contacts(view, surfaces, mark, jobs, progress, ledger)
+    marks = {"surfaces": fingerprints.mark("surfaces", meshes), "contacts": mark}
+    return replace(
+        start, contacts=found, fingerprints=Fingerprints(start.fingerprints.stages | marks, meshes, pairs)
+    )
+
+
+def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
+    """Bodies, joints, constraint matrix and mobility. Raises StageError without contacts."""
+    found = _needed(design.contacts, "kinform joints", "contacts")
+
+    def derive(view: Assembly) -> Any:
+        from kinform import kinematics
+
+        if all(part.mesh is None for part in view.parts):
+            return kinematics.functional(view)
+        return kinematics.derive(view, design.surfaces, found)
+
+    return _advance("joints", design, derive, ledger)
+
+
+def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
+    """Mass properties of parts and bodies. Raises StageError without joints."""
+    found = _needed(design.kinematics, "kinform mass", "joints")
+
+    def compile_(view: Assembly) -> Any:
+        from kinform.mass import compile_mass
+        from kinform.results import inputs
+
+        return compile_mass(view, inputs.only_bodies(found), design.surfaces)
+
+    return _advance("mass", design, compile_, ledger)
+
+
+def simulate(
+    design: Design,
+    *,
+    level: str | None = None,
+    progress: Progress | None = None,
+    ledger: Ledger | None = None,
+) -> Design:
+    """Motion at the level that is known, or at `level`. Raises StageError without mass properties."""
+    kinematics = _needed(design.kinematics, "kinform simulate", "joints")
+    masses = _needed(design.mass, "kinform simulate", "mass")
+
+    def run(view: Assembly) -> Any:
+        from kinform import simulation
+
+        return simulation.simulate(view, kinematics, masses, level=level, progress=progress)
+
+    return _advance("simulation", design, run, ledger, level)
+
+
+def check(design: Design, *, ledger: Ledger | None = None) -> Design:
+    """Findings: behaviour against function, and form in itself. Raises StageError without simulation."""
+    _needed(design.contacts, "kinform check", "contacts")
+    _needed(design.kinematics, "kinform check", "joints")
+    _needed(design.mass, "kinform check", "mass")
+    _needed(design.simulation, "kinform check", "simulate")
+
+    def find(_: Assembly) -> Any:
+        from kinform import consistency
+
+        return consistency.check(_without(design, "findings"))
+
+    return _advance("findings", design, find, ledger)
+
+
+def _imported(assembly: Assembly) -> Design:
+    from kinform.results import fingerprints
+
+    mark = fingerprints.mark("assembly", fingerprints.of_assembly(assembly))
+    return Design(assembly, fingerprints=Fingerprints({"assembly": mark}))
+
+
+def _needed(result: Result | None, stage: str, command: str) -> Result:
+    if result is None:
+        raise StageError(f"`{stage}`", command)
+    return result
+
+
+def _without(design: Design, stage: str) -> Design:
+    """The design before that stage: without its result, and without those of later stages."""
+    order = list(_FIELDS)
+    later = order[order.index(stage) :]
+    marks = design.fingerprints
+    stages = {name: mark for name, mark in marks.stages.items() if name not in later}
+    if stage == "contacts":
+        stages.pop("surfaces", None)
+        marks, design = Fingerprints(), replace(design, surfaces={})
+    return replace(
+        design, **{_FIELDS[name]: None for name in later}, fingerprints=replace(marks, stages=stages)
+    )
+
+
+def _advance(
+    stage: str,
+    design: Design,
+    compute: Callable[[Assembly], Any],
+    ledger: Ledger | None,
+    level: str | None = None,
+) -> Design:
+    """The design with the result of the stage: the earlier one where nothing changed, else a new one."""
+    from kinform.results import fingerprints, inputs
+
+    ledger = ledger or Ledger()
+    start = _without(design, stage)
+    found = fingerprints.of_stage(stage, start, level)
+    mark = fingerprints.mark(stage, found)
+    previous = ledger.previous
+    result = None if previous is None else getattr(previous, _FIELDS[stage])
+    if result is not None and previous is not None and previous.fingerprints.stages.get(stage) == mark:
+        ledger.keep(stage)
+    else:
+        before = None if result is None or previous is None else _before(stage, previous)
+        ledger.compute(stage, fingerprints.changes(before, found))
+        result = compute(inputs.assembly_for(stage, design.assembly))
+    marks = replace(start.fingerprints, stages=start.fingerprints.stages | {stage: mark})
+    return replace(start, **{_FIELDS[stage]: result}, fingerprints=marks)
+
+
+def _before(stage: str, previous: Design) -> dict[str, str]:
+    from kinform.results import fingerprints
+
+    return dict(fingerprints.of_stage(stage, _without(previous, stage)))

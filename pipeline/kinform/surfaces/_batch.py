@@ -1,0 +1,98 @@
+"""Arithmetic over many small groups at once: ragged rows, grouped sums, grouped least squares.
+
+Knows nothing of geometry. Groups are runs of consecutive rows, given by their starts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+__all__ = ["Array", "Ints", "Mask", "Ragged", "components", "group_sum",
+    "normal_equations", "quantile", "solve_normal", "starts_of"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+
+class Ragged:
+    """Rows of different length: the items of row i are items[starts[i]:starts[i + 1]]."""
+
+    def __init__(self, rows: Ints, items: Ints, count: int):
+        order = np.argsort(rows, kind="stable")
+        self.items: Ints = items[order]
+        self.starts: Ints = np.searchsorted(rows[order], np.arange(count + 1)).astype(np.int64)
+
+    def lengths(self, rows: Ints) -> Ints:
+        """Number of items of each of these rows."""
+        return self.starts[rows + 1] - self.starts[rows]
+
+    def expand(self, rows: Ints) -> tuple[Ints, Ints]:
+        """(position in `rows`, item) for every item of every row asked for, in order."""
+        lengths = self.lengths(rows)
+        owner = np.repeat(np.arange(len(rows)), lengths)
+        first = np.cumsum(lengths) - lengths
+        within = np.arange(len(owner)) - first[owner]
+        return owner, self.items[self.starts[rows][owner] + within]
+
+
+def starts_of(groups: Ints, count: int) -> Ints:
+    """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
+    return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
+
+
+def group_sum(groups: Ints, values: Array, count: int) -> Array:
+    """Sum of `values` (n, ...) for each group number: (count, ...)."""
+    flat = values.reshape(len(values), int(np.prod(values.shape[1:], dtype=int)))
+    out = np.empty((count, flat.shape[1]))
+    for k in range(flat.shape[1]):
+        out[:, k] = np.bincount(groups, flat[:, k], count)
+    return out.reshape((count, *values.shape[1:]))
+
+
+def components(a: Ints, b: Ints, count: int) -> Ints:
+    """Number of the connected component of each of `count` nodes under the links a–b."""
+    if count == 0:
+        return np.zeros(0, np.int64)
+    graph = coo_matrix((np.ones(len(a), np.int8), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
+    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
+    k = jacobian.shape[1]
+    matrix = np.empty((count, k, k))
+    for i in range(k):
+        for j in range(i, k):
+            matrix[:, i, j] = np.bincount(groups, jacobian[:, i] * jacobian[:, j], count)
+            matrix[:, j, i] = matrix[:, i, j]
+    right = np.stack([np.bincount(groups, jacobian[:, i] * residual, count) for i in range(k)], axis=1)
+    return matrix, right
+
+
+def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
+    """Solutions (count, k) of scaled, slightly damped symmetric systems; never raises."""
+    diagonal = np.einsum("gii->gi", matrix)
+    scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-300))
+    scaled = matrix * scale[:, :, None] * scale[:, None, :]
+    scaled = scaled + damping * np.eye(matrix.shape[1])
+    scaled = np.where(np.isfinite(scaled), scaled, 0.0)
+    values, vectors = np.linalg.eigh(scaled)
+    inverse = np.where(values > 1e-15, 1.0 / np.maximum(values, 1e-15), 0.0)
+    projected = np.einsum("gji,gj->gi", vectors, np.nan_to_num(right * scale)) * inverse
+    return np.asarray(np.einsum("gij,gj->gi", vectors, projected) * scale)
+
+
+def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
+    """The lower `share` quantile of the values of each group; 0 for empty groups."""
+    order = np.lexsort((values, groups))
+    starts = starts_of(groups[order], count)
+    size = np.diff(starts)
+    at = starts[:-1] + np.floor(share * np.maximum(size - 1, 0)).astype(np.int64)
+    out = np.zeros(count)
+    filled = size > 0
+    out[filled] = values[order][at[filled]]
+    return out

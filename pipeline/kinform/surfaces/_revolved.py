@@ -1,0 +1,191 @@
+"""Cylinder and cone in one: straight generators about an axis.
+
+distance = (ρ − r) cos α − t sin α, with t along the axis from the reference point, ρ the distance from the
+axis, r the radius at the reference point. A cylinder has α = 0. The reference point stays beside the
+data, so that neither a slender cone's far apex nor a flat one's wrapping angle harms the fit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.surfaces._batch import Array, Ints, Mask, group_sum, normal_equations, quantile, solve_normal
+from kinform.surfaces.kind import ALONG, Batch, Params, Probe
+
+__all__ = [
+    "axis_of_edges", "basis", "defining", "generators", "gauss_newton", "jacobian", "lines", "probe",
+    "widths",
+]  # fmt: skip
+
+
+def basis(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors across each axis (N, 3)."""
+    helper = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
+    x = np.cross(axis, helper)
+    x /= np.maximum(np.linalg.norm(x, axis=1), 1e-300)[:, None]
+    return x, np.cross(axis, x)
+
+
+def _split(params: Params, points: Array) -> tuple[Array, Array, Array]:
+    """(t along the axis, ρ across it, unit radial direction) of each point."""
+    offset = points - params[:, 3:6]
+    t = np.einsum("ij,ij->i", offset, params[:, :3])
+    across = offset - t[:, None] * params[:, :3]
+    rho = np.linalg.norm(across, axis=1)
+    return t, rho, across / np.maximum(rho, 1e-300)[:, None]
+
+
+def probe(params: Params, points: Array) -> Probe:
+    """Holds points (N, 3) against cones and cylinders (N, 8)."""
+    t, rho, radial = _split(params, points)
+    cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
+    return Probe(
+        distance=(rho - params[:, 6]) * cos - t * sin,
+        normal=cos[:, None] * radial - sin[:, None] * params[:, :3],
+        curvature_radius=np.maximum(params[:, 6] * cos + t * sin, 0.0),
+    )
+
+
+def jacobian(params: Params, points: Array, cone: bool) -> Array:
+    """(N, 5 or 6): by offset across the axis (2), tilt (2), radius, and half-angle for cones."""
+    t, rho, radial = _split(params, points)
+    cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
+    x, y = basis(params[:, :3])
+    rx, ry = np.einsum("ij,ij->i", radial, x), np.einsum("ij,ij->i", radial, y)
+    lever = cos * t + sin * rho
+    columns = [-cos * rx, -cos * ry, -lever * rx, -lever * ry, -cos]
+    if cone:
+        columns.append(-(rho - params[:, 6]) * sin - t * cos)
+    return np.stack(columns, axis=1)
+
+
+def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Mask, Mask]:
+    """(region, edge, inner, smooth) of the edges that run along a generator."""
+    region, edge, inner = batch.edges
+    work = batch.patchwork
+    start, end = work.vertices[work.ends[edge, 0]], work.vertices[work.ends[edge, 1]]
+    mine = params[region]
+    _, _, radial = _split(mine, (start + end) / 2)
+    direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
+    along = np.abs(np.einsum("ij,ij->i", end - start, direction)) > ALONG * work.length[edge]
+    use = along & (work.length[edge] > 0)
+    return region[use], edge[use], inner[use], work.smooth[edge[use]]
+
+
+def defining(batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
+    """(region, vertex): ends of inner ridges, and of outer generators that lie on the surface.
+
+    After a boolean, outer generators may lie on chords; smooth ones (tangent to the neighbour) do not.
+    """
+    work = batch.patchwork
+    region, edge, inner, _ = generators(batch, params)
+    if not len(region):
+        return region, edge
+    ends = work.ends[edge]
+    distance = np.maximum(
+        np.abs(probe(params[region], work.vertices[ends[:, 0]]).distance),
+        np.abs(probe(params[region], work.vertices[ends[:, 1]]).distance),
+    )
+    use = inner | (distance < tolerance[region])
+    total = np.int64(len(work.vertices))
+    key = np.unique(np.repeat(region[use], 2) * total + ends[use].ravel())
+    return key // total, key % total
+
+
+def gauss_newton(
+    batch: Batch, params: Params, tolerance: Array, steps: int, cone: bool, fixed: tuple[Ints, Ints] | None = None
+) -> Params:  # fmt: skip
+    """Refines over the defining vertices; regions that do not converge keep what they had."""
+    work = batch.patchwork
+    count = batch.count
+    for step in range(steps):
+        if fixed is not None:
+            region, vertex = fixed
+        elif step in (0, 2):
+            region, vertex = defining(batch, params, tolerance)
+        if not len(region):
+            return params
+        points = work.vertices[vertex]
+        params = _recentred(params, region, points, count)
+        mine = params[region]
+        columns = jacobian(mine, points, cone)
+        residual = probe(mine, points).distance
+        matrix, right = normal_equations(region, columns, residual, count)
+        change = -solve_normal(matrix, right, 1e-11)
+        params = _moved(params, change, cone)
+    return params
+
+
+def _recentred(params: Params, region: Ints, points: Array, count: int) -> Params:
+    """Moves each reference point along its axis beside the mean of the points."""
+    t, _, _ = _split(params[region], points)
+    size = np.maximum(np.bincount(region, minlength=count), 1)
+    middle = np.bincount(region, t, count) / size
+    out = params.copy()
+    out[:, 3:6] += middle[:, None] * params[:, :3]
+    out[:, 6] += middle * np.tan(params[:, 7])
+    return out
+
+
+def _moved(params: Params, change: Array, cone: bool) -> Params:
+    x, y = basis(params[:, :3])
+    limit = np.abs(params[:, 6])[:, None] + 1e-6
+    shift = np.clip(change[:, :2], -limit, limit)
+    tilt = np.clip(change[:, 2:4], -0.3, 0.3)
+    out = params.copy()
+    out[:, 3:6] += shift[:, :1] * x + shift[:, 1:] * y
+    axis = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
+    out[:, :3] = axis / np.maximum(np.linalg.norm(axis, axis=1), 1e-300)[:, None]
+    out[:, 6] = np.maximum(params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), 1e-9)
+    if cone:
+        out[:, 7] = np.clip(params[:, 7] + np.clip(change[:, 5], -0.3, 0.3), -1.567, 1.567)
+    good = np.isfinite(out).all(axis=1)
+    return np.where(good[:, None], out, params)
+
+
+def axis_of_edges(batch: Batch) -> tuple[Array, Array]:
+    """(axis, how nearly all inner edges run along it, 1 for exactly) of each region."""
+    work = batch.patchwork
+    region, edge, inner = batch.edges
+    region, edge = region[inner], edge[inner]
+    along = work.vertices[work.ends[edge, 1]] - work.vertices[work.ends[edge, 0]]
+    matrix = group_sum(region, along[:, :, None] * along[:, None, :], batch.count)
+    values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
+    total = np.maximum(values.sum(axis=1), 1e-300)
+    return np.ascontiguousarray(vectors[:, :, 2]), values[:, 2] / total
+
+
+def widths(batch: Batch, params: Params) -> Array:
+    """(pairs,) angle about the axis that each polygon subtends."""
+    work = batch.patchwork
+    owner, vertex = work.corners.expand(batch.polygon)
+    mine = params[batch.region]
+    x, y = basis(mine[:, :3])
+    _, _, middle = _split(mine, work.centre[batch.polygon])
+    _, rho, radial = _split(mine[owner], work.vertices[vertex])
+    cos = np.einsum("ij,ij->i", radial, middle[owner])
+    side = np.cross(mine[:, :3], middle)
+    sin = np.einsum("ij,ij->i", radial, side[owner])
+    angle = np.where(rho > 1e-3 * np.abs(mine[owner, 6]), np.arctan2(sin, cos), 0.0)
+    high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))
+    np.maximum.at(high, owner, angle)
+    np.minimum.at(low, owner, angle)
+    del x, y
+    return high - low
+
+
+def lines(batch: Batch, params: Params, tolerance: Array) -> Ints:
+    """Number of distinct generators, apart by more than a fifth of a typical facet, that lie on the surface."""
+    work = batch.patchwork
+    region, vertex = defining(batch, params, tolerance)
+    if not len(region):
+        return np.zeros(batch.count, np.int64)
+    mine = params[region]
+    x, y = basis(mine[:, :3])
+    _, _, radial = _split(mine, work.vertices[vertex])
+    angle = np.arctan2(np.einsum("ij,ij->i", radial, y), np.einsum("ij,ij->i", radial, x))
+    order = np.lexsort((angle, region))
+    region, angle = region[order], angle[order]
+    step = 0.2 * quantile(batch.region, widths(batch, params), batch.count, 0.75)
+    fresh = np.r_[True, (region[1:] != region[:-1]) | (np.diff(angle) > step[region[1:]])]
+    return np.bincount(region[fresh], minlength=batch.count).astype(np.int64)

@@ -1,0 +1,213 @@
+"""From regions of polygons to the surfaces that other stages read, with the uncertainty of each fit.
+
+Uncertainty: covariance of the least squares over the defining vertices, with the larger of their scatter
+and of what single-precision storage loses, times COVERAGE. Coordinates here are those of the unit mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.surfaces import plane
+from kinform.surfaces._batch import Array, Ints
+from kinform.surfaces._revolved import basis
+from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.topology import Patchwork, Scale
+
+__all__ = ["Description", "curved", "flat", "freeform"]
+
+COVERAGE = 3.0
+"""Stated uncertainties are this many standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """One surface in unit coordinates; fields as those of `Surface`."""
+
+    kind: str
+    polygons: Ints
+    axis: Array
+    point: Array
+    radius: float = 0.0
+    half_angle: float = 0.0
+    side: int = 1
+    extent: tuple[float, float] = (0.0, 0.0)
+    sweep: float = 0.0
+    residual: float = 0.0
+    axis_uncertainty: float = 0.0
+    point_uncertainty: float = 0.0
+    chord: float = 0.0
+    squares: float = 0.0
+    """Sum of squared distances of the defining vertices, and their number."""
+    samples: int = 0
+
+
+def flat(work: Patchwork, polygons: Ints, scale: Scale) -> Description:
+    """A plane through all vertices of these polygons."""
+    _, vertex = work.corners.expand(polygons)
+    points = work.vertices[np.unique(vertex)]
+    outward = work.normal[polygons].T @ work.area[polygons]
+    size = np.linalg.norm(outward)
+    outward = outward / size if size > 0 else work.normal[polygons[0]]
+    normal, centre, variances = plane.fit(points, outward)
+    distance = (points - centre) @ normal
+    squares, count = float(distance @ distance), len(points)
+    scatter = max(np.sqrt(squares / max(count - 3, 1)), 0.6 * scale.rounding)
+    spread = max(np.sqrt(variances[1] * count), 1e-12)
+    return Description(
+        kind="plane",
+        polygons=polygons,
+        axis=normal,
+        point=centre,
+        residual=float(np.abs(distance).max()),
+        axis_uncertainty=min(float(COVERAGE * scatter / spread), np.pi / 2),
+        point_uncertainty=max(float(COVERAGE * scatter / np.sqrt(count)), scale.rounding),
+        chord=float(np.abs(distance).max()),
+        squares=squares,
+        samples=count,
+    )
+
+
+def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
+    """A patch that no analytic surface explains; `numbers` are its inner edges."""
+    a, b, length = work.a[numbers], work.b[numbers], np.maximum(work.length[numbers], 1e-300)
+    width = np.minimum(work.area[a], work.area[b]) / length
+    chord = float((width * work.angle[numbers]).max() / 8) if len(numbers) else 0.0
+    return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
+
+
+def curved(
+    kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array, scale: Scale
+) -> list[Description]:
+    """Every region of one kind, with its final fit."""
+    work = batch.patchwork
+    params = kind.refine(batch, params, tolerance, 6)
+    region, vertex = batch.corners
+    t = np.einsum("ij,ij->i", work.vertices[vertex] - params[region, 3:6], params[region, :3])
+    low, high = np.full(batch.count, np.inf), np.full(batch.count, -np.inf)
+    np.minimum.at(low, region, t)
+    np.maximum.at(high, region, t)
+    placed = _placed(kind.name, params, low, high)
+    region, vertex = kind.defining(batch, params, tolerance)
+    points = work.vertices[vertex]
+    distance = kind.probe(params[region], points).distance
+    columns = kind.jacobian(placed[region], points)
+    chords = _chords(kind, batch, params)
+    widths = kind.widths(batch, params)
+    starts = np.searchsorted(batch.region, np.arange(batch.count + 1))
+    order = np.argsort(region, kind="stable")
+    distance, columns = distance[order], columns[order]
+    rows = np.searchsorted(region[order], np.arange(batch.count + 1))
+    out = []
+    for k in range(batch.count):
+        mine, own = slice(starts[k], starts[k + 1]), slice(rows[k], rows[k + 1])
+        polygons = batch.polygon[mine]
+        squares, count = float(distance[own] @ distance[own]), rows[k + 1] - rows[k]
+        angular, linear = _uncertainty(columns[own], squares, scale, has_axis=kind.name != "sphere")
+        axis, point, radius, half_angle, extent = _oriented(kind.name, placed[k], params[k], low[k], high[k])
+        sweep = 0.0
+        if kind.name != "sphere":
+            sweep = _sweep(placed[k], work.centre[polygons], widths[mine])
+        out.append(
+            Description(
+                kind=kind.name,
+                polygons=polygons,
+                axis=axis,
+                point=point,
+                radius=radius,
+                half_angle=half_angle,
+                side=int(side[k]),
+                extent=extent,
+                sweep=sweep,
+                residual=float(np.abs(distance[own]).max()) if count else 0.0,
+                axis_uncertainty=angular,
+                point_uncertainty=linear,
+                chord=float(chords[k]),
+                squares=squares,
+                samples=int(count),
+            )
+        )
+    return out
+
+
+def _placed(name: str, params: Params, low: Array, high: Array) -> Params:
+    """Parameters with the reference point where the surface's `point` will be."""
+    out = params.copy()
+    if name == "cylinder":
+        out[:, 3:6] += ((low + high) / 2)[:, None] * params[:, :3]
+    elif name == "cone":
+        out[:, 3:6] -= (params[:, 6] / np.tan(params[:, 7]))[:, None] * params[:, :3]
+        out[:, 6] = 0.0
+    return out
+
+
+def _oriented(
+    name: str, placed: Array, params: Array, low: float, high: float
+) -> tuple[Array, Array, float, float, tuple[float, float]]:
+    """(axis, point, radius, half-angle, extent from the point) in the senses that `Surface` promises."""
+    point = placed[3:6].copy()
+    if name == "sphere":
+        return np.zeros(3), point, float(params[6]), 0.0, (0.0, 0.0)
+    axis = params[:3].copy()
+    if name == "cylinder":
+        half = float(high - low) / 2
+        return axis * _canonical(axis), point, float(params[6]), 0.0, (-half, half)
+    along = float((params[3:6] - point) @ axis)
+    bounds = sorted((float(low) + along, float(high) + along))
+    if params[7] < 0:
+        axis, bounds = -axis, [-bounds[1], -bounds[0]]
+    return axis, point, 0.0, abs(float(params[7])), (bounds[0], bounds[1])
+
+
+def _canonical(axis: Array) -> float:
+    """The sign that makes the largest component positive (ties within 1e-3: x, y, z)."""
+    size = np.abs(axis)
+    first = int(np.flatnonzero(size > size.max() - 1e-3)[0])
+    return 1.0 if axis[first] >= 0 else -1.0
+
+
+def _uncertainty(columns: Array, squares: float, scale: Scale, has_axis: bool) -> tuple[float, float]:
+    """(rad, unit lengths) from the least squares at the surface's point."""
+    count, free = columns.shape
+    if count <= free:
+        return np.pi / 2, 1.0
+    scatter = max(np.sqrt(squares / (count - free)), 0.3 * scale.rounding)
+    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    scaled = columns / size
+    inverse = np.linalg.pinv(scaled.T @ scaled, hermitian=True, rcond=1e-14) / np.outer(size, size)
+    spread = COVERAGE * scatter
+    if not has_axis:
+        return 0.0, float(spread * np.sqrt(max(np.linalg.eigvalsh(inverse[:3, :3])[-1], 0.0)))
+    linear = spread * np.sqrt(max(np.linalg.eigvalsh(inverse[:2, :2])[-1], 0.0))
+    angular = spread * np.sqrt(max(np.linalg.eigvalsh(inverse[2:4, 2:4])[-1], 0.0))
+    return min(float(angular), np.pi / 2), max(float(linear), 0.3 * scale.rounding)
+
+
+def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
+    """Greatest depth of a facet's edge middles and centroid below each surface."""
+    work = batch.patchwork
+    deepest = np.zeros(batch.count)
+    region, edge, _ = batch.edges
+    middles = (work.vertices[work.ends[edge, 0]] + work.vertices[work.ends[edge, 1]]) / 2
+    centres = work.centre[batch.polygon]
+    for owner, points in ((region, middles), (batch.region, centres)):
+        np.maximum.at(deepest, owner, np.abs(kind.probe(params[owner], points).distance))
+    return deepest
+
+
+def _sweep(params: Array, centres: Array, widths: Array) -> float:
+    """Length of the union of the angles that the polygons subtend about the axis."""
+    x, y = basis(params[None, :3])
+    offset = centres - params[3:6]
+    middle = np.arctan2(offset @ y[0], offset @ x[0])
+    low = np.mod(middle - widths / 2, 2 * np.pi)
+    high = low + widths
+    order = np.argsort(low, kind="stable")
+    low, high = low[order], high[order]
+    wrapped = max(0.0, float(high.max()) - 2 * np.pi)
+    reach = np.maximum.accumulate(np.r_[wrapped, high])[:-1]
+    covered = float(np.maximum(np.minimum(high, 2 * np.pi) - np.maximum(low, reach), 0).sum()) + wrapped
+    covered = min(covered, 2 * np.pi)
+    return 2 * np.pi if covered > 2 * np.pi - 1e-6 else covered

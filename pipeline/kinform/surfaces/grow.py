@@ -1,0 +1,219 @@
+"""Regions that grow over smooth edges, many at once, while their surface explains the next polygon.
+
+Every region carries one hypothesis. Rounds of growth alternate with fits over what was gained, so that a
+small neighbourhood, whose fit is coarse, only has to predict a region about twice its size.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.surfaces._batch import Array, Ints, Mask, Ragged, components, quantile, starts_of
+from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.topology import Patchwork, Scale
+
+__all__ = ["Found", "Ground", "conforms", "pursue"]
+
+FIRST_LAYERS = 2
+WIDER = 1.6
+"""A polygon this much wider than the next narrower one of a region is a flat on it, not a facet of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Where regions may grow: smooth links between polygons, and which polygons are free."""
+
+    patchwork: Patchwork
+    scale: Scale
+    links: Ragged
+    """Smooth edges of each polygon."""
+    free: Mask
+
+    @classmethod
+    def of(cls, patchwork: Patchwork, scale: Scale, free: Mask) -> Ground:
+        """The ground of a patchwork."""
+        edges = np.flatnonzero(patchwork.smooth)
+        rows = np.r_[patchwork.a[edges], patchwork.b[edges]]
+        return cls(patchwork, scale, Ragged(rows, np.r_[edges, edges], patchwork.count), free)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Regions with their surfaces: `batch` holds pairs for `count` regions, some of them empty."""
+
+    kind: Kind
+    batch: Batch
+    params: Params
+    side: Ints
+    """(R,) +1 convex, -1 concave."""
+    tolerance: Array
+    """(R,) to which the vertices were held."""
+
+
+def conforms(
+    kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array
+) -> Mask:
+    """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
+    work = batch.patchwork
+    region, polygon = batch.region, batch.polygon
+    owner, vertex = work.corners.expand(polygon)
+    held = kind.probe(params[region[owner]], work.vertices[vertex])
+    chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
+    allowed = held.curvature_radius * chord[region[owner]]
+    within = (held.distance < tolerance[region[owner]]) & (held.distance > -allowed - tolerance[region[owner]])
+    bad = np.bincount(owner, ~within, len(polygon)) > 0
+    normal = kind.probe(params[region], work.centre[polygon]).normal
+    cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]
+    widest = np.minimum(0.5 * reach[region] + 5e-3 + work.slack[polygon], 1.2)
+    return ~bad & (cosine > np.cos(widest))
+
+
+def _reach(kind: Kind, batch: Batch, params: Params) -> Array:
+    """Greatest angle that a facet of each region may subtend, judged by the facets it has."""
+    width = kind.widths(batch, params)
+    typical = quantile(batch.region, width, batch.count, 0.75)
+    order = np.lexsort((width, batch.region))
+    region, sorted_width = batch.region[order], width[order]
+    following = np.r_[sorted_width[1:], 0.0]
+    last = np.r_[region[1:] != region[:-1], True] if len(region) else np.zeros(0, bool)
+    gap = ~last & (sorted_width >= typical[region]) & (following > WIDER * sorted_width)
+    top = np.full(batch.count, np.inf)
+    np.minimum.at(top, region[gap], sorted_width[gap])
+    largest = np.zeros(batch.count)
+    np.maximum.at(largest, region, sorted_width)
+    return np.minimum(WIDER * np.minimum(top, largest), 1.2) + 1e-3
+
+
+def _neighbours(ground: Ground, batch_region: Ints, polygon: Ints, side: Ints) -> tuple[Ints, Ints]:
+    """(region, polygon) pairs one smooth link away, free, each once."""
+    work = ground.patchwork
+    owner, edge = ground.links.expand(polygon)
+    region = batch_region[owner]
+    target = work.other(edge, polygon[owner])
+    open_ = ground.free[target] & (work.sign[edge] * side[region] >= 0)
+    key = np.unique(region[open_] * np.int64(work.count) + target[open_])
+    return key // work.count, key % work.count
+
+
+def _spread(
+    ground: Ground, kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array,
+    layers: int,
+) -> Batch:  # fmt: skip
+    """The batch with up to `layers` layers of conforming neighbours added."""
+    work = ground.patchwork
+    total = np.int64(work.count)
+    seen = np.sort(batch.region * total + batch.polygon)
+    gained = [seen]
+    front_region, front_polygon = batch.region, batch.polygon
+    recent = seen
+    for _ in range(layers):
+        region, polygon = _neighbours(ground, front_region, front_polygon, side)
+        key = region * total + polygon
+        fresh = ~_within(key, seen) & ~_within(key, recent)
+        trial = Batch(work, region[fresh], polygon[fresh], batch.count)
+        if not len(trial.region):
+            break
+        good = conforms(kind, trial, params, side, reach, tolerance)
+        front_region, front_polygon = trial.region[good], trial.polygon[good]
+        if not len(front_region):
+            break
+        layer = front_region * total + front_polygon
+        gained.append(layer)
+        recent = np.sort(np.concatenate(gained[-2:]))
+    key = np.sort(np.concatenate(gained))
+    return Batch(work, key // total, key % total, batch.count)
+
+
+def _within(keys: Ints, ordered: Ints) -> Mask:
+    if not len(ordered):
+        return np.zeros(len(keys), bool)
+    at = np.minimum(np.searchsorted(ordered, keys), len(ordered) - 1)
+    return np.asarray(ordered[at] == keys)
+
+
+def _connected(ground: Ground, batch: Batch, side: Ints) -> Batch:
+    """The largest connected piece of each region (ties: the piece of the lowest polygon)."""
+    work = ground.patchwork
+    if not len(batch.region):
+        return batch
+    total = np.int64(work.count)
+    key = batch.region * total + batch.polygon
+    owner, edge = ground.links.expand(batch.polygon)
+    region = batch.region[owner]
+    target = region * total + work.other(edge, batch.polygon[owner])
+    ok = _within(target, key) & (work.sign[edge] * side[region] >= 0)
+    label = components(owner[ok], np.searchsorted(key, target[ok]), len(key))
+    size = np.bincount(label)
+    first = np.full(len(size), len(key))
+    np.minimum.at(first, label, np.arange(len(key)))
+    order = np.lexsort((first[label], -size[label], batch.region))
+    head = order[np.r_[True, batch.region[order][1:] != batch.region[order][:-1]]]
+    best = np.full(batch.count, -1)
+    best[batch.region[head]] = label[head]
+    return batch.select(best[batch.region] == label)
+
+
+def _thin_out(batch: Batch) -> Batch:
+    """Empties regions most of whose polygons belong to a larger region as well."""
+    if not len(batch.region):
+        return batch
+    order = np.lexsort((batch.region, -batch.size[batch.region], batch.polygon))
+    polygon = batch.polygon[order]
+    head = np.r_[True, polygon[1:] != polygon[:-1]]
+    own = np.bincount(batch.region[order][head], minlength=batch.count)
+    keep = own > 0.4 * batch.size
+    return batch.select(keep[batch.region])
+
+
+def pursue(
+    ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float = 0.0
+) -> Found:
+    """Fits, grows, fits again until nothing changes; regions that fail come back empty.
+
+    A seed must conform to its own hypothesis: at least `kind.least` polygons and the share `majority`.
+    """
+    scale = ground.scale
+    params, usable = kind.propose(batch)
+    batch = batch.select(usable[batch.region])
+    loose, tight = np.full(batch.count, 2.5 * scale.fit), np.full(batch.count, scale.fit)
+    params = kind.refine(batch, params, loose, 2)
+    seeded = batch.size
+    batch = _settled(ground, kind, batch, params, side, loose)
+    batch = batch.select((batch.size >= majority * seeded)[batch.region])
+    layers, before = FIRST_LAYERS, -1
+    for stage in range(14):
+        params = kind.refine(batch, params, loose if stage == 0 else tight, 3)
+        batch = _settled(ground, kind, batch, params, side, tight)
+        batch = _thin_out(batch)
+        reach = _reach(kind, batch, params)
+        batch = _spread(ground, kind, batch, params, side, reach, tight, layers)
+        layers = min(layers * 2, 512)
+        if len(batch.region) == before:
+            break
+        before = len(batch.region)
+    params = kind.refine(batch, params, tight, 3)
+    tolerance = _scatter(kind, batch, params, scale)
+    batch = _settled(ground, kind, batch, params, side, tolerance)
+    params = kind.refine(batch, params, tolerance, 4)
+    keep = kind.credible(batch, params, scale)
+    return Found(kind, batch.select(keep[batch.region]), params, side, tolerance)
+
+
+def _settled(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array) -> Batch:
+    """The batch without polygons that do not conform, and without regions that became too small."""
+    reach = _reach(kind, batch, params)
+    batch = batch.select(conforms(kind, batch, params, side, reach, tolerance))
+    batch = _connected(ground, batch, side)
+    return batch.select((batch.size >= kind.least)[batch.region])
+
+
+def _scatter(kind: Kind, batch: Batch, params: Params, scale: Scale) -> Array:
+    """The tolerance that each region's own vertices justify, between the noise and the fit."""
+    region, vertex = kind.defining(batch, params, np.full(batch.count, scale.fit))
+    distance = np.abs(kind.probe(params[region], batch.patchwork.vertices[vertex]).distance)
+    order = np.argsort(region, kind="stable")
+    assert starts_of(region[order], batch.count)[-1] == len(region)
+    middle = quantile(region, distance, batch.count, 0.5)
+    return np.clip(6 * middle, scale.noise, scale.fit)

@@ -1,0 +1,116 @@
+"""What every kind of curved surface can do, over a batch of candidate regions at once.
+
+A candidate's parameters are one row of `Params`: axis (3), point (3), radius, half-angle. Distances are
+positive outside the chord side: the vertices of a tessellation lie at 0, points on its chords below.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from kinform.surfaces._batch import Array, Ints, Mask, starts_of
+from kinform.surfaces.topology import Patchwork, Scale
+
+__all__ = ["Batch", "Kind", "Params", "Probe"]
+
+Params = Array
+"""(R, 8): axis, point, radius, half-angle."""
+
+ALONG = float(np.cos(np.radians(10.0)))
+"""Edges within this of a generator are generators."""
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Points held against their surfaces."""
+
+    distance: Array
+    """(N,) signed: above 0 no chord of the tessellation can lie."""
+    normal: Array
+    """(N, 3) away from the axis or the centre."""
+    curvature_radius: Array
+    """(N,) radius of curvature along the tessellated direction."""
+
+
+class Batch:
+    """R candidate regions: (region, polygon) pairs sorted by region, and what belongs to them."""
+
+    def __init__(self, patchwork: Patchwork, region: Ints, polygon: Ints, count: int):
+        self.patchwork = patchwork
+        self.region = region
+        self.polygon = polygon
+        self.count = count
+        self.size = np.diff(starts_of(region, count))
+        self._edges: tuple[Ints, Ints, Mask] | None = None
+        self._corners: tuple[Ints, Ints] | None = None
+
+    @property
+    def corners(self) -> tuple[Ints, Ints]:
+        """(region, vertex) of every polygon's vertices; a vertex once for each of its polygons."""
+        if self._corners is None:
+            owner, vertex = self.patchwork.corners.expand(self.polygon)
+            self._corners = self.region[owner], vertex
+        return self._corners
+
+    @property
+    def edges(self) -> tuple[Ints, Ints, Mask]:
+        """(region, edge, whether both polygons are in the region), each edge once for a region."""
+        if self._edges is None:
+            owner, edge = self.patchwork.sides.expand(self.polygon)
+            total = np.int64(max(len(self.patchwork.a), 1))
+            key, times = np.unique(self.region[owner] * total + edge, return_counts=True)
+            self._edges = key // total, key % total, times == 2
+        return self._edges
+
+    def inner_vertices(self, least: int = 3) -> tuple[Ints, Ints]:
+        """(region, vertex) of vertices that at least so many of the region's polygons share."""
+        region, vertex = self.corners
+        total = np.int64(max(len(self.patchwork.vertices), 1))
+        key, times = np.unique(region * total + vertex, return_counts=True)
+        key = key[times >= least]
+        return key // total, key % total
+
+    def select(self, keep: Mask) -> Batch:
+        """The batch without some of its pairs."""
+        return Batch(self.patchwork, self.region[keep], self.polygon[keep], self.count)
+
+
+class Kind(Protocol):
+    """One kind of curved surface."""
+
+    name: str
+    least: int
+    """Polygons that a region of this kind has at least."""
+    handicap: float
+    """A more complex kind must explain this many times more polygons than a simpler one."""
+
+    def propose(self, batch: Batch) -> tuple[Params, Mask]:
+        """Closed-form parameters of each region from its polygons, and whether there are any."""
+        ...
+
+    def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
+        """Least squares over the defining vertices within the tolerance (R,)."""
+        ...
+
+    def probe(self, params: Params, points: Array) -> Probe:
+        """Holds points (N, 3) against surfaces (N, 8)."""
+        ...
+
+    def widths(self, batch: Batch, params: Params) -> Array:
+        """(pairs,) angle that each polygon subtends along the tessellated direction."""
+        ...
+
+    def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
+        """(region, vertex) of the vertices that lie on the true surface, not on chords."""
+        ...
+
+    def jacobian(self, params: Params, points: Array) -> Array:
+        """(N, k) derivative of the distance by the free parameters."""
+        ...
+
+    def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
+        """Whether there is evidence enough for this kind, not only agreement with it."""
+        ...

@@ -1,0 +1,126 @@
+"""Surfaces of one part that are one: faces split by a slot, the two halves of a bore.
+
+Two surfaces are one when kind and side agree and the vertices of the smaller lie on the larger.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from kinform.surfaces._batch import Array, Ints, Mask
+from kinform.surfaces.grow import conforms
+from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.topology import Patchwork, Scale
+
+__all__ = ["coincident_planes", "coincident_regions"]
+
+SAMPLES = 24
+"""Vertices of the smaller surface that are held against the larger before all of them are."""
+
+
+def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
+    """Renumbers planes (P,), -1 elsewhere, so that coplanar faces of one sense share a number."""
+    count = int(number.max()) + 1 if len(number) else 0
+    if count < 2:
+        return number
+    member = np.flatnonzero(number >= 0)
+    member = member[np.argsort(number[member], kind="stable")]
+    area = np.bincount(number[member], work.area[member], count)
+    normal, centre = np.zeros((count, 3)), np.zeros((count, 3))
+    normal[number[member]], centre[number[member]] = work.normal[member], work.centre[member]
+    offset = np.einsum("ij,ij->i", normal, centre)
+    tree = cKDTree(np.c_[normal, offset])
+    pairs = tree.query_pairs(5e-3, output_type="ndarray")
+    if not len(pairs):
+        return number
+    larger = np.where(area[pairs[:, 0]] >= area[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
+    smaller = pairs.sum(axis=1) - larger
+    height = np.abs(np.einsum("ij,ij->i", normal[larger], centre[smaller] - centre[larger]))
+    near = height < scale.fit
+    larger, smaller = larger[near], smaller[near]
+    first = np.full(count, -1)
+    first[number[member][::-1]] = member[::-1]
+    owner, vertex = work.corners.expand(first[smaller])
+    away = np.abs(
+        np.einsum("ij,ij->i", normal[larger[owner]], work.vertices[vertex] - centre[larger[owner]])
+    )
+    same = np.bincount(owner, away > scale.fit, len(smaller)) == 0
+    root = _roots(larger[same], smaller[same], area)
+    return np.where(number >= 0, root[np.maximum(number, 0)], -1)
+
+
+def _roots(larger: Ints, smaller: Ints, size: Array) -> Ints:
+    """The surface that each becomes part of: the largest that it lies on, itself no part of another."""
+    root = np.arange(len(size))
+    rank = np.empty(len(size), np.int64)
+    rank[np.argsort(-size, kind="stable")] = np.arange(len(size))
+    larger, smaller = (
+        np.where(rank[larger] < rank[smaller], larger, smaller),
+        np.where(rank[larger] < rank[smaller], smaller, larger),
+    )
+    for k in np.lexsort((rank[larger], rank[smaller])):
+        big, small = larger[k], smaller[k]
+        if root[small] == small and root[big] == big:
+            root[small] = big
+    return root
+
+
+def coincident_regions(
+    work: Patchwork, kind: Kind, polygons: list[Ints], params: Params, side: Ints, scale: Scale
+) -> Ints:
+    """Number of the region that each of these regions, all of one kind, becomes part of."""
+    count = len(polygons)
+    batch = _batch(work, polygons)
+    size = np.bincount(batch.region, work.area[batch.polygon], count)
+    shape = np.c_[np.where(params[:, 7] == 0, params[:, 6], 0.0), params[:, 7], 4.0 * side]
+    pairs = cKDTree(shape).query_pairs(max(2e-3, 10 * scale.fit), output_type="ndarray")
+    if not len(pairs):
+        return np.arange(count)
+    larger = np.where(size[pairs[:, 0]] >= size[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
+    smaller = pairs.sum(axis=1) - larger
+    close = _touching(work, kind, batch, params, larger, smaller, scale)
+    larger, smaller = larger[close], smaller[close]
+    same = _one_fit(work, kind, polygons, params, side, larger, smaller, scale)
+    return _roots(larger[same], smaller[same], size)
+
+
+def _batch(work: Patchwork, polygons: list[Ints]) -> Batch:
+    region = np.repeat(np.arange(len(polygons)), [len(p) for p in polygons])
+    return Batch(work, region, np.concatenate(polygons), len(polygons))
+
+
+def _touching(
+    work: Patchwork, kind: Kind, batch: Batch, params: Params, larger: Ints, smaller: Ints, scale: Scale
+) -> Mask:  # fmt: skip
+    """Whether a few vertices of each smaller surface lie near each larger one (by pairs)."""
+    region, vertex = kind.defining(batch, params, np.full(batch.count, scale.fit))
+    order = np.argsort(region, kind="stable")
+    region, vertex = region[order], vertex[order]
+    starts = np.searchsorted(region, np.arange(batch.count + 1))
+    size = np.diff(starts)
+    worst = np.zeros(len(larger))
+    for k in range(SAMPLES):
+        at = starts[smaller] + (k * np.maximum(size[smaller] - 1, 0)) // (SAMPLES - 1)
+        point = work.vertices[vertex[np.minimum(at, len(vertex) - 1)]]
+        worst = np.maximum(worst, np.abs(kind.probe(params[larger], point).distance))
+    return worst < 20 * scale.fit
+
+
+def _one_fit(
+    work: Patchwork, kind: Kind, polygons: list[Ints], params: Params, side: Ints, larger: Ints, smaller: Ints,
+    scale: Scale,
+) -> Mask:  # fmt: skip
+    """Whether one surface, fitted to both of a pair, explains all polygons of both."""
+    if not len(larger):
+        return np.zeros(0, bool)
+    joint = [np.concatenate([polygons[i], polygons[j]]) for i, j in zip(larger, smaller, strict=True)]
+    batch = _batch(work, joint)
+    tolerance = np.full(batch.count, scale.fit)
+    fitted = kind.refine(batch, params[larger], 20 * tolerance, 2)
+    fitted = kind.refine(batch, fitted, tolerance, 3)
+    width = kind.widths(batch, fitted)
+    reach = np.zeros(batch.count)
+    np.maximum.at(reach, batch.region, width)
+    good = conforms(kind, batch, fitted, side[larger], 1.05 * reach + 1e-3, tolerance)
+    return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

@@ -1,0 +1,218 @@
+"""Which polygon belongs to which surface.
+
+First whole smooth pieces are tried at once, because most of them are one surface; what is left is searched
+from seeds. Larger regions win; what nothing explains is a plane where it stands alone, else freeform.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.surfaces._batch import Array, Ints, Mask, components
+from kinform.surfaces.cone import Cone
+from kinform.surfaces.cylinder import Cylinder
+from kinform.surfaces.grow import Found, Ground, pursue
+from kinform.surfaces.kind import Batch, Kind
+from kinform.surfaces.sphere import Sphere
+from kinform.surfaces.topology import Patchwork, Scale
+
+__all__ = ["CURVED", "Partition", "Region", "partition"]
+
+CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere())
+"""The curved kinds, simplest first. A new kind is one more entry."""
+
+ALIKE = 3.0
+"""Ratio of widths up to which neighbours look like facets of one surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Polygons on one curved surface."""
+
+    kind: Kind
+    polygons: Ints
+    params: Array
+    """(8,)"""
+    side: int
+    tolerance: float
+
+
+@dataclass(frozen=True, eq=False)
+class Partition:
+    """Every polygon in one curved region, one plane, or one freeform patch."""
+
+    regions: tuple[Region, ...]
+    owner: Ints
+    """(P,) index into regions, or -1."""
+    planes: Ints
+    """(P,) number of the plane of each polygon, or -1."""
+    freeform: Ints
+    """(P,) number of the freeform patch of each polygon, or -1."""
+
+
+def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, Ints]:
+    """(region, polygon, side of each region, number) of smooth pieces of like-sized polygons."""
+    edges = np.flatnonzero(work.smooth)
+    edges = edges[free[work.a[edges]] & free[work.b[edges]]]
+    a, b = work.a[edges], work.b[edges]
+    pair = np.minimum(a, b) * np.int64(work.count) + np.maximum(a, b)
+    _, inverse = np.unique(pair, return_inverse=True)
+    shared = np.bincount(inverse, work.length[edges])[inverse]
+    wide = np.maximum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
+    narrow = np.minimum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
+    alike = wide < ALIKE * narrow
+    regions, polygons, sides, count = [], [], [], 0
+    for side in (1, -1):
+        use = alike & (work.sign[edges] * side >= 0)
+        label = components(a[use], b[use], work.count)
+        turning = np.zeros(work.count, bool)
+        mark = use & (work.sign[edges] == side)
+        turning[a[mark]] = turning[b[mark]] = True
+        present = np.flatnonzero(free & (np.bincount(label, turning, work.count)[label] >= 3))
+        names, number = np.unique(label[present], return_inverse=True)
+        regions.append(number + count)
+        polygons.append(present)
+        sides.append(np.full(len(names), side))
+        count += len(names)
+    region, polygon = np.concatenate(regions), np.concatenate(polygons)
+    order = np.lexsort((polygon, region))
+    return region[order], polygon[order], np.concatenate(sides), np.int64(count)
+
+
+def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
+    """Larger regions first, each without the polygons that were taken before it."""
+    entries = []
+    for order, result in enumerate(found):
+        starts = np.searchsorted(result.batch.region, np.arange(result.batch.count + 1))
+        for number in np.flatnonzero(np.diff(starts)):
+            polygons = result.batch.polygon[starts[number] : starts[number + 1]]
+            score = len(polygons) / result.kind.handicap
+            entries.append((-score, order, int(polygons[0]), int(number), polygons))
+    entries.sort(key=lambda entry: entry[:4])
+    taken = ~free
+    chosen = []
+    for _, order, _, number, polygons in entries:
+        result = found[order]
+        fresh = polygons[~taken[polygons]]
+        if len(fresh) < max(result.kind.least, 0.9 * len(polygons)):
+            continue
+        taken[fresh] = True
+        chosen.append(
+            Region(
+                result.kind, fresh, result.params[number], int(result.side[number]), float(result.tolerance[number])
+            )
+        )
+    return chosen
+
+
+def _seeds(ground: Ground, tried: Ints, side: int) -> tuple[Ints, Ints]:
+    """Smooth edges to start from: the longest in their surroundings, not used before; and all usable ones."""
+    work = ground.patchwork
+    edges = np.flatnonzero(work.smooth)
+    edges = edges[ground.free[work.a[edges]] & ground.free[work.b[edges]]]
+    usable = edges[work.sign[edges] * side >= 0]
+    start = usable[(work.sign[usable] == side) & (tried[usable] == 0)]
+    rank = np.full(len(work.a), -1)
+    rank[start[np.argsort(work.length[start], kind="stable")]] = np.arange(len(start))
+    best = np.full(work.count, -1)
+    for _ in range(2):
+        np.maximum.at(best, work.a[usable], rank[usable])
+        np.maximum.at(best, work.b[usable], rank[usable])
+        reach = np.maximum(best[work.a[usable]], best[work.b[usable]])
+        wider = best.copy()
+        np.maximum.at(wider, work.a[usable], reach)
+        np.maximum.at(wider, work.b[usable], reach)
+        best = wider
+    chosen = start[rank[start] >= np.minimum(best[work.a[start]], best[work.b[start]])]
+    return chosen, usable
+
+
+def _around(ground: Ground, seeds: Ints, side: int, straightness: float) -> Batch:
+    """Both polygons of each seed and their neighbours across edges along the seed (all, when 0)."""
+    work = ground.patchwork
+    numbers = np.arange(len(seeds))
+    polygon = np.r_[work.a[seeds], work.b[seeds]]
+    region = np.r_[numbers, numbers]
+    owner, edge = ground.links.expand(polygon)
+    target = work.other(edge, polygon[owner])
+    direction = work.vertices[work.ends[:, 1]] - work.vertices[work.ends[:, 0]]
+    cosine = np.abs(np.einsum("ij,ij->i", direction[edge], direction[seeds[region[owner]]]))
+    near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
+    keep = near & ground.free[target] & (work.sign[edge] * side >= 0)
+    key = np.unique(
+        np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
+    )
+    return Batch(work, key // work.count, key % work.count, len(seeds))
+
+
+STRAIGHT = {"cylinder": 0.985, "cone": 0.85, "sphere": 0.0}
+
+
+def _search(ground: Ground, tried: Ints) -> list[Found]:
+    """One round of hypotheses from seeds, of all kinds and both sides."""
+    found = []
+    for side in (1, -1):
+        seeds, _ = _seeds(ground, tried, side)
+        if not len(seeds):
+            continue
+        tried[seeds] = 1
+        for kind in CURVED:
+            batch = _around(ground, seeds, side, STRAIGHT[kind.name])
+            batch = batch.select((batch.size >= kind.least)[batch.region])
+            if len(batch.region):
+                found.append(pursue(ground, kind, batch, np.full(len(seeds), side)))
+    return found
+
+
+def partition(work: Patchwork, scale: Scale) -> Partition:
+    """Assigns every polygon."""
+    regions: list[Region] = []
+    free = np.ones(work.count, bool)
+    ground = Ground.of(work, scale, free)
+    region, polygon, side, count = _pieces(work, free)
+    batch = Batch(work, region, polygon, int(count))
+    if count:
+        found = [pursue(ground, kind, batch, side, majority=0.6) for kind in CURVED]
+        _take(regions, _choose(found, work, free), free)
+    tried = np.zeros(len(work.a), np.int64)
+    barren = 0
+    for _ in range(40):
+        chosen = _choose(_search(ground, tried), work, free)
+        _take(regions, chosen, free)
+        barren = 0 if chosen else barren + 1
+        if barren == 4:
+            break
+    owner = np.full(work.count, -1)
+    for number, item in enumerate(regions):
+        owner[item.polygons] = number
+    planes, freeform = _remainder(work, owner < 0)
+    return Partition(tuple(regions), owner, planes, freeform)
+
+
+def _take(regions: list[Region], chosen: list[Region], free: Mask) -> None:
+    for item in chosen:
+        free[item.polygons] = False
+    regions.extend(chosen)
+
+
+def _remainder(work: Patchwork, left: Mask) -> tuple[Ints, Ints]:
+    """Numbers of the planes and of the freeform patches among what no curved surface explains."""
+    edges = np.flatnonzero(work.smooth)
+    edges = edges[left[work.a[edges]] & left[work.b[edges]]]
+    a, b = work.a[edges], work.b[edges]
+    bent = work.sign[edges] != 0
+    neighbours = np.bincount(np.r_[a[bent], b[bent]], minlength=work.count)
+    nearby = np.bincount(np.r_[a[bent], b[bent]], np.r_[work.area[b[bent]], work.area[a[bent]]], work.count)
+    dominant = work.area > 3 * nearby / np.maximum(neighbours, 1)
+    label = components(a, b, work.count)
+    size = np.bincount(label[left], minlength=work.count)[label]
+    loose = left & (size >= 4) & (neighbours >= 2) & ~dominant
+    planes = np.full(work.count, -1)
+    planes[left & ~loose] = np.arange(int((left & ~loose).sum()))
+    inside = loose[a] & loose[b]
+    patch = components(a[inside], b[inside], work.count)
+    freeform = np.full(work.count, -1)
+    _, freeform[loose] = np.unique(patch[loose], return_inverse=True)
+    return planes, freeform

@@ -1,0 +1,149 @@
+"""What every invocation has in common: help, version, usage errors, completion, quick start."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+import typer
+from conftest import Ran, environment
+from kinform import __version__
+from kinform_cli.main import _COMMANDS, app, entry, main
+
+COMMANDS = sorted(name for name, *_ in _COMMANDS)
+HEAVY = {"scipy", "trimesh", "numba", "h5py", "numpy", "manifold3d", "fcl", "pydantic", "matplotlib"}
+
+
+def test_the_console_script_is_the_entry() -> None:
+    (script,) = entry_points(group="console_scripts", name="kinform")
+    assert script.load() is entry
+
+
+def test_the_commands_are_those_of_the_contract_so_far() -> None:
+    assert COMMANDS == sorted(
+        "import contacts joints mass simulate check run show query explain init schema".split()
+    )
+
+
+def test_version_is_that_of_the_package(kinform: Callable[..., Ran]) -> None:
+    ran = kinform("--version")
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, f"kinform {__version__}\n", "")
+
+
+@pytest.mark.parametrize("arguments", [["--version"], ["--help"], ["run", "--help"]], ids=" ".join)
+def test_nothing_heavy_is_imported_to_answer(arguments: list[str]) -> None:
+    code = (
+        "import sys\n"
+        "from kinform_cli.main import main\n"
+        f"assert main({arguments!r}) == 0\n"
+        "print(*sorted({name.split('.')[0] for name in sys.modules}), file=sys.stderr)\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
+    )
+    imported = set(ran.stderr.split())
+    assert "typer" in imported
+    assert not imported & (HEAVY - {"pydantic"} if "pydantic" in _imported_by_typer() else HEAVY)
+
+
+def _imported_by_typer() -> set[str]:
+    """Typer may bring pydantic along; that is not ours to change."""
+    code = "import sys, typer.main; print(*{name.split('.')[0] for name in sys.modules})"
+    return set(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split())
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_each_command_ends_with_examples_of_it(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "--help"]) == 0
+    text, errors = capsys.readouterr()
+    assert errors == ""
+    usage, examples = text.split("Examples:")
+    assert f"kinform {command}" in usage
+    assert f"kinform {command}" in examples
+
+
+def test_examples_use_options_that_exist() -> None:
+    """Every line of every example is understood: no unknown command or option."""
+    group = typer.main.get_command(app)
+    options = {
+        name: {flag for parameter in command.params for flag in parameter.opts}
+        for name, command in group.commands.items()
+    }
+    for name, _, text, _ in _COMMANDS:
+        for line in text.splitlines():
+            words = line.split("#")[0].split("|")[0].split()
+            if words[:1] != ["kinform"]:
+                continue
+            assert words[1] in options, line
+            flags = {word for word in words[2:] if word.startswith("-") and not word[1:2].isdigit()}
+            assert flags <= options[words[1]], f"{name}: {line}"
+
+
+def test_without_arguments_it_helps_and_is_not_a_success(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "Usage: kinform" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["frobnicate"], "frobnicate"),
+        (["--frobnicate"], "--frobnicate"),
+        (["contacts", "a.h5"], "--output"),
+        (["contacts", "a.h5", "-o", "b.h5", "--jobs", "0"], "--jobs"),
+        (["contacts", "a.h5", "-o", "b.h5", "--jobs", "many"], "--jobs"),
+        (["check"], "F.h5"),
+        (["check", "a.h5", "--format", "xml"], "--format"),
+        (["check", "a.h5", "--fail-on", "never"], "--fail-on"),
+        (["show", "a.h5", "masses"], "masses"),
+        (["simulate", "a.h5", "-o", "b.h5", "--level", "total"], "--level"),
+        (["query", "a.h5", "a", "b"], "--turn"),
+        (["query", "a.h5", "a", "b", "--turn", "z@0,0,0", "--slide", "x"], "--turn"),
+        (["query", "a.h5", "a", "b", "--turn", "z"], "--turn"),
+        (["query", "a.h5", "a", "b", "--turn", "z@0,0"], "--turn"),
+        (["query", "a.h5", "a", "b", "--slide", "0,0,0"], "--slide"),
+        (["query", "a.h5", "a", "b", "--slide", "0,nan,1"], "--slide"),
+        (["init", "a.stl"], "--units"),
+    ],
+    ids=" ".join,
+)
+def test_usage_errors_name_what_is_wrong_and_exit_2(
+    arguments: list[str], named: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    text, errors = capsys.readouterr()
+    assert text == ""
+    assert named in errors
+    assert "error:" in errors
+    assert "--help" in errors
+    assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_completion_script_is_printed_for_each_shell(shell: str, kinform: Callable[..., Ran]) -> None:
+    ran = kinform("--show-completion", shell, _TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION="1")
+    assert ran.returncode == 0
+    assert "_KINFORM_COMPLETE" in ran.stdout
+
+
+def test_completion_offers_commands_topics_and_choices(kinform: Callable[..., Ran]) -> None:
+    def offered(line: str) -> set[str]:
+        words = line.split(" ")
+        ran = kinform(_KINFORM_COMPLETE="complete_bash", COMP_WORDS=line, COMP_CWORD=str(len(words) - 1))
+        return set(ran.stdout.split())
+
+    assert offered("kinform s") == {"simulate", "show", "schema"}
+    assert {"joints", "findings"} <= offered("kinform show a.h5 ")
+    assert offered("kinform check --fail-on ") == {"error", "warning", "note"}
+
+
+def test_help_reads_at_80_columns(tmp_path: Path, kinform: Callable[..., Ran]) -> None:
+    for command in COMMANDS:
+        ran = kinform(command, "--help", COLUMNS="80")
+        assert max(map(len, ran.stdout.splitlines())) <= 80, command
