@@ -6,6 +6,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.contacts.mates import EDGE
 from kinform.model.assembly import Assembly, Part
 from kinform.model.names import PartName
 
@@ -57,7 +58,7 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
         assert part.mesh is not None
         low, high = _world_box(part)
         size = part.mesh.diagonal
-        grow = 2.0 * tolerances.contact_of(size, size)
+        grow = 2.0 * EDGE * tolerances.contact_of(size, size)
         box = fcl.Box(*(high - low + grow))
         boxes.append(box)
         objects.append(fcl.CollisionObject(box, fcl.Transform(0.5 * (low + high))))
@@ -77,6 +78,6 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
         pair = (parts[i].name, parts[j].name)
         tolerance = tolerances.contact_of(sizes[i], sizes[j])
         apart = np.maximum(lows[i] - highs[j], lows[j] - highs[i]).max()
-        if pair not in excluded and apart <= tolerance:
+        if pair not in excluded and apart <= EDGE * tolerance:
             found[pair] = tolerance
     return dict(sorted(found.items()))

@@ -94,6 +94,41 @@ class MeshIndex:
         along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
         return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
 
+    def depths(self, points: Array) -> tuple[Array, Ints]:
+        """Distance (n,) m of points (n, 3) of the part frame to the mesh, and the nearest facets (n,)."""
+        speck = 1e-9 * max(self.mesh.diagonal, 1e-300)
+        corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        point = fcl.CollisionObject(_model(corners, np.array([[0, 1, 2]])))
+        mesh, request = fcl.CollisionObject(self.bvh), fcl.DistanceRequest()
+        distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
+        for k, p in enumerate(points):
+            point.setTranslation(p)
+            result = fcl.DistanceResult()
+            distance[k] = max(fcl.distance(mesh, point, request, result), 0.0)
+            facet[k] = result.b1
+        return distance, facet
+
+    def crosses(self, other: MeshIndex, X_SO: Array) -> bool:
+        """Whether any facets of the two meshes intersect; `X_SO` (4, 4): pose of the other part here."""
+        request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
+        placed = fcl.CollisionObject(other.bvh, fcl.Transform(X_SO[:3, :3], X_SO[:3, 3]))
+        return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
+
+    def winding(self, points: Array) -> Array:
+        """(n,) winding numbers about points (n, 3): 1 inside, 0 outside, between where the mesh is open.
+
+        Sum of the solid angles of all facets (van Oosterom and Strackee, 1983).
+        """
+        corners = self.mesh.vertices[self.mesh.faces]
+        angles = np.zeros(len(points))
+        for k, p in enumerate(points):
+            a, b, c = (corners[:, i] - p for i in range(3))
+            la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+            volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+            ab, bc, ca = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
+            angles[k] = 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum()
+        return angles / (4.0 * np.pi)
+
 
 @dataclass
 class MeshStore:

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from kinform.contacts.charts import ConeChart, CylinderChart, perpendicular
-from kinform.contacts.mates import Array, Axes, Flags, Mate, box_centre, mean_axes, radial_limit
+from kinform.contacts.mates import EDGE, Array, Axes, Flags, Mate, box_centre, mean_axes, radial_limit
 from kinform.contacts.placed import NearSurfaces
 from kinform.model.tolerances import Tolerances
 
@@ -92,7 +92,7 @@ def cone_mates(
         reach = [-float(apex) * math.tan(angle) for apex, angle in zip(apexes, angles, strict=True)]
         side = float(a.sides[row])
         gap = (reach[1] - reach[0]) * math.cos(half) * side
-        if abs(gap) > tolerance or not _aligned(axes, gap, length, tolerance, tolerances):
+        if abs(gap) > EDGE * tolerance or not _aligned(axes, gap, length, tolerance, tolerances):
             continue
         middle_radius = 0.5 * (reach[0] + reach[1])
         centre, _ = box_centre(a, b, row, column)
@@ -100,7 +100,9 @@ def cone_mates(
         chart = ConeChart(axes.axis, apex, _base(axes, centre, middle_radius), half, middle_radius)
         slope = (math.tan(angles[1]) - math.tan(angles[0])) * math.cos(half) * side
         slack = axes.offset + 0.5 * (axes.misalignment + abs(angles[1] - angles[0])) * length
-        mates.append(_mate(a, b, (row, column), "cone", chart, axes, angles, gap, slope, tolerance, slack))
+        mates.append(
+            _mate(a, b, (row, column), "cone", chart, axes, angles, gap, slope, EDGE * tolerance, slack)
+        )
     return mates
 
 

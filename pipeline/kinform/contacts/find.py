@@ -10,6 +10,7 @@ from typing import Any
 from kinform.contacts.broad import Pair, candidate_pairs
 from kinform.contacts.bvh import MeshStore
 from kinform.contacts.pair import PairContacts, pair_contacts
+from kinform.contacts.solids import SolidStore
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -25,12 +26,12 @@ class _Work:
     def __init__(self, assembly: Assembly, surfaces: dict[str, MeshSurfaces], tolerance: dict[Pair, float]):
         self.assembly, self.surfaces, self.tolerance = assembly, surfaces, tolerance
         self.parts = {part.name: part for part in assembly.parts}
-        self.store = MeshStore()
+        self.store, self.solids = MeshStore(), SolidStore()
 
     def contacts(self, pair: Pair) -> PairContacts:
         first, second = (self.parts[name] for name in pair)
         tolerance, tolerances = self.tolerance[pair], self.assembly.tolerances
-        return pair_contacts(first, second, self.surfaces, self.store, tolerance, tolerances)
+        return pair_contacts(first, second, self.surfaces, self.store, self.solids, tolerance, tolerances)
 
 
 _worker: _Work | None = None

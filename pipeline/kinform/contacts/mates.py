@@ -11,6 +11,7 @@ from kinform.contacts.charts import Chart
 from kinform.contacts.placed import NearSurfaces
 
 __all__ = [
+    "EDGE",
     "Axes",
     "Mate",
     "box_centre",
@@ -23,6 +24,11 @@ __all__ = [
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+
+EDGE = 1.02
+"""Limits reach this much beyond the contact tolerance: designers put clearances of exactly 0.5 mm, and
+rounding must not decide whether those are contacts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +55,8 @@ class Mate:
     offset: float
     uncertainty: tuple[float, float]
     chord: float
+    corners: tuple[Array, Array] | None = None
+    """Facets (n, 3, 3) of a and b to overlay, of one-sided mates: their gap is measured, not known."""
 
     def gaps(self, points: Array) -> Array:
         """(n,) m signed gaps at points (n, 3)."""
@@ -71,7 +79,7 @@ def box_centre(a: NearSurfaces, b: NearSurfaces, row: int, column: int) -> tuple
 def radial_limit(tolerance: float, radius: float) -> float:
     """Greatest radial gap or overlap at which curved surfaces mate (m): real coaxial clearances grow
     with the radius, and a gap of a third of the radius is no fit."""
-    return min(max(tolerance, 0.03 * radius), radius / 3.0)
+    return EDGE * min(max(tolerance, 0.03 * radius), radius / 3.0)
 
 
 def _shares(first: float, second: float) -> tuple[float, float]:

@@ -22,9 +22,6 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-_FACING = 0.5
-"""A facet counts for its surface when its normal is within 60° of the analytic one."""
-
 
 @dataclass(frozen=True, eq=False)
 class Probes:
@@ -47,6 +44,8 @@ class Verdict:
     holds: Flags
     along_a: Array
     along_b: Array
+    cosine: Array
+    """(n,) of the angle between the outward normals of the two facets."""
 
 
 def join(probes: list[Probes]) -> Probes:
@@ -83,24 +82,26 @@ def _blocked(hits: Hits, own: Flags, low: Array, high: Array) -> Flags:
     return blocked
 
 
-def verify(a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin: float) -> Verdict:
+def verify(
+    a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin: float, facing: float = 0.5
+) -> Verdict:
     """Cast the probes against both parts.
 
     `opposed`: greatest cosine between the two facets' normals. `margin` (m): what lies this close to one
-    of the two facets is not between them.
+    of the two facets is not between them. `facing`: least cosine between a facet and the probe.
     """
     count = len(probes.points)
     chosen, owns, all_hits = [], [], []
     for part, side, sense in ((a, 0, 1.0), (b, 1, -1.0)):
         hits = _cast(part, probes)
         own = part.surfaces.labels[hits.facet] == probes.surfaces[hits.probe, side]
-        wanted = own & (sense * hits.facing > _FACING)
+        wanted = own & (sense * hits.facing > facing)
         chosen.append(_nearest(hits, wanted, -0.5 * sense * probes.gaps, count))
         owns.append(own)
         all_hits.append(hits)
     holds = (chosen[0] >= 0) & (chosen[1] >= 0)
     if not holds.any():
-        return Verdict(holds, np.zeros(count), np.zeros(count))
+        return Verdict(holds, np.zeros(count), np.zeros(count), np.ones(count))
     along = [np.where(holds, h.along[c], 0.0) for h, c in zip(all_hits, chosen, strict=True)]
     facets = [h.facet[c] for h, c in zip(all_hits, chosen, strict=True)]
     cosine = np.einsum("ij,ij->i", a.normals[facets[0]], b.normals[facets[1]])
@@ -109,4 +110,4 @@ def verify(a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin:
     low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
     for hits, own in zip(all_hits, owns, strict=True):
         holds &= ~_blocked(hits, own, low, high)
-    return Verdict(holds, along[0], along[1])
+    return Verdict(holds, along[0], along[1], cosine)

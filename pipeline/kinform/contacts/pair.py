@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +10,16 @@ from numpy.typing import NDArray
 
 from kinform.contacts.bvh import MeshStore
 from kinform.contacts.coaxial import cone_mates, cylinder_mates
-from kinform.contacts.mates import Mate, box_overlap
+from kinform.contacts.freeform import freeform_patches
+from kinform.contacts.interference import find_interference
+from kinform.contacts.mates import EDGE, Mate, box_overlap
+from kinform.contacts.onesided import one_sided_mates
 from kinform.contacts.patches import mated_patches, placed_in_world
 from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place
 from kinform.contacts.planes import plane_mates
+from kinform.contacts.solids import SolidStore
 from kinform.contacts.spheres import sphere_mates
-from kinform.model.assembly import Part
+from kinform.model.assembly import Part, freeze
 from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
@@ -37,6 +42,7 @@ def pair_contacts(
     second: Part,
     surfaces: dict[str, MeshSurfaces],
     store: MeshStore,
+    solids: SolidStore,
     tolerance: float,
     tolerances: Tolerances,
 ) -> PairContacts:
@@ -52,9 +58,17 @@ def pair_contacts(
     if (low > high).any():
         return PairContacts((), None)
     near = (near_surfaces(a, low, high), near_surfaces(b, low, high))
-    patches = mated_patches(a, b, near, _mates(near, reach, tolerance, tolerances), tolerance, tolerances)
+    mates = _mates(near, reach, tolerance, tolerances)
+    overlap = box_overlap(*near, EDGE * tolerance)
+    mates += one_sided_mates(a, b, near, overlap, tolerance, tolerances)
+    patches = mated_patches(a, b, near, mates, tolerance, tolerances)
+    patches += freeform_patches(a, b, near, overlap, tolerance, tolerances)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
-    return PairContacts(tuple(placed_in_world(patch, first.X_WP) for patch in patches), None)
+    found = find_interference(a, b, patches, solids, tolerance)
+    if found is not None:
+        at = first.X_WP[:3, :3] @ found.place + first.X_WP[:3, 3]
+        found = dataclasses.replace(found, place=np.asarray(freeze(at)))
+    return PairContacts(tuple(placed_in_world(patch, first.X_WP) for patch in patches), found)
 
 
 def _inverse(X: Array) -> Array:
@@ -67,7 +81,7 @@ def _inverse(X: Array) -> Array:
 def _reach(a: PlacedPart, b: PlacedPart, tolerance: float) -> float:
     """How far apart mating surfaces of the two parts may be: clearances grow with the radius."""
     radii = [max((s.radius for s in part.surfaces.surfaces), default=0.0) for part in (a, b)]
-    return max(tolerance, 0.03 * min(radii))
+    return EDGE * max(tolerance, 0.03 * min(radii))
 
 
 def _mates(

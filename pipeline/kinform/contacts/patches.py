@@ -41,11 +41,22 @@ def mated_patches(
     if not laid:
         return []
     verdict = verify(a, b, join(probes), tolerances.opposed, 0.01 * tolerance)
+    measured = verdict.along_b - verdict.along_a
     ends = np.cumsum([len(p.points) for p in probes])[:-1]
     patches = []
-    for (mate, cells), holds in zip(laid, np.split(verdict.holds, ends), strict=True):
-        if holds.any():
-            patches.append(_patch(a, b, near, mate, cells.kept(holds[cells.bins]), tolerance))
+    for (mate, cells), holds, gaps in zip(
+        laid, np.split(verdict.holds, ends), np.split(measured, ends), strict=True
+    ):
+        if mate.corners is not None:
+            holds = holds & (np.abs(gaps) <= mate.limit)
+        if not holds.any():
+            continue
+        ids = (int(near[0].ids[mate.rows[0]]), int(near[1].ids[mate.rows[1]]))
+        kept = cells.kept(holds[cells.bins])
+        if mate.corners is None:
+            patches.append(_patch(a, b, ids, mate, kept, None, tolerance))
+        elif kept.areas.sum() >= tolerance**2:
+            patches.append(_patch(a, b, ids, mate, kept, gaps[holds], tolerance))
     return patches
 
 
@@ -53,11 +64,11 @@ def _cells(
     a: PlacedPart, b: PlacedPart, near: tuple[NearSurfaces, NearSurfaces], mate: Mate, tolerance: float
 ) -> Cells | None:
     """Overlap of the mate's two surfaces where their gap is within its limit."""
-    corners = [
+    first, second = mate.corners or (
         part.vertices[part.faces[side.facets[row]]]
         for part, side, row in zip((a, b), near, mate.rows, strict=True)
-    ]
-    cells = overlay(mate.chart, corners[0], corners[1], tolerance)
+    )
+    cells = overlay(mate.chart, first, second, tolerance)
     if cells is None:
         return None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit
@@ -97,28 +108,33 @@ def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float
 def _patch(
     a: PlacedPart,
     b: PlacedPart,
-    near: tuple[NearSurfaces, NearSurfaces],
+    ids: tuple[int, int],
     mate: Mate,
     cells: Cells,
+    measured: Array | None,
     tolerance: float,
 ) -> Patch:
+    """A patch from the cells that hold; `measured` gaps of the bins where the mate does not know them."""
     flat, weights = cells.quadrature()
     points = mate.chart.lift(flat)
     gaps = mate.gaps(points)
+    if measured is not None:
+        # A point of the rim takes the gap of the nearest bin.
+        bins = flat[: len(measured)]
+        gaps = measured[np.argmin(np.linalg.norm(flat[:, None] - bins[None], axis=2), axis=1)]
     area = float(weights.sum())
     middle = weights @ points / area
-    if mate.kind == "plane":
+    if mate.kind in ("plane", "other"):
         point = middle
     elif mate.kind == "sphere":
         point = mate.point
     else:
         point = mate.point + ((middle - mate.point) @ mate.axis) * mate.axis
-    ids = [int(side.ids[row]) for side, row in zip(near, mate.rows, strict=True)]
     return Patch(
         parts=(a.part.name, b.part.name),
-        surfaces=(ids[0], ids[1]),
+        surfaces=ids,
         kind=mate.kind,
-        one_sided=False,
+        one_sided=measured is not None,
         points=points,
         normals=mate.sign * mate.chart.normals(points),
         gaps=gaps,

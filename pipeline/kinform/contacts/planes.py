@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.contacts.charts import PlaneChart
-from kinform.contacts.mates import Flags, Mate, box_centre, mean_direction
+from kinform.contacts.mates import EDGE, Flags, Mate, box_centre, mean_direction
 from kinform.contacts.placed import NearSurfaces
 from kinform.model.tolerances import Tolerances
 
@@ -41,7 +41,7 @@ def _mate(
     above_a = float((middle - a.points[row]) @ a.axes[row])
     above_b = float((middle - b.points[column]) @ b.axes[column])
     gap = above_a + above_b
-    if abs(gap) > tolerance + angle * float(np.linalg.norm(size)):
+    if abs(gap) > EDGE * tolerance + angle * float(np.linalg.norm(size)):
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
     shift = float(a.point_uncertainty[row] + b.point_uncertainty[column])
@@ -56,7 +56,7 @@ def _mate(
         radii=(0.0, 0.0),
         gap=gap,
         gradient=gradient,
-        limit=tolerance,
+        limit=EDGE * tolerance,
         slack=float(a.slacks[row] + b.slacks[column]) + angle * float(np.linalg.norm(size)),
         misalignment=angle,
         offset=0.0,

@@ -1,0 +1,140 @@
+"""Contacts between facets that fit no surface on either side: kind "freeform".
+
+Their normals are those of the facets, which is good enough to say that and where two parts touch, and too
+coarse to decide what they may do: such a patch carries the angle by which its facets disagree as the
+uncertainty of its direction.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.contacts.mates import EDGE, box_centre
+from kinform.contacts.narrow import Probes, Verdict, join, verify
+from kinform.contacts.patches import classify_fit
+from kinform.contacts.placed import NearSurfaces, PlacedPart
+from kinform.model.contacts import Patch
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["freeform_patches"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_PROBES = 400
+"""Greatest number of probes from either side of a pair of surfaces."""
+_FACING = 0.93
+"""Facets rest on each other when their normals oppose within about 20°."""
+_LEAST = 4.0
+"""Least area of a patch, in squared tolerances: less is a stray touch of two rounded edges."""
+
+
+def freeform_patches(
+    a: PlacedPart,
+    b: PlacedPart,
+    near: tuple[NearSurfaces, NearSurfaces],
+    overlap: Flags,
+    tolerance: float,
+    tolerances: Tolerances,
+) -> list[Patch]:
+    """Patches between freeform surfaces flagged in `overlap` (s, t), in the frame of the pair."""
+    rows, columns = near[0].of_kind("freeform"), near[1].of_kind("freeform")
+    found, probes, areas = [], [], []
+    for i, j in np.argwhere(overlap[np.ix_(rows, columns)]):
+        row, column = int(rows[i]), int(columns[j])
+        own, shares = _probes(a, b, near, row, column, tolerance)
+        if len(own.points):
+            found.append((row, column))
+            probes.append(own)
+            areas.append(shares)
+    if not found:
+        return []
+    asked = join(probes)
+    verdict = verify(a, b, asked, tolerances.opposed, 0.01 * tolerance, _FACING)
+    ends = np.cumsum([len(shares) for shares in areas])
+    patches = []
+    for (row, column), shares, end in zip(found, areas, ends, strict=True):
+        here = np.arange(end - len(shares), end)
+        here = here[
+            verdict.holds[here] & (np.abs(verdict.along_b - verdict.along_a)[here] <= EDGE * tolerance)
+        ]
+        weights = shares[here - end + len(shares)]
+        if weights.sum() >= _LEAST * tolerance**2:
+            patches.append(_patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance))
+    return patches
+
+
+def _probes(
+    a: PlacedPart,
+    b: PlacedPart,
+    near: tuple[NearSurfaces, NearSurfaces],
+    row: int,
+    column: int,
+    tolerance: float,
+) -> tuple[Probes, Array]:
+    """Probes at the middles of facets of both surfaces, and half the area (m²) each stands for."""
+    middle, size = box_centre(near[0], near[1], row, column)
+    low, high = middle - 0.5 * size - EDGE * tolerance, middle + 0.5 * size + EDGE * tolerance
+    points, normals, shares = [], [], []
+    for part, side, number, sense in ((a, near[0], row, 1.0), (b, near[1], column, -1.0)):
+        facets = side.facets[number]
+        centres = part.vertices[part.faces[facets]].mean(axis=1)
+        within = np.nonzero(((centres >= low) & (centres <= high)).all(axis=1))[0]
+        chosen = within[:: max(1, math.ceil(len(within) / _PROBES))]
+        areas = part.index.areas[facets[chosen]]
+        total = float(part.index.areas[facets[within]].sum())
+        points.append(centres[chosen])
+        normals.append(sense * part.normals[facets[chosen]])
+        shares.append(0.5 * areas * total / max(float(areas.sum()), 1e-300))
+    count = len(points[0]) + len(points[1])
+    ids = np.array([near[0].ids[row], near[1].ids[column]])
+    probes = Probes(
+        points=np.concatenate(points),
+        normals=np.concatenate(normals),
+        gaps=np.zeros(count),
+        reach=np.full(count, EDGE * tolerance),
+        surfaces=np.tile(ids, (count, 1)),
+    )
+    return probes, np.concatenate(shares)
+
+
+def _patch(
+    a: PlacedPart,
+    b: PlacedPart,
+    near: tuple[NearSurfaces, NearSurfaces],
+    rows: tuple[int, int],
+    probes: Probes,
+    verdict: Verdict,
+    here: NDArray[np.int64],
+    weights: Array,
+    tolerance: float,
+) -> Patch:
+    gaps = (verdict.along_b - verdict.along_a)[here]
+    middle = 0.5 * (verdict.along_a + verdict.along_b)[here]
+    points = probes.points[here] + middle[:, None] * probes.normals[here]
+    area = float(weights.sum())
+    chord = float(near[0].chords[rows[0]] + near[1].chords[rows[1]])
+    disagreement = float(weights @ np.arccos(np.clip(-verdict.cosine[here], -1.0, 1.0)) / area)
+    return Patch(
+        parts=(a.part.name, b.part.name),
+        surfaces=(int(near[0].ids[rows[0]]), int(near[1].ids[rows[1]])),
+        kind="freeform",
+        one_sided=True,
+        points=points,
+        normals=probes.normals[here],
+        gaps=gaps,
+        weights=weights,
+        area=area,
+        gap=float(weights @ gaps / area),
+        axis=np.zeros(3),
+        point=weights @ points / area,
+        radii=(0.0, 0.0),
+        misalignment=disagreement,
+        offset=0.0,
+        uncertainty=(max(disagreement, math.radians(1.0)), chord),
+        chord=chord,
+        fit=classify_fit(gaps, chord, 0.0, tolerance),
+    )

@@ -1,0 +1,219 @@
+"""Solids that overlap: how much, how deep, and whether mating surfaces explain it.
+
+Facets of two tessellated surfaces that mate overlap without any overlap of the surfaces that they stand
+for: a 32-gon in a 24-gon of radius 10 mm by up to 0.09 mm at zero gap. So a piece of overlap counts only
+where it is deeper than the chord errors of the surfaces that bound it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kinform.contacts.mates import EDGE
+from kinform.contacts.placed import PlacedPart
+from kinform.contacts.solids import Piece, SolidStore
+from kinform.model.assembly import freeze
+from kinform.model.contacts import Interference, Patch
+
+__all__ = ["find_interference"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_SAMPLES = 400
+"""Points at which the depth of one pair's overlap is measured."""
+_EXACT = 0.02
+"""Share of the contact tolerance below which an overlap is none: rounding of coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """Points on the boundary of one part inside the other: depth, and the surfaces on both sides."""
+
+    points: Array
+    depth: Array
+    surfaces: Ints
+    """(n, 2) of the first and the second part."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Allowance:
+    """What depth the surfaces explain: chord errors and uncertainty, and which of them mate."""
+
+    chords: tuple[Array, Array]
+    """Chord error and residual of each surface of both parts (m)."""
+    mates: dict[tuple[int, int], Patch]
+    floor: float
+    tolerance: float
+
+    def unexplained(self, samples: _Samples) -> tuple[NDArray[np.bool_], bool]:
+        """Samples deeper than what tessellation explains, and whether they all lie at mates."""
+        i, j = samples.surfaces.T
+        present = (set(i.tolist()), set(j.tolist()))
+        mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
+        allowed = self.chords[0][i] + self.chords[1][j] + self.floor
+        for patch in mates:
+            allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
+        deep = samples.depth > allowed
+        at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
+        pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
+        mated = bool(mates) and bool(
+            (
+                (samples.depth[deep] <= EDGE * self.tolerance)
+                & (at_mate[deep] | (samples.depth[deep] <= pressed))
+            ).all()
+        )
+        return deep, mated
+
+
+def find_interference(
+    a: PlacedPart, b: PlacedPart, patches: list[Patch], solids: SolidStore, tolerance: float
+) -> Interference | None:
+    """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
+    if not (a.part.solid and b.part.solid) or not _meet(a, b, tolerance):
+        return None
+    allowance = _Allowance(
+        chords=(_chords(a), _chords(b)),
+        mates={p.surfaces: p for p in patches if not p.one_sided},
+        floor=_EXACT * tolerance,
+        tolerance=tolerance,
+    )
+    pieces = solids.overlap(a, b)
+    if pieces is None:
+        return _by_facets(a, b, allowance)
+    return _by_volume(a, b, pieces, allowance)
+
+
+def _chords(part: PlacedPart) -> Array:
+    return np.array([s.chord + s.residual + s.point_uncertainty for s in part.surfaces.surfaces])
+
+
+def _meet(a: PlacedPart, b: PlacedPart, tolerance: float) -> bool:
+    """Whether the two boundaries cross, or one part holds a shell of the other.
+
+    Faces that coincide cross or do not as rounding has it, so the question is put once more with the
+    second part moved by less than what counts as an overlap.
+    """
+    low = np.maximum(a.vertices.min(axis=0), b.vertices.min(axis=0))
+    high = np.minimum(a.vertices.max(axis=0), b.vertices.max(axis=0))
+    if (high - low).min() < _EXACT * tolerance:
+        return False
+    shift = _EXACT * tolerance * np.array([0.61, 0.53, 0.59])
+    for move in (np.zeros(3), shift, -shift):
+        X_AB = b.X_FP.copy()
+        X_AB[:3, 3] += move
+        if a.index.crosses(b.index, X_AB):
+            return True
+    return _holds(a, b) or _holds(b, a)
+
+
+def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
+    """Whether a whole shell of `inner` lies inside `outer`, given that no facets cross."""
+    faces, count = inner.faces, len(inner.vertices)
+    edges = np.concatenate([faces[:, :2], faces[:, 1:]])
+    links = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
+    _, shell = connected_components(links, directed=False)
+    _, first = np.unique(shell[faces[:, 0]], return_index=True)
+    middles = inner.vertices[faces[first]].mean(axis=1)
+    low, high = outer.vertices.min(axis=0), outer.vertices.max(axis=0)
+    middles = middles[((middles > low) & (middles < high)).all(axis=1)]
+    return bool((np.abs(outer.index.winding(outer.to_part(middles))) > 0.5).any())
+
+
+def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
+    """Depth of points on the owner's facets below the surface of the other part."""
+    depth, nearest = other.index.depths(other.to_part(points))
+    own, theirs = owner.surfaces.labels[facets], other.surfaces.labels[nearest]
+    return _Samples(points, depth, np.stack([own, theirs] if first else [theirs, own], axis=1))
+
+
+def _joined(samples: list[_Samples]) -> _Samples:
+    return _Samples(
+        np.concatenate([s.points for s in samples]),
+        np.concatenate([s.depth for s in samples]),
+        np.concatenate([s.surfaces for s in samples]),
+    )
+
+
+def _sampled(a: PlacedPart, b: PlacedPart, piece: Piece, count: int) -> _Samples:
+    """Depths at about `count` points of a piece: middles of its facets, and just inside their corners."""
+    middle = piece.corners.mean(axis=1)
+    points = np.concatenate([middle, (0.98 * piece.corners + 0.02 * middle[:, None]).reshape(-1, 3)])
+    part = np.concatenate([piece.part, np.repeat(piece.part, 3)])
+    facet = np.concatenate([piece.facet, np.repeat(piece.facet, 3)])
+    chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
+    points, part, facet = points[chosen], part[chosen], facet[chosen]
+    return _joined(
+        [
+            _measured(a, b, points[part == 0], facet[part == 0], True),
+            _measured(b, a, points[part == 1], facet[part == 1], False),
+        ]
+    )
+
+
+def _by_volume(
+    a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Allowance
+) -> Interference | None:
+    """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
+    volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
+    facets = sum(len(piece.corners) for piece in pieces)
+    for piece in pieces:
+        # A piece cannot be deeper than its box is thin in every direction: most need no measuring.
+        if float(np.ptp(piece.corners.reshape(-1, 3), axis=0).max()) <= allowance.floor:
+            continue
+        count = max(16, round(_SAMPLES * len(piece.corners) / facets))
+        samples = _sampled(a, b, piece, count)
+        deep, at_mates = allowance.unexplained(samples)
+        if not deep.any():
+            continue
+        volume += piece.volume
+        moment += piece.volume * piece.centroid
+        depth = max(depth, float(samples.depth[deep].max()))
+        mated &= at_mates
+    if volume <= 0.0:
+        return None
+    return _interference(a, b, volume, depth, moment / volume, mated, "manifold")
+
+
+def _by_facets(a: PlacedPart, b: PlacedPart, allowance: _Allowance) -> Interference | None:
+    """Overlap of meshes that bound no volume: points of either inside the other, by winding number."""
+    samples = []
+    for owner, other, first in ((a, b, True), (b, a, False)):
+        points, facets = _inside(owner, other)
+        samples.append(_measured(owner, other, points, facets, first))
+    joined = _joined(samples)
+    if not len(joined.points):
+        return None
+    deep, mated = allowance.unexplained(joined)
+    if not deep.any():
+        return None
+    depth, weights = float(joined.depth[deep].max()), joined.depth[deep]
+    place = weights @ joined.points[deep] / weights.sum()
+    return _interference(a, b, math.nan, depth, place, mated, "facets")
+
+
+def _inside(owner: PlacedPart, other: PlacedPart) -> tuple[Array, Ints]:
+    """Points on the owner's facets that are inside the other part, and their facets."""
+    corners = owner.vertices[owner.faces]
+    middle = corners.mean(axis=1)
+    points = np.concatenate([middle, (0.98 * corners + 0.02 * middle[:, None]).reshape(-1, 3)])
+    facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
+    low, high = other.vertices.min(axis=0), other.vertices.max(axis=0)
+    within = np.nonzero(((points > low) & (points < high)).all(axis=1))[0]
+    chosen = within[:: max(1, math.ceil(len(within) / _SAMPLES))]
+    points, facets = points[chosen], facets[chosen]
+    inside = np.abs(other.index.winding(other.to_part(points))) > 0.5
+    return points[inside], facets[inside].astype(np.int64)
+
+
+def _interference(
+    a: PlacedPart, b: PlacedPart, volume: float, depth: float, place: Array, mated: bool, method: str
+) -> Interference:
+    names = (a.part.name, b.part.name)
+    return Interference(names, volume, depth, np.asarray(freeze(place)), mated, method)
