@@ -20,9 +20,14 @@ __all__ = ["Hits", "MeshIndex", "MeshStore"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 _WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
+_NEEDLE = 1e-7
+"""Width of a ray relative to its length: it has to tell one facet from its neighbours."""
+_RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
+"""Directions along which no designer lays an edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,15 +73,18 @@ class MeshIndex:
             self._bvh = _model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
 
-    def cast(self, points: Array, directions: Array, reach: Array) -> Hits:
-        """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame."""
+    def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
+        """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
+
+        `width` of the slivers, relative to their reach.
+        """
         count = len(points)
         empty = np.zeros(0)
         if count == 0:
             return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
         least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
         across = np.cross(directions, least)
-        across *= (_WIDTH * reach / np.linalg.norm(across, axis=1))[:, None]
+        across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
         tip = points + reach[:, None] * directions
         slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
         probe_model = _model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
@@ -114,20 +122,19 @@ class MeshIndex:
         placed = fcl.CollisionObject(other.bvh, fcl.Transform(X_SO[:3, :3], X_SO[:3, 3]))
         return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
 
-    def winding(self, points: Array) -> Array:
-        """(n,) winding numbers about points (n, 3): 1 inside, 0 outside, between where the mesh is open.
+    def contains(self, points: Array) -> Flags:
+        """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.
 
-        Sum of the solid angles of all facets (van Oosterom and Strackee, 1983).
+        Open and inside-out meshes have an inside as far as two of three rays agree on it.
         """
-        corners = self.mesh.vertices[self.mesh.faces]
-        angles = np.zeros(len(points))
-        for k, p in enumerate(points):
-            a, b, c = (corners[:, i] - p for i in range(3))
-            la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
-            volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-            ab, bc, ca = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
-            angles[k] = 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb).sum()
-        return angles / (4.0 * np.pi)
+        half = np.full(len(points), 0.5 * self.mesh.diagonal + 1e-300)
+        crossings = np.zeros((len(_RAYS), len(points)))
+        for count, ray in zip(crossings, _RAYS, strict=True):
+            direction = np.tile(ray / np.linalg.norm(ray), (len(points), 1))
+            hits = self.cast(points + half[:, None] * direction, direction, half, width=_NEEDLE)
+            ahead = hits.along > -half[hits.probe]
+            np.add.at(count, hits.probe[ahead], np.sign(hits.facing[ahead]))
+        return np.asarray(np.abs(np.median(crossings, axis=0)) > 0.5)
 
 
 @dataclass

@@ -123,7 +123,7 @@ def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
     middles = inner.vertices[faces[first]].mean(axis=1)
     low, high = outer.vertices.min(axis=0), outer.vertices.max(axis=0)
     middles = middles[((middles > low) & (middles < high)).all(axis=1)]
-    return bool((np.abs(outer.index.winding(outer.to_part(middles))) > 0.5).any())
+    return bool(outer.index.contains(outer.to_part(middles)).any())
 
 
 def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
@@ -182,7 +182,7 @@ def _by_volume(
 
 
 def _by_facets(a: PlacedPart, b: PlacedPart, allowance: _Allowance) -> Interference | None:
-    """Overlap of meshes that bound no volume: points of either inside the other, by winding number."""
+    """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
     samples = []
     for owner, other, first in ((a, b, True), (b, a, False)):
         points, facets = _inside(owner, other)
@@ -208,7 +208,7 @@ def _inside(owner: PlacedPart, other: PlacedPart) -> tuple[Array, Ints]:
     within = np.nonzero(((points > low) & (points < high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / _SAMPLES))]
     points, facets = points[chosen], facets[chosen]
-    inside = np.abs(other.index.winding(other.to_part(points))) > 0.5
+    inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)
 
 

@@ -13,10 +13,12 @@ from kinform.form.schema import json_schema
 
 __all__ = ["report", "without_errors"]
 
-_UNITS = "lengths have no default unit: write units = \"mm\" (or m, cm, um, in, ft)"
+_UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 
 
-def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems) -> None:
+def report(
+    error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems
+) -> None:
     """Add each of pydantic's errors to the problems."""
     schema = json_schema()
     for item in error.errors(include_url=False):
@@ -29,9 +31,7 @@ def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: 
         problems.add(message, file, line, remedy)
 
 
-def _words(
-    item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[str, Any]
-) -> tuple[str, str]:
+def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[str, Any]) -> tuple[str, str]:
     kind, context = item["type"], item.get("ctx", {})
     key = str(item["loc"][-1]) if item["loc"] else ""
     expected = node.get("description", "")
@@ -203,7 +203,9 @@ def _below(node: dict[str, Any], step: str | int, schema: dict[str, Any]) -> dic
 
 def _resolved(node: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
     """The node without $ref and without the null alternative of an optional key."""
-    follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][n["$ref"].rpartition("/")[2]]  # noqa: E731
+    follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][
+        n["$ref"].rpartition("/")[2]
+    ]  # noqa: E731
     own = {k: v for k, v in node.items() if k not in ("anyOf", "$ref")}
     if "$ref" in node:
         return {**_resolved(follow(node), schema), **own}

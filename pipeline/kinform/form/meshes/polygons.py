@@ -58,7 +58,8 @@ def _fans(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
 def _fan(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
     size = polygons.shape[1]
     fan = np.stack(
-        [np.broadcast_to(polygons[:, :1], (len(polygons), size - 2)), polygons[:, 1:-1], polygons[:, 2:]], axis=2
+        [np.broadcast_to(polygons[:, :1], (len(polygons), size - 2)), polygons[:, 1:-1], polygons[:, 2:]],
+        axis=2,
     )
     p = vertices[fan]
     doubled = np.cross(p[:, :, 1] - p[:, :, 0], p[:, :, 2] - p[:, :, 0])

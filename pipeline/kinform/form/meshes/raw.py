@@ -58,7 +58,7 @@ def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = ()) 
 
 
 def plural(count: int, noun: str) -> str:
-    """ "1 facet", "3 facets". """
+    """ "1 facet", "3 facets"."""
     if noun.endswith("x"):
         return f"{count} {noun}" if count == 1 else f"{count} {noun[:-2]}ices"
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -136,9 +136,7 @@ def _next_backward(half: Ints, owner: Ints, backward: NDArray[np.bool_]) -> Ints
     return np.stack([half[keep], half[target[keep]]], axis=1)
 
 
-def _angles(
-    vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: NDArray[np.bool_]
-) -> Array:
+def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: NDArray[np.bool_]) -> Array:
     """Angle of each facet about its edge, from the first facet of the edge, towards a forward facet's back."""
     f, k = half // 3, half % 3
     a, b, apex = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]

@@ -6,7 +6,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.schema.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
+from kinform.form.schema.common import (
+    Finite,
+    JointType,
+    Name,
+    NonNegative,
+    Pair,
+    Positive,
+    Reference,
+    Table,
+    Vector,
+)
 from kinform.form.schema.require import Require
 
 __all__ = ["Coupling", "Drive", "FunctionTable", "IntendedJointTable", "LawTable", "Load"]
@@ -141,13 +151,17 @@ class Load(Table):
     point: Vector | None = Field(
         None, description="where the force acts, at the pose of the meshes; default the centre of mass"
     )
-    frame: Literal["world", "body"] = Field("world", description="fixed in the world, or turning with the body")
+    frame: Literal["world", "body"] = Field(
+        "world", description="fixed in the world, or turning with the body"
+    )
 
 
 class FunctionTable(Table):
     """`[function]`: what the device is for."""
 
-    mobility: Annotated[int, Field(ge=0)] | None = Field(None, description="compared with the effective mobility")
+    mobility: Annotated[int, Field(ge=0)] | None = Field(
+        None, description="compared with the effective mobility"
+    )
     joint: list[IntendedJointTable] = Field([], description="intended joints")
     coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
     drive: list[Drive] = Field([], description="what acts on joints")

@@ -20,7 +20,16 @@ from kinform.form.schema.common import (
     Vector,
 )
 
-__all__ = ["AssemblyTable", "Assume", "Fasteners", "Group", "Material", "Part", "Subassembly", "TolerancesTable"]
+__all__ = [
+    "AssemblyTable",
+    "Assume",
+    "Fasteners",
+    "Group",
+    "Material",
+    "Part",
+    "Subassembly",
+    "TolerancesTable",
+]
 
 
 class AssemblyTable(Table):
@@ -49,7 +58,9 @@ class Part(Posed):
     body: Annotated[str, Field(min_length=1)] | None = Field(
         None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
     )
-    units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
+    units: Unit | None = Field(
+        None, description="length unit of this mesh, where it differs from the assembly's"
+    )
     material: Reference | None = Field(None, description="a [materials.NAME] or a built-in material")
     density: Positive | None = Field(None, description="kg/m³; in place of material")
     mass: Positive | None = Field(
@@ -59,7 +70,9 @@ class Part(Posed):
     inertia: Matrix | None = Field(
         None, description="3×3, kg·m², about the centre of mass, part axes; with mass"
     )
-    solid: bool = Field(True, description="false: surfaces only; contacts yes, mass no, need not be watertight")
+    solid: bool = Field(
+        True, description="false: surfaces only; contacts yes, mass no, need not be watertight"
+    )
 
 
 class Group(Table):
@@ -97,7 +110,8 @@ class TolerancesTable(Table):
     """`[tolerances]`."""
 
     contact: Positive | None = Field(
-        None, description="gap or overlap up to which surfaces mate; default min(0.5 mm, 3 % of the smaller part)"
+        None,
+        description="gap or overlap up to which surfaces mate; default min(0.5 mm, 3 % of the smaller part)",
     )
     weld: NonNegative | None = Field(
         None, description="vertices closer than this are one; default 1e-6 of the part's size"

@@ -1,0 +1,1 @@
+"""Mesh files: reading, bodies in a file, welding, topology, health."""

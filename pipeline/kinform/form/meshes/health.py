@@ -1,0 +1,107 @@
+"""From the facets of a file to a welded mesh in SI, and the facts about it before anything was repaired."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh
+from kinform.form.meshes.topology import EdgeTable, edges_of, shells_of
+from kinform.form.meshes.weld import merge_close, merge_exact, used_only
+from kinform.model.assembly import Mesh, MeshHealth
+
+__all__ = ["build_mesh"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FLAT = 1e-9
+"""A solid thinner than this share of its size has no volume."""
+
+
+def build_mesh(
+    raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool
+) -> Mesh:
+    """The welded mesh of a file, in metres.
+
+    `weld` is the welding distance (m), None for 1e-6 of the diagonal. A closed mesh that is inside out
+    is turned; its health keeps the negative volume. Raises MeshError for empty meshes, and for flat ones
+    where a solid is meant.
+    """
+    vertices, faces, distance = _welded(raw, metres, weld)
+    kept = faces[~_collapsed(faces)]
+    if not len(kept):
+        raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
+    shape, kept = used_only(vertices, kept)
+    if solid and _thickness(shape) <= max(FLAT * float(np.linalg.norm(np.ptp(shape, axis=0))), 0.0):
+        raise MeshError([Fault(
+            "has zero thickness: all its vertices lie in one plane",
+            "export a closed solid, or state solid = false for a part that is surfaces only",
+        )])  # fmt: skip
+    edges = edges_of(kept, len(shape))
+    health = _health(shape, kept, edges, raw, distance)
+    if health.watertight and health.consistent_winding and health.volume < 0.0:
+        kept = np.ascontiguousarray(kept[:, ::-1])
+    digest = hashlib.sha256(shape.tobytes() + kept.tobytes()).hexdigest()
+    shape.setflags(write=False)
+    kept.setflags(write=False)
+    return Mesh(shape, kept, health, path, body, digest)
+
+
+def _welded(raw: RawMesh, metres: float, weld: float | None) -> tuple[Array, Ints, float]:
+    first, place = merge_exact(raw.vertices)
+    vertices = np.ascontiguousarray(raw.vertices[first].astype(np.float64) * metres)
+    faces = place[raw.faces]
+    distance = 1e-6 * float(np.linalg.norm(np.ptp(vertices, axis=0))) if weld is None else weld
+    leaders, close = merge_close(vertices, distance)
+    return vertices[leaders], close[faces], distance
+
+
+def _collapsed(faces: Ints) -> NDArray[np.bool_]:
+    """Facets that use a vertex twice."""
+    a, b, c = faces.T
+    same: NDArray[np.bool_] = (a == b) | (b == c) | (c == a)
+    return same
+
+
+def _thickness(vertices: Array) -> float:
+    """Extent (m) in the direction in which the vertices spread least."""
+    centred = vertices - vertices.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    return float(np.ptp(centred @ axes[:, 0]))
+
+
+def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float) -> MeshHealth:
+    corners = vertices[faces] - vertices.mean(axis=0)
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2)).max(axis=1)
+    slivers = int(np.count_nonzero(np.linalg.norm(doubled, axis=1) <= 1e-12 * longest**2))
+    ordered = np.sort(faces, axis=1)
+    duplicates = len(faces) - len(np.unique(ordered, axis=0))
+    watertight = edges.open == 0 and edges.overused == 0
+    return MeshHealth(
+        facets=len(raw.faces),
+        vertices=len(vertices),
+        watertight=watertight,
+        consistent_winding=bool(np.all(edges.balance[edges.counts % 2 == 0] == 0)),
+        manifold_status=_manifold_status(vertices, faces),
+        volume=float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0),
+        degenerate_facets=len(raw.faces) - len(faces) + slivers,
+        duplicate_facets=duplicates,
+        open_edges=edges.open,
+        overused_edges=edges.overused,
+        shells=int(shells_of(vertices, faces, edges).max()) + 1,
+        weld=distance,
+    )
+
+
+def _manifold_status(vertices: Array, faces: Ints) -> str:
+    """What manifold3d says of the mesh, scaled to unit size."""
+    from manifold3d import Manifold, Mesh64
+
+    size = float(np.ptp(vertices, axis=0).max()) or 1.0
+    scaled = np.ascontiguousarray((vertices - vertices.mean(axis=0)) / size)
+    mesh = Mesh64(vert_properties=scaled, tri_verts=np.ascontiguousarray(faces.astype(np.uint64)))
+    return str(Manifold(mesh).status().name)

@@ -1,0 +1,68 @@
+"""Poses of the manifest: position, and quaternion or roll-pitch-yaw, as 4×4 matrices in SI."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["pose", "quaternion_rotation", "rpy_rotation", "unit_error"]
+
+Array = NDArray[np.float64]
+
+UNIT = 1e-6
+"""A quaternion whose length is off by more than this was not meant as a rotation."""
+
+
+def quaternion_rotation(wxyz: Sequence[float]) -> Array:
+    """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""
+    w, x, y, z = np.asarray(wxyz, dtype=float) / np.linalg.norm(wxyz)
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+
+
+def rpy_rotation(degrees: Sequence[float]) -> Array:
+    """Rotation (3, 3) Rz(yaw)·Ry(pitch)·Rx(roll) of [roll, pitch, yaw] in degrees.
+
+    Multiples of 90° give exact zeros and ones, so that a quarter turn does not tilt a part.
+    """
+    (sr, cr), (sp, cp), (sy, cy) = (_sine_cosine(angle) for angle in degrees)
+    turn_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    turn_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    turn_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    rotation: Array = turn_z @ turn_y @ turn_x
+    return rotation
+
+
+def _sine_cosine(degrees: float) -> tuple[float, float]:
+    quarter, rest = divmod(degrees, 90.0)
+    if rest == 0.0:
+        return ((0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0))[int(quarter) % 4]
+    return math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+
+
+def unit_error(wxyz: Sequence[float]) -> float:
+    """How far the length of a quaternion is from one."""
+    return abs(float(np.linalg.norm(wxyz)) - 1.0)
+
+
+def pose(
+    position: Sequence[float] | None,
+    quaternion: Sequence[float] | None,
+    rpy: Sequence[float] | None,
+    metres: float,
+) -> Array:
+    """Pose (4, 4) of a placed thing in its manifest's frame; `metres` per unit of the position."""
+    out = np.eye(4)
+    if quaternion is not None:
+        out[:3, :3] = quaternion_rotation(quaternion)
+    elif rpy is not None:
+        out[:3, :3] = rpy_rotation(rpy)
+    if position is not None:
+        out[:3, 3] = np.asarray(position, dtype=float) * metres
+    return out

@@ -1,0 +1,111 @@
+"""One manifest of the hierarchy while it is read: its frame, its units, its prefix, and its lines."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from kinform.form import translate
+from kinform.form.lines import LineTable
+from kinform.form.lines import Path as KeyPath
+from kinform.form.problems import Problems
+from kinform.form.schema import Manifest
+from kinform.form.units import metres_per
+from kinform.model.assembly import Source
+
+__all__ = ["Scope", "parse"]
+
+Array = NDArray[np.float64]
+
+_PLACE = re.compile(r"\(at line (\d+), column \d+\)")
+
+
+@dataclass(frozen=True, eq=False)
+class Scope:
+    """A parsed manifest and where it stands in the whole. `X_WF` is the pose of its frame in the world."""
+
+    manifest: Manifest
+    lines: LineTable
+    file: str
+    """As shown to people: relative to the folder of the top manifest."""
+    folder: Path
+    prefix: str
+    """"" for the top manifest, else "yaw_motor/"."""
+    X_WF: Array
+    problems: Problems
+
+    @property
+    def metres(self) -> float:
+        """Metres in one unit of length of this manifest."""
+        return metres_per(self.manifest.assembly.units)
+
+    def line(self, *path: str | int) -> int:
+        """Line of a key."""
+        key: KeyPath = path
+        return self.lines.line(key)
+
+    def source(self, *path: str | int) -> Source:
+        """File and line of a key."""
+        return Source(self.file, self.line(*path))
+
+    def complain(self, message: str, remedy: str, *path: str | int) -> None:
+        """Note a problem at a key."""
+        self.problems.add(message, self.file, self.line(*path), remedy)
+
+    def point(self, stated: list[float] | None) -> Array | None:
+        """A point of this manifest in the world (m)."""
+        if stated is None:
+            return None
+        return np.asarray(self.X_WF[:3, :3] @ (np.array(stated) * self.metres) + self.X_WF[:3, 3])
+
+    def vector(self, stated: list[float] | None) -> Array | None:
+        """A vector without unit of length, turned into the world."""
+        return None if stated is None else np.asarray(self.X_WF[:3, :3] @ np.array(stated, dtype=float))
+
+    def direction(self, stated: list[float] | None, *path: str | int) -> Array | None:
+        """A unit vector in the world; a zero one is a problem."""
+        found = self.vector(stated)
+        if found is None:
+            return None
+        size = float(np.linalg.norm(found))
+        if size == 0.0:
+            self.complain("an axis or direction is zero", "give a direction such as [0, 0, 1]", *path)
+            return np.array([0.0, 0.0, 1.0])
+        return found / size
+
+
+def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTable] | None:
+    """The manifest at `path`, as far as it can be used; every problem is noted. None when nothing can."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        problems.add(f"is not UTF-8 text (byte {error.start})", file, None, "save the manifest as UTF-8")
+        return None
+    except OSError as error:
+        problems.add(f"cannot be read: {error.strerror}", file, None, "name a manifest (TOML)")
+        return None
+    try:
+        raw: dict[str, Any] = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        told = str(error)
+        place = _PLACE.search(told)
+        line = int(place[1]) if place else text.count("\n") + 1
+        message = "not valid TOML: " + _PLACE.sub("", told).replace("(at end of document)", "").strip()
+        problems.add(message, file, line, "correct the syntax: see toml.io")
+        return None
+    lines = LineTable(text)
+    try:
+        return Manifest.model_validate(raw), lines
+    except ValidationError as error:
+        translate.report(error, raw, lines, file, problems)
+        try:
+            return Manifest.model_validate(translate.without_errors(error, raw)), lines
+        except ValidationError:
+            return None

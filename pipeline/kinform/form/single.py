@@ -1,0 +1,143 @@
+"""Meshes in place of a manifest, and the manifest that `kinform init` writes from them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from kinform.errors import InputError, Problem
+from kinform.form.meshes.bodies import named_bodies, shell_bodies
+from kinform.form.meshes.health import build_mesh
+from kinform.form.meshes.raw import MeshError, RawMesh
+from kinform.form.problems import Problems, did_you_mean, quoted
+from kinform.form.sources import read_raw
+from kinform.form.units import METRES_PER_UNIT, UNITS, metres_per
+from kinform.model.assembly import Assembly, Part, Source
+from kinform.model.function import Function
+from kinform.model.names import PartName
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["init_manifest", "load_meshes"]
+
+SMALLEST, LARGEST = 1e-3, 100.0
+"""Diagonals (m) outside of which a unit is doubted."""
+
+
+def load_meshes(
+    paths: Sequence[str | Path], *, units: str, name: str | None = None, density: float | None = None
+) -> Assembly:
+    """An assembly of mesh files without a manifest.
+
+    A file whose bodies have names (OBJ `o` or `g`, several ASCII solids) gives a part each; a single file
+    without names gives a part for each of its shells; one of several files is one part. `units` is the
+    length unit of all files, `density` (kg/m³) that of all parts. Raises InputError with every problem.
+    """
+    problems = Problems()
+    metres = _metres(units, problems)
+    parts: dict[str, Part] = {}
+    for path, body, label, raw in _bodies([Path(p) for p in paths], problems):
+        try:
+            mesh = build_mesh(raw, metres, None, path=path.name, body=body, solid=True)
+        except MeshError as error:
+            for fault in error.faults:
+                problems.add(f"{quoted(label)} {fault.message}", str(path), fault.line, fault.remedy)
+            continue
+        if label in parts:
+            problems.add(f"two bodies are named {quoted(label)}", str(path), None, "rename a file or a body")
+        parts[label] = Part(
+            PartName(label), mesh, np.eye(4), True, None, density, None, units, Source(path.name)
+        )
+    problems.raise_if_any()
+    first = Path(paths[0])
+    return Assembly(
+        name=name or first.stem,
+        units=units,
+        parts=tuple(parts[label] for label in sorted(parts)),
+        groups=(),
+        assumptions=(),
+        ground=None,
+        tolerances=Tolerances(),
+        infer_fasteners=False,
+        function=Function(),
+        simulation=None,
+        subassemblies=(),
+        source=Source(first.name),
+        files=tuple(sorted({Path(p).name for p in paths})),
+    )
+
+
+def init_manifest(
+    paths: Sequence[str | Path], *, units: str, name: str | None = None, relative_to: str | Path = "."
+) -> str:
+    """Text of a manifest for these meshes, whose paths are written relative to the folder `relative_to`.
+
+    Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every problem.
+    """
+    assembly = load_meshes(paths, units=units, name=name)
+    where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
+    lines = ["schema = 1", "", "[assembly]", f"name = {_text(assembly.name)}", f"units = {_text(units)}"]
+    lines += [f"# {doubt}" for doubt in _doubts(assembly, units)]
+    lines += ['# ground = "…"   # the part or group at rest; else the heaviest body']
+    for part in assembly.parts:
+        assert part.mesh is not None
+        lines += ["", "[[part]]", f"name = {_text(part.name)}", f"mesh = {_text(where[part.mesh.path])}"]
+        if part.mesh.body is not None:
+            lines.append(f"body = {_text(part.mesh.body)}")
+        lines.append('# material = "steel"   # or density = 7850.0 (kg/m³)')
+    lines += [
+        "", "# Parts that are fastened by means that the geometry does not show:",
+        "# [[group]]", "# name = \"frame\"", f"# parts = [{', '.join(_text(p.name) for p in assembly.parts[:2])}]",
+        "", "# What the device is for:", "# [function]", "# mobility = 1", "",
+    ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def _doubts(assembly: Assembly, units: str) -> list[str]:
+    corners = np.concatenate([p.mesh.vertices for p in assembly.parts if p.mesh is not None])
+    size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    if SMALLEST <= size <= LARGEST:
+        return []
+    better = [u for u in UNITS if 0.01 <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= 10.0]
+    advice = f"; units = {' or '.join(_text(u) for u in better)} would be more usual" if better else ""
+    return [f"doubtful: in {units} the assembly is {size:.3g} m across{advice}"]
+
+
+def _text(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _metres(units: str, problems: Problems) -> float:
+    if units in UNITS:
+        return metres_per(units)
+    problems.add(f"unknown unit {quoted(units)}", None, None, did_you_mean(units, UNITS, "units"))
+    return 1.0
+
+
+def _bodies(paths: list[Path], problems: Problems) -> list[tuple[Path, str | None, str, RawMesh]]:
+    """(file, body in the file, name of the part, facets)."""
+    if not paths:
+        raise InputError([Problem("no mesh is given", None, None, "name STL or OBJ files")])
+    out: list[tuple[Path, str | None, str, RawMesh]] = []
+    for path in paths:
+        try:
+            raw = read_raw(path)
+        except MeshError as error:
+            for fault in error.faults:
+                problems.add(f"the mesh {fault.message}", str(path), fault.line, fault.remedy)
+            continue
+        except OSError as error:
+            problems.add(f"cannot be read: {error.strerror}", str(path), None, "check the name of the mesh")
+            continue
+        bodies = named_bodies(raw)
+        if not bodies and len(paths) == 1:
+            shells = shell_bodies(raw)
+            bodies = shells if len(shells) > 1 else {}
+        if bodies:
+            out += [(path, body, body.replace("/", "_"), part) for body, part in bodies.items()]
+        else:
+            out.append((path, None, path.stem.replace("/", "_"), raw))
+    return out
