@@ -18,7 +18,7 @@ from kinform_cli.errors import refuse
 if TYPE_CHECKING:
     from kinform.model.design import Design
 
-__all__ = ["MESHES", "check_output", "check_text_output", "make_rule", "needing", "read", "write_text"]
+__all__ = ["MESHES", "check_output", "check_text_output", "make_rule", "needing", "read", "read_by", "write_text"]
 
 MESHES = (".stl", ".obj")
 
@@ -101,6 +101,11 @@ def write_text(path: Path, text: str) -> None:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+def read_by(design: Design, source: Path) -> list[Path]:
+    """Every file that an import of `source` read, as seen from here."""
+    return [source.parent / name for name in design.assembly.files]
 
 
 def make_rule(target: Path, sources: Iterable[Path]) -> str:

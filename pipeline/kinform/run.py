@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import sys
+import types
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 from kinform import stages
 from kinform.api import Outcome
+from kinform.errors import InputError, Problem
 from kinform.ledger import Ledger
+from kinform.model.design import Design
 
 __all__ = ["Progress", "run"]
 
@@ -47,10 +52,27 @@ def run(
     return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed))
 
 
-def _import(manifest, units, allow_outside):
-    ...
+def _import(manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool) -> Design:
+    """The assembly of a manifest, or of meshes in place of one."""
+    paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
+    if units is not None:
+        return stages.import_meshes(paths, units=units)
+    if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj"):
+        problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
+        raise InputError([problem])
+    return stages.import_(paths[0], allow_outside=allow_outside)
 
 
 def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:
     """The progress of one stage, as the stage reports it."""
     return None if progress is None else lambda done, total: progress(stage, done, total)
+
+
+class _CallableModule(types.ModuleType):
+    """`kinform.run(...)` works although `kinform.run` is also this module."""
+
+    def __call__(self, *args: Any, **keywords: Any) -> Outcome:
+        return run(*args, **keywords)
+
+
+sys.modules[__name__].__class__ = _CallableModule

@@ -48,7 +48,9 @@ def import_meshes(
     """
     from kinform import form
 
-    return _imported(form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density))
+    return _imported(
+        form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density)
+    )
 
 
 def contacts(

@@ -52,9 +52,13 @@ def surfaces(
     if found:
         ledger.keep(f"surfaces of {_count(len(found), 'mesh', 'meshes')}")
     if wanted:
-        ledger.compute(f"surfaces of {_count(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger))
+        ledger.compute(
+            f"surfaces of {_count(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger)
+        )
     recover = functools.partial(_recover, view.tolerances)
-    for key, recovered in zip(wanted, _mapped(recover, [meshes[k] for k in wanted], jobs, progress), strict=True):
+    for key, recovered in zip(
+        wanted, _mapped(recover, [meshes[k] for k in wanted], jobs, progress), strict=True
+    ):
         found[key] = recovered
     return {key: found[key] for key in sorted(found)}, {key: marks[key] for key in sorted(marks)}
 
@@ -153,7 +157,9 @@ def _results(function: Callable[[Item], Out], items: Sequence[Item], jobs: int) 
         yield from map(function, items)
         return
     context = multiprocessing.get_context("fork")
-    pool = ProcessPoolExecutor(jobs, context, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
+    pool = ProcessPoolExecutor(
+        jobs, context, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
+    )
     try:
         yield from pool.map(function, items)
     finally:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import math
 
 import numpy as np
+from manifold3d import triangulate
+
 from kinform.model.assembly import Assembly, Assumption, Group, Mesh, MeshHealth, Part, Source
 from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
-from manifold3d import triangulate
 
 SOURCE = Source("test.toml", 1)
 MM = 1e-3
@@ -83,11 +85,6 @@ def circle(radius, count, phase=0.0, centre=(0.0, 0.0)):
     return np.array(centre) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
-def arc_and_chords(points, keys):
-    """A loop whose edge k belongs to the surface keys[k]: ("flat", n) or ("round", centre, radius)."""
-    return np.asarray(points, dtype=float), list(keys)
-
-
 def round_loop(radius, count, phase=0.0, centre=(0.0, 0.0)):
     """A loop that is one cylinder."""
     return circle(radius, count, phase, centre), [("round", tuple(centre), radius)] * count
@@ -153,7 +150,7 @@ def revolution(profile, count, phase=0.0, arcs=None, uncertainty=1e-9):
         key = arcs[k][0] if k in arcs else k
         if key not in known:
             known[key] = _turned(shape, p, q, arcs.get(k), count, uncertainty)
-        for one, two in zip(angles[:-1], angles[1:], strict=True):
+        for one, two in itertools.pairwise(angles):
             two = angles[0] if two == angles[-1] else two
             ring = [(r * math.cos(t), r * math.sin(t), z) for r, z in (p, q) for t in (one, two)]
             a, b, c, d = ring[0], ring[1], ring[3], ring[2]
@@ -179,7 +176,8 @@ def _turned(shape, p, q, arc, count, uncertainty):
     if abs(along[0]) < 1e-12:
         half = 0.5 * abs(along[1])
         return shape.spec(kind="cylinder", axis=(0, 0, 1), point=(0, 0, 0.5 * (p[1] + q[1])), radius=p[0],
-                          side=side, extent=(-half, half), chord=p[0] * step, uncertainty=uncertainty)  # fmt: skip
+                          side=side, extent=(-half, half), chord=p[0] * step,
+                          uncertainty=uncertainty)  # fmt: skip
     slope = along[0] / along[1]
     apex = p[1] - p[0] / slope
     opening = math.copysign(1.0, slope)

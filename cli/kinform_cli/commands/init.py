@@ -7,7 +7,10 @@ from typing import Annotated
 
 import typer
 
+from kinform_cli import console, files
+from kinform_cli.errors import refuse
 from kinform_cli.options import Debug, Quiet, examples
+from kinform_cli.text import count
 
 __all__ = ["EXAMPLES", "init"]
 
@@ -43,3 +46,16 @@ def init(
     debug: Debug = False,
 ) -> None:
     """Write a manifest for these meshes, ready to be completed."""
+    if output is not None:
+        if output.exists() and not force:
+            raise refuse("exists already", file=output, remedy="add --force to overwrite it")
+        files.check_text_output(output, inputs=meshes)
+    from kinform import form
+
+    folder = Path(".") if output is None else output.parent
+    text = form.init_manifest(meshes, units=units, relative_to=folder)
+    if output is None:
+        console.emit(text)
+        return
+    files.write_text(output, text)
+    console.say(f"{output}: {count(text.count('[[part]]'), 'part')}; complete it, then kinform run {output}")

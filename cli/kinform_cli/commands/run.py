@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-from kinform_cli.inputs import Sources
+from kinform_cli import console, files
+from kinform_cli.errors import refuse
+from kinform_cli.inputs import Sources, is_manifest
 from kinform_cli.options import (
     AllowOutside,
     Debug,
@@ -20,6 +22,7 @@ from kinform_cli.options import (
     Units,
     examples,
 )
+from kinform_cli.progress import Working
 
 __all__ = ["EXAMPLES", "run"]
 
@@ -62,3 +65,40 @@ def run(
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
     """
+    manifest = is_manifest(sources, units)
+    if output is not None:
+        files.check_output(output, inputs=sources)
+    if depfile is not None:
+        if output is None:
+            raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
+        files.check_text_output(depfile, inputs=[*sources, output])
+    import kinform
+    from kinform import reports
+    from kinform.consistency import verdict
+
+    with Working("run") as working:
+        outcome = kinform.run(
+            sources[0] if manifest else sources,
+            output,
+            jobs=jobs,
+            progress=lambda stage, done, total: _show(working, stage, done, total),
+            allow_outside=allow_outside,
+            units=units,
+        )
+    design = outcome.design
+    if depfile is not None and output is not None:
+        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources[0])))
+    for sentence in outcome.reused:
+        console.say(f"reused: {sentence}")
+    for sentence in outcome.recomputed:
+        console.say(f"computed: {sentence}")
+    for note in design.assembly.notes:
+        console.warn(note)
+    console.emit(reports.render(outcome.report, design, format.value))
+    raise typer.Exit(verdict(outcome.report, fail_on.value))
+
+
+def _show(working: Working, stage: str, done: int, total: int) -> None:
+    """Progress of one stage on the one bar of the run."""
+    working.stage(stage)
+    working(done, total)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.assembly import Mesh
+from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Hits", "MeshIndex", "MeshStore"]
 
@@ -65,6 +66,7 @@ class MeshIndex:
         self.normals: Array = cross / np.where(length > 0.0, length, 1.0)[:, None]
         """(F, 3) unit, part frame."""
         self._bvh: fcl.BVHModel | None = None
+        self._rims: Array | None = None
 
     @property
     def bvh(self) -> fcl.BVHModel:
@@ -72,6 +74,24 @@ class MeshIndex:
         if self._bvh is None:
             self._bvh = _model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
+
+    def rims(self, surfaces: MeshSurfaces) -> Array:
+        """For each surface, the greatest chord error of the surfaces that share an edge with it (m).
+
+        By so much the outline of a plane face may be off the curve that it stands for.
+        """
+        if self._rims is None:
+            faces = self.mesh.faces
+            edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+            labels = np.tile(surfaces.labels, 3)
+            order = np.lexsort((edges[:, 1], edges[:, 0]))
+            edges, labels = edges[order], labels[order]
+            shared = np.nonzero((edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1]))[0]
+            chords = np.array([surface.chord for surface in surfaces.surfaces])
+            self._rims = np.zeros(len(chords))
+            for own, other in ((shared, shared + 1), (shared + 1, shared)):
+                np.maximum.at(self._rims, labels[own], chords[labels[other]])
+        return self._rims
 
     def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.

@@ -52,12 +52,17 @@ class _Allowance:
     floor: float
     tolerance: float
 
+    def chords_of(self, samples: _Samples) -> Array:
+        """(n,) m: depth that the chord errors of the surfaces on both sides explain."""
+        i, j = samples.surfaces.T
+        return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
+
     def unexplained(self, samples: _Samples) -> tuple[NDArray[np.bool_], bool]:
         """Samples deeper than what tessellation explains, and whether they all lie at mates."""
         i, j = samples.surfaces.T
         present = (set(i.tolist()), set(j.tolist()))
         mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
-        allowed = self.chords[0][i] + self.chords[1][j] + self.floor
+        allowed = self.chords_of(samples)
         for patch in mates:
             allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
         deep = samples.depth > allowed
@@ -164,17 +169,23 @@ def _by_volume(
     volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
     facets = sum(len(piece.corners) for piece in pieces)
     for piece in pieces:
-        # A piece cannot be deeper than its box is thin in every direction: most need no measuring.
-        if float(np.ptp(piece.corners.reshape(-1, 3), axis=0).max()) <= allowance.floor:
+        # Faces that coincide leave sheets of no thickness: they need no measuring.
+        if piece.volume <= allowance.floor**3:
             continue
         count = max(16, round(_SAMPLES * len(piece.corners) / facets))
         samples = _sampled(a, b, piece, count)
         deep, at_mates = allowance.unexplained(samples)
-        if not deep.any():
+        thick = 2.0 * piece.volume / piece.area
+        if deep.any():
+            here = float(samples.depth[deep].max())
+        elif thick > allowance.chords_of(samples).max(initial=0.0):
+            # Two boundaries that coincide have no depth below each other: a part placed twice.
+            here, at_mates = thick, False
+        else:
             continue
         volume += piece.volume
         moment += piece.volume * piece.centroid
-        depth = max(depth, float(samples.depth[deep].max()))
+        depth = max(depth, here)
         mated &= at_mates
     if volume <= 0.0:
         return None

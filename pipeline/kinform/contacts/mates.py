@@ -55,6 +55,8 @@ class Mate:
     offset: float
     uncertainty: tuple[float, float]
     chord: float
+    thin: float = 0.0
+    """m: an overlap narrower than this is an artefact of how two outlines are tessellated."""
     corners: tuple[Array, Array] | None = None
     """Facets (n, 3, 3) of a and b to overlay, of one-sided mates: their gap is measured, not known."""
 

@@ -166,13 +166,13 @@ def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSec
     return region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
 
 
-def _pieces(region: CrossSection) -> list[list[Array]]:
-    """The connected pieces of a region that are neither points nor lines, as polygons."""
+def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
+    """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
         polygons = [np.asarray(p) for p in piece.simplify(_THIN * 0.1).to_polygons()]
         area = piece.area()
-        if polygons and area >= _SMALL and 2.0 * area >= _THIN * _perimeter(polygons):
+        if polygons and area >= _SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
     return pieces
 
@@ -186,13 +186,13 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     return np.asarray(corners[::every])
 
 
-def overlay(chart: Chart, first: Array, second: Array, tolerance: float) -> Cells | None:
+def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: float = 0.0) -> Cells | None:
     """Overlap of the facets `first` (n, 3, 3) and `second` (m, 3, 3) in the chart; None where there is none.
 
-    `tolerance` (m) sets what is too thin or too small to be a patch.
+    `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case.
     """
     region = _overlap(chart, first, second, tolerance)
-    pieces = _pieces(region) if region is not None else []
+    pieces = _pieces(region, max(_THIN, thin / tolerance)) if region is not None else []
     if not pieces:
         return None
     step = np.array(chart.step) / tolerance

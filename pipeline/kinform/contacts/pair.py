@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from kinform.contacts.bvh import MeshStore
 from kinform.contacts.coaxial import cone_mates, cylinder_mates
 from kinform.contacts.freeform import freeform_patches
+from kinform.contacts.higher import higher_pairs
 from kinform.contacts.interference import find_interference
 from kinform.contacts.mates import EDGE, Mate, box_overlap
 from kinform.contacts.onesided import one_sided_mates
@@ -63,6 +64,7 @@ def pair_contacts(
     mates += one_sided_mates(a, b, near, overlap, tolerance, tolerances)
     patches = mated_patches(a, b, near, mates, tolerance, tolerances)
     patches += freeform_patches(a, b, near, overlap, tolerance, tolerances)
+    patches = patches or higher_pairs(a, b, near, tolerance, tolerances)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     found = find_interference(a, b, patches, solids, tolerance)
     if found is not None:

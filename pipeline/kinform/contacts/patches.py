@@ -68,7 +68,7 @@ def _cells(
         part.vertices[part.faces[side.facets[row]]]
         for part, side, row in zip((a, b), near, mate.rows, strict=True)
     )
-    cells = overlay(mate.chart, first, second, tolerance)
+    cells = overlay(mate.chart, first, second, tolerance, mate.thin)
     if cells is None:
         return None
     within = np.abs(mate.gaps(mate.chart.lift(cells.centroids))) <= mate.limit

@@ -33,6 +33,8 @@ class PlacedPart:
     """(V, 3)."""
     normals: Array
     """(F, 3) outward."""
+    rims: Array
+    """For each surface of the mesh, the greatest chord error of its neighbours (m)."""
 
     @property
     def faces(self) -> Ints:
@@ -52,7 +54,8 @@ def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array) -> 
     """The part at pose `X_FP` (4, 4) in the frame of the pair."""
     R_FP = X_FP[:3, :3]
     vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
-    return PlacedPart(part, index, surfaces, X_FP, vertices, index.normals @ R_FP.T)
+    normals = index.normals @ R_FP.T
+    return PlacedPart(part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +78,8 @@ class NearSurfaces:
     slacks: Array
     """(s,) m that facets may stand off the surface: chord error and residual of the fit."""
     chords: Array
+    rims: Array
+    """(s,) m: greatest chord error of the surfaces that share an edge with this one."""
     extents: Array
     """(s, 2) m along the axis from the point."""
     areas: Array
@@ -122,6 +127,7 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         point_uncertainty=column([s.point_uncertainty for s in chosen]),
         slacks=column([s.chord + s.residual for s in chosen]),
         chords=column([s.chord for s in chosen]),
+        rims=placed.rims[ids],
         extents=stacked([np.array(s.extent) for s in chosen], 2),
         areas=column([s.area for s in chosen]),
         lows=np.minimum.reduceat(low_f[near], starts) if len(ids) else empty,

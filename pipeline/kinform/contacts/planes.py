@@ -11,6 +11,10 @@ from kinform.model.tolerances import Tolerances
 
 __all__ = ["plane_mates"]
 
+_LENS = 0.7
+"""Mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with
+different corners on one circle overlap in such lenses."""
+
 
 def plane_mates(
     a: NearSurfaces, b: NearSurfaces, overlap: Flags, tolerance: float, tolerances: Tolerances
@@ -62,4 +66,5 @@ def _mate(
         offset=0.0,
         uncertainty=(turn, shift),
         chord=chord,
+        thin=min(_LENS * float(a.rims[row] + b.rims[column]), tolerance),
     )

@@ -28,6 +28,8 @@ class Piece:
 
     volume: float
     """m³."""
+    area: float
+    """m², of its boundary."""
     centroid: Array
     """(3,) m."""
     corners: Array
@@ -107,4 +109,7 @@ def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
     volume = float(volumes.sum())
     moment = volumes @ (a + b + c) / 4.0
     centroid = origin + (moment / volume if volume > 0.0 else 0.0)
-    return Piece(volume * scale**3, centroid * scale + middle, corners * scale + middle, part, facet)
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return Piece(
+        volume * scale**3, area * scale**2, centroid * scale + middle, corners * scale + middle, part, facet
+    )

@@ -1,1 +1,26 @@
-"""Package."""
+"""Findings as text for people, tools and CI: one renderer a format, all from one model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport
+from kinform.reports import as_json, concise, full
+
+__all__ = ["FORMATS", "render"]
+
+FORMATS: dict[str, Callable[[CheckReport, Design], str]] = {
+    "concise": concise.render,
+    "full": full.render,
+    "json": as_json.render,
+}
+
+
+def render(report: CheckReport, design: Design, format: str) -> str:
+    """The report in that format, ending in a newline; ValueError for an unknown format."""
+    try:
+        renderer = FORMATS[format]
+    except KeyError:
+        raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}") from None
+    return renderer(report, design)

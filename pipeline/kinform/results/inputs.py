@@ -44,9 +44,7 @@ def _shapes(assembly: Assembly) -> Assembly:
     """Shapes and poses, groups, and pairs that are declared not to touch."""
     return replace(
         _bare(assembly),
-        parts=tuple(
-            replace(part, density=None, override=None) for part in _bare(assembly).parts
-        ),
+        parts=tuple(replace(part, density=None, override=None) for part in _bare(assembly).parts),
         assumptions=tuple(
             replace(a, type=None, axis=None, point=None, pitch=None, reason="", source=_NOWHERE)
             for a in assembly.assumptions

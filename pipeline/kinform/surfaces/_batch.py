@@ -10,8 +10,18 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-__all__ = ["Array", "Ints", "Mask", "Ragged", "components", "group_sum",
-    "normal_equations", "quantile", "solve_normal", "starts_of"]
+__all__ = [
+    "Array",
+    "Ints",
+    "Mask",
+    "Ragged",
+    "components",
+    "group_sum",
+    "normal_equations",
+    "quantile",
+    "solve_normal",
+    "starts_of",
+]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

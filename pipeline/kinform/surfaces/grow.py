@@ -52,9 +52,7 @@ class Found:
     """(R,) to which the vertices were held."""
 
 
-def conforms(
-    kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array
-) -> Mask:
+def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array) -> Mask:
     """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
     work = batch.patchwork
     region, polygon = batch.region, batch.polygon
@@ -62,7 +60,9 @@ def conforms(
     held = kind.probe(params[region[owner]], work.vertices[vertex])
     chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
     allowed = held.curvature_radius * chord[region[owner]]
-    within = (held.distance < tolerance[region[owner]]) & (held.distance > -allowed - tolerance[region[owner]])
+    within = (held.distance < tolerance[region[owner]]) & (
+        held.distance > -allowed - tolerance[region[owner]]
+    )
     bad = np.bincount(owner, ~within, len(polygon)) > 0
     normal = kind.probe(params[region], work.centre[polygon]).normal
     cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]
@@ -167,9 +167,7 @@ def _thin_out(batch: Batch) -> Batch:
     return batch.select(keep[batch.region])
 
 
-def pursue(
-    ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float = 0.0
-) -> Found:
+def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float = 0.0) -> Found:
     """Fits, grows, fits again until nothing changes; regions that fail come back empty.
 
     A seed must conform to its own hypothesis: at least `kind.least` polygons and the share `majority`.

@@ -42,9 +42,7 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     first = np.full(count, -1)
     first[number[member][::-1]] = member[::-1]
     owner, vertex = work.corners.expand(first[smaller])
-    away = np.abs(
-        np.einsum("ij,ij->i", normal[larger[owner]], work.vertices[vertex] - centre[larger[owner]])
-    )
+    away = np.abs(np.einsum("ij,ij->i", normal[larger[owner]], work.vertices[vertex] - centre[larger[owner]]))
     same = np.bincount(owner, away > scale.fit, len(smaller)) == 0
     root = _roots(larger[same], smaller[same], area)
     return np.where(number >= 0, root[np.maximum(number, 0)], -1)

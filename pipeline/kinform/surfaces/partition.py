@@ -101,7 +101,11 @@ def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
         taken[fresh] = True
         chosen.append(
             Region(
-                result.kind, fresh, result.params[number], int(result.side[number]), float(result.tolerance[number])
+                result.kind,
+                fresh,
+                result.params[number],
+                int(result.side[number]),
+                float(result.tolerance[number]),
             )
         )
     return chosen
@@ -141,9 +145,7 @@ def _around(ground: Ground, seeds: Ints, side: int, straightness: float) -> Batc
     cosine = np.abs(np.einsum("ij,ij->i", direction[edge], direction[seeds[region[owner]]]))
     near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
     keep = near & ground.free[target] & (work.sign[edge] * side >= 0)
-    key = np.unique(
-        np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
-    )
+    key = np.unique(np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]])
     return Batch(work, key // work.count, key % work.count, len(seeds))
 
 

@@ -1,0 +1,149 @@
+"""The design as a notebook sees it: `kinform.open("r.h5")` and `kinform.run("m.toml")` give these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Generic, Protocol, TypeVar
+
+from kinform.errors import StageError
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport, Finding
+from kinform.model.kinematics import Body, Joint, Mobility
+from kinform.model.mass import MassProperties
+from kinform.model.simulation import Simulation
+
+__all__ = ["Named", "Outcome", "Results", "open_results"]
+
+
+class _HasName(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+Item = TypeVar("Item", bound=_HasName, covariant=True)
+Found = TypeVar("Found")
+
+
+class Named(Mapping[str, Item], Generic[Item]):
+    """Things by name, in a fixed order; iterating gives the names, `.values()` the things."""
+
+    def __init__(self, what: str, items: tuple[Item, ...]):
+        self._what = what
+        self._items = {item.name: item for item in items}
+
+    def __getitem__(self, name: str) -> Item:
+        try:
+            return self._items[name]
+        except KeyError:
+            known = ", ".join(self._items) or "none"
+            raise KeyError(f"no {self._what} is named {name!r}; there are: {known}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __repr__(self) -> str:
+        return f"{self._what}: {', '.join(self._items) or 'none'}"
+
+
+class Results:
+    """Everything that is known of a design; what has not been computed yet raises StageError."""
+
+    def __init__(self, design: Design):
+        self.design = design
+
+    @property
+    def assembly(self) -> Assembly:
+        """Form and function: parts, groups, poses, intended joints."""
+        return self.design.assembly
+
+    @property
+    def contacts(self) -> Contacts:
+        """Contact patches between surfaces, and interferences."""
+        return _known(self.design.contacts, "contacts", "contacts")
+
+    @property
+    def bodies(self) -> Named[Body]:
+        """Parts that move as one, by name."""
+        return Named("body", _known(self.design.kinematics, "bodies", "joints").bodies)
+
+    @property
+    def joints(self) -> Named[Joint]:
+        """Joints between bodies, by name: type, axis, point, freedoms, status, evidence."""
+        return Named("joint", _known(self.design.kinematics, "joints", "joints").joints)
+
+    @property
+    def mobility(self) -> Mobility:
+        """Mobility of the whole, relative to ground."""
+        return _known(self.design.kinematics, "mobility", "joints").mobility
+
+    @property
+    def mass(self) -> Named[MassProperties]:
+        """Mass properties of the bodies, by name (kg, m, kg·m², world axes)."""
+        return Named("body", _known(self.design.mass, "mass", "mass").bodies)
+
+    @property
+    def part_mass(self) -> Named[MassProperties]:
+        """Mass properties of the parts, by name."""
+        return Named("part", _known(self.design.mass, "mass", "mass").parts)
+
+    @property
+    def simulation(self) -> Simulation:
+        """Trajectories, joint values and efforts, energy over time."""
+        return _known(self.design.simulation, "simulation", "simulate")
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is inconsistent, sorted by code and subject."""
+        return self.report.findings
+
+    @property
+    def report(self) -> CheckReport:
+        """Findings, and which rules ran, were skipped, or could not decide."""
+        return _known(self.design.report, "findings", "check")
+
+    def save(self, path: str | Path) -> None:
+        """Write the results file; see the contract of the results file. Raises ResultsError."""
+        from kinform import results
+
+        results.write(self.design, path)
+
+    def __repr__(self) -> str:
+        design = self.design
+        lines = [f"{design.assembly.name}: {len(design.assembly.parts)} parts"]
+        if design.kinematics is not None:
+            mobility = design.kinematics.mobility
+            lines.append(f"{len(design.kinematics.bodies)} bodies, mobility {mobility.effective}")
+            lines += [f"  {j.name}: {j.type} ({j.status})" for j in design.kinematics.joints]
+        if design.simulation is not None:
+            lines.append(f"simulation: {design.simulation.level} {design.simulation.status}".rstrip())
+        if design.report is not None:
+            lines.append(f"{len(design.report.findings)} findings, {design.report.ran} rules ran")
+        return "\n".join(lines)
+
+
+class Outcome(Results):
+    """Results of a run, with what it took over from earlier results and what it computed, in sentences."""
+
+    def __init__(self, design: Design, reused: tuple[str, ...] = (), recomputed: tuple[str, ...] = ()):
+        super().__init__(design)
+        self.reused = reused
+        self.recomputed = recomputed
+
+
+def open_results(path: str | Path) -> Results:
+    """The results file at `path`. Raises ResultsError when it is none, or of another schema."""
+    from kinform import results
+
+    return Results(results.read(path))
+
+
+def _known(found: Found | None, what: str, command: str) -> Found:
+    if found is None:
+        raise StageError(what, command)
+    return found

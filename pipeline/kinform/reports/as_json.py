@@ -1,0 +1,29 @@
+"""For programs: findings and rules as JSON, lengths in metres."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES, CheckReport
+from kinform.reports.words import verdict_line
+
+__all__ = ["SCHEMA", "render"]
+
+SCHEMA = "kinform/findings/1"
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """An object with the schema, the verdict, counts, findings and rules."""
+    counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}
+    outcomes = ("passed", "failed", "inconclusive", "skipped")
+    document = {
+        "schema": SCHEMA,
+        "assembly": design.assembly.name,
+        "verdict": verdict_line(report),
+        "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
+        "findings": [dataclasses.asdict(f) for f in report.findings],
+        "rules": [dataclasses.asdict(r) for r in report.rules],
+    }
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"

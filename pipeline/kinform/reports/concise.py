@@ -1,0 +1,26 @@
+"""One line a finding, as compilers print them: `file:line: severity CODE subject: message`."""
+
+from __future__ import annotations
+
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport
+from kinform.reports.words import one_line, rule_counts, severity_counts, verdict_line, where
+
+__all__ = ["render"]
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """Findings by code, then rules that could not decide, then one line of summary."""
+    lines = [
+        f"{where(f) or design.assembly.source.file}: {f.severity} {f.code} "
+        f"{', '.join(one_line(s) for s in f.subject)}: {one_line(f.message)}"
+        for f in report.findings
+    ]
+    file = design.assembly.source.file
+    lines += [
+        f"{file}: inconclusive {r.code} {r.rule}: {one_line(r.reason)}"
+        for r in report.rules
+        if r.outcome == "inconclusive"
+    ]
+    summary = f"{verdict_line(report)}; {severity_counts(report)}; {rule_counts(report)}"
+    return "\n".join([*lines, f"{one_line(design.assembly.name)}: {summary}"]) + "\n"

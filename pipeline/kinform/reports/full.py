@@ -1,0 +1,65 @@
+"""For people at a terminal: 80 columns, no colour, every finding with numbers, place and remedy."""
+
+from __future__ import annotations
+
+import textwrap
+
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES, CheckReport, Finding
+from kinform.reports.words import one_line, rule_counts, severity_counts, verdict_line, where
+
+__all__ = ["render"]
+
+WIDTH = 80
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """Findings, the most severe first, then what could not be decided, then the verdict."""
+    order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
+    blocks = [_finding(f) for f in sorted(report.findings, key=lambda f: order[f.severity])]
+    undecided = [r for r in report.rules if r.outcome == "inconclusive"]
+    if undecided:
+        lines = ["not decided:"]
+        for rule in undecided:
+            lines += _wrapped(f"{rule.code} {rule.rule}: {one_line(rule.reason)}", "  ", "      ")
+        blocks.append("\n".join(lines))
+    name = one_line(design.assembly.name)
+    blocks.append(
+        "\n".join([f"{name}: {verdict_line(report)}", severity_counts(report), rule_counts(report)])
+    )
+    return "\n\n".join(blocks) + "\n"
+
+
+def _finding(finding: Finding) -> str:
+    subject = ", ".join(one_line(s) for s in finding.subject)
+    lines = _wrapped(f"{finding.severity}: {finding.code} {finding.rule}: {subject}", "", "  ")
+    lines += _wrapped(one_line(finding.message), "  ", "  ")
+    facts = {
+        "found": finding.found,
+        "intended": finding.intended,
+        "place": _place(finding),
+        "at": where(finding) or None,
+    }
+    for key, value in facts.items():
+        if value is not None:
+            lines += _wrapped(f"{key + ':':<10}{one_line(value)}", "  ", " " * 12)
+    if finding.remedy:
+        lines += _wrapped(f"{'remedy:':<10}{one_line(finding.remedy)}", "  ", " " * 12)
+    return "\n".join(lines)
+
+
+def _place(finding: Finding) -> str | None:
+    if finding.place is None:
+        return None
+    return "(" + ", ".join(f"{1000.0 * x + 0.0:.4g}" for x in finding.place) + ") mm"
+
+
+def _wrapped(text: str, first: str, rest: str) -> list[str]:
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

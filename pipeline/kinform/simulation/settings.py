@@ -1,0 +1,37 @@
+"""Numbers that the solvers use, in one value, each with where it comes from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["SolverSettings"]
+
+
+@dataclass(frozen=True)
+class SolverSettings:
+    """Tolerances and budgets of the solvers. Gaps are in rad and in shares of the mechanism's length."""
+
+    rtol: float = 1e-10
+    """Relative error a step of the integrator: pendulum periods come out to 1e-9."""
+    atol: float = 1e-12
+    """Absolute error a step, rad or m."""
+    steps: int = 20_000
+    """Steps of the integrator before it gives up: a stiff model would run for ever."""
+    closed: float = 1e-12
+    """A loop is closed when its gap is below this, 1000 roundings."""
+    open: float = 1e-7
+    """A gap that stays above this is no rounding and no misfit that snapping leaves: it does not close."""
+    free: float = 1e-4
+    """Singular values of the closure below this share of the largest are zero: the rank of redundant
+    loops, as for mobility (`Tolerances.free`)."""
+    singular: float = 1e-6
+    """A pose is singular when the smallest singular value that counts falls below this share."""
+    stride: float = 0.2
+    """Greatest motion of a driven joint (rad, or lengths) in one step along a path."""
+    correction: float = 0.05
+    """Greatest correction by Newton (rad, or lengths) after a predicted step: beyond, the other assembly
+    of the loop could be reached."""
+    halvings: int = 20
+    """How often a step along a path is halved before its end counts as unreachable."""
+    newton: int = 12
+    """Newton iterations a step; they converge in three or four."""
