@@ -18,7 +18,16 @@ from kinform_cli.errors import refuse
 if TYPE_CHECKING:
     from kinform.model.design import Design
 
-__all__ = ["MESHES", "check_output", "check_text_output", "make_rule", "needing", "read", "read_by", "write_text"]
+__all__ = [
+    "MESHES",
+    "check_output",
+    "check_text_output",
+    "make_rule",
+    "needing",
+    "read",
+    "read_by",
+    "write_text",
+]
 
 MESHES = (".stl", ".obj")
 
@@ -38,9 +47,7 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     if path.is_dir():
         raise refuse("this is a folder, not a file", file=path, remedy="name a file in it")
     if not path.parent.is_dir():
-        raise refuse(
-            f"the folder {path.parent} does not exist", file=path, remedy=f"create it: mkdir -p {path.parent}"
-        )
+        raise refuse(f"the folder {path.parent} does not exist", file=path, remedy=f"create it: mkdir -p {path.parent}")
     _try_writing(path)
 
 

@@ -101,9 +101,7 @@ Quiet = Annotated[
 ]
 Debug = Annotated[
     bool,
-    typer.Option(
-        "--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1)."
-    ),
+    typer.Option("--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1)."),
 ]
 Jobs = Annotated[
     int,

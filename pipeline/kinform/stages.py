@@ -48,9 +48,7 @@ def import_meshes(
     """
     from kinform import form
 
-    return _imported(
-        form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density)
-    )
+    return _imported(form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density))
 
 
 def contacts(
@@ -71,9 +69,7 @@ def contacts(
     mark = fingerprints.mark("contacts", fingerprints.of_stage("contacts", start))
     found, pairs = touching.contacts(view, surfaces, mark, jobs, progress, ledger)
     marks = {"surfaces": fingerprints.mark("surfaces", meshes), "contacts": mark}
-    return replace(
-        start, contacts=found, fingerprints=Fingerprints(start.fingerprints.stages | marks, meshes, pairs)
-    )
+    return replace(start, contacts=found, fingerprints=Fingerprints(start.fingerprints.stages | marks, meshes, pairs))
 
 
 def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
@@ -159,9 +155,7 @@ def _without(design: Design, stage: str) -> Design:
     if stage == "contacts":
         stages.pop("surfaces", None)
         marks, design = Fingerprints(), replace(design, surfaces={})
-    return replace(
-        design, **{_FIELDS[name]: None for name in later}, fingerprints=replace(marks, stages=stages)
-    )
+    return replace(design, **{_FIELDS[name]: None for name in later}, fingerprints=replace(marks, stages=stages))
 
 
 def _advance(

@@ -40,8 +40,7 @@ def surfaces(
         if part.mesh is not None:
             meshes.setdefault(part.mesh.digest, part.mesh)
     marks = {
-        key: fingerprints.mark("surfaces", fingerprints.of_mesh(mesh, view.tolerances))
-        for key, mesh in meshes.items()
+        key: fingerprints.mark("surfaces", fingerprints.of_mesh(mesh, view.tolerances)) for key, mesh in meshes.items()
     }
     before = ledger.previous
     found: dict[str, MeshSurfaces] = {}
@@ -52,13 +51,9 @@ def surfaces(
     if found:
         ledger.keep(f"surfaces of {_count(len(found), 'mesh', 'meshes')}")
     if wanted:
-        ledger.compute(
-            f"surfaces of {_count(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger)
-        )
+        ledger.compute(f"surfaces of {_count(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger))
     recover = functools.partial(_recover, view.tolerances)
-    for key, recovered in zip(
-        wanted, _mapped(recover, [meshes[k] for k in wanted], jobs, progress), strict=True
-    ):
+    for key, recovered in zip(wanted, _mapped(recover, [meshes[k] for k in wanted], jobs, progress), strict=True):
         found[key] = recovered
     return {key: found[key] for key in sorted(found)}, {key: marks[key] for key in sorted(marks)}
 
@@ -84,12 +79,8 @@ def contacts(
         inputs_of_pair = fingerprints.of_pair(view.tolerances, parts[pair[0]], parts[pair[1]])
         return fingerprints.mark("contacts", inputs_of_pair)
 
-    same = frozenset(
-        pair for pair, old in known.items() if parts.keys() >= set(pair) and mark_of(pair) == old
-    )
-    found = contacts_stage.find(
-        view, recovered, jobs=jobs, reuse=earlier, reuse_pairs=same, progress=progress
-    )
+    same = frozenset(pair for pair, old in known.items() if parts.keys() >= set(pair) and mark_of(pair) == old)
+    found = contacts_stage.find(view, recovered, jobs=jobs, reuse=earlier, reuse_pairs=same, progress=progress)
     kept = [pair for pair in found.candidates if pair in same]
     wanted = [pair for pair in found.candidates if pair not in same]
     if kept:
@@ -117,9 +108,7 @@ def _why_meshes(view: Assembly, wanted: Sequence[str], ledger: Ledger) -> str:
     return f"new shape of {fingerprints.listed(names)}"
 
 
-def _why_pairs(
-    view: Assembly, parts: Mapping[str, fingerprints.Inputs], wanted: Sequence[Pair], ledger: Ledger
-) -> str:
+def _why_pairs(view: Assembly, parts: Mapping[str, fingerprints.Inputs], wanted: Sequence[Pair], ledger: Ledger) -> str:
     before = ledger.previous
     if before is None or before.contacts is None:
         return "not computed before"
@@ -157,9 +146,7 @@ def _results(function: Callable[[Item], Out], items: Sequence[Item], jobs: int) 
         yield from map(function, items)
         return
     context = multiprocessing.get_context("fork")
-    pool = ProcessPoolExecutor(
-        jobs, context, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN)
-    )
+    pool = ProcessPoolExecutor(jobs, context, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
     try:
         yield from pool.map(function, items)
     finally:

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-Ran = subprocess.CompletedProcess[str]
-
-
-def environment(**extra: str) -> dict[str, str]:
-    """The environment without what makes terminals of pipes."""
-    dropped = ("FORCE_COLOR", "PY_COLORS", "GITHUB_ACTIONS", "NO_COLOR", "COLUMNS", "KINFORM_DEBUG")
-    kept = {name: value for name, value in os.environ.items() if name not in dropped}
-    return {**kept, "TERM": "xterm-256color", **extra}
+from commands import Ran, environment
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import errno
 from collections.abc import Callable
 
 import pytest
+
 from kinform.errors import InputError, Problem, ResultsError, StageError
 from kinform_cli import console
 from kinform_cli.main import main
@@ -113,5 +114,3 @@ def test_quiet_silences_summaries_and_warnings_but_not_errors(
     console.say("part [m6]")
     console.warn("part [red]x[/red]")
     assert capsys.readouterr().err == "part [m6]\nwarning: part [red]x[/red]\n"
-
-

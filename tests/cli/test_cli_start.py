@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 import typer
-from conftest import Ran, environment
+from commands import Ran, environment
+
 from kinform import __version__
 from kinform_cli.main import _COMMANDS, app, entry, main
 
@@ -24,9 +25,7 @@ def test_the_console_script_is_the_entry() -> None:
 
 
 def test_the_commands_are_those_of_the_contract_so_far() -> None:
-    assert COMMANDS == sorted(
-        "import contacts joints mass simulate check run show query explain init schema".split()
-    )
+    assert COMMANDS == sorted("import contacts joints mass simulate check run show query explain init schema".split())
 
 
 def test_version_is_that_of_the_package(kinform: Callable[..., Ran]) -> None:
@@ -42,9 +41,7 @@ def test_nothing_heavy_is_imported_to_answer(arguments: list[str]) -> None:
         f"assert main({arguments!r}) == 0\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}), file=sys.stderr)\n"
     )
-    ran = subprocess.run(
-        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
-    )
+    ran = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True)
     imported = set(ran.stderr.split())
     assert "typer" in imported
     assert not imported & (HEAVY - {"pydantic"} if "pydantic" in _imported_by_typer() else HEAVY)
@@ -57,9 +54,7 @@ def _imported_by_typer() -> set[str]:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_help_of_each_command_ends_with_examples_of_it(
-    command: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_help_of_each_command_ends_with_examples_of_it(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 0
     text, errors = capsys.readouterr()
     assert errors == ""

@@ -72,8 +72,7 @@ class Shape:
         digest = hashlib.sha256(vertices.tobytes() + faces.tobytes()).hexdigest()
         health = MeshHealth(len(faces), len(vertices), True, True, "NoError", volume, 0, 0, 0, 0, 1, 1e-9)
         surfaces = tuple(
-            surface(faces=np.nonzero(labels == k)[0], areas=areas, **spec)
-            for k, spec in enumerate(self.specs)
+            surface(faces=np.nonzero(labels == k)[0], areas=areas, **spec) for k, spec in enumerate(self.specs)
         )
         mesh = Mesh(vertices, faces.astype(np.int64), health, "test.stl", None, digest)
         return mesh, MeshSurfaces(digest, surfaces, labels, 0.0)
@@ -217,9 +216,7 @@ def assembly(parts, *, groups=(), ignore=(), tolerances=None):
             units="m",
             parts=tuple(listed),
             groups=tuple(Group(n, tuple(PartName(p) for p in members), SOURCE) for n, members in groups),
-            assumptions=tuple(
-                Assumption(pair, None, True, None, None, None, "said so", SOURCE) for pair in ignore
-            ),
+            assumptions=tuple(Assumption(pair, None, True, None, None, None, "said so", SOURCE) for pair in ignore),
             ground=None,
             tolerances=tolerances or Tolerances(),
             infer_fasteners=False,

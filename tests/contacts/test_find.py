@@ -120,9 +120,7 @@ def test_pairs_that_no_longer_meet_are_not_reused():
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.tuples(*[st.integers(-30, 30)] * 3), min_size=2, max_size=9, unique=True))
 def test_the_broad_phase_keeps_exactly_the_pairs_whose_boxes_come_within_the_tolerance(corners):
-    parts = {
-        f"p{k}": (CUBE, pose(translation=np.array(corner) * 0.7 * MM)) for k, corner in enumerate(corners)
-    }
+    parts = {f"p{k}": (CUBE, pose(translation=np.array(corner) * 0.7 * MM)) for k, corner in enumerate(corners)}
     design, _ = assembly(parts)
     tolerance = design.tolerances.contact_of(*[np.sqrt(300) * MM] * 2)
     expected = {

@@ -93,9 +93,7 @@ def test_a_press_fit_beyond_the_chord_errors_is_a_mated_interference():
     assert found.mated
     # Between the inscribed polygon of the bore and that of the shaft.
     assert 0.2 * MM < found.depth < 0.42 * MM
-    shell = 15 * (
-        0.5 * 32 * 100 * math.sin(2 * math.pi / 32) - 0.5 * 24 * 9.7**2 * math.sin(2 * math.pi / 24)
-    )
+    shell = 15 * (0.5 * 32 * 100 * math.sin(2 * math.pi / 32) - 0.5 * 24 * 9.7**2 * math.sin(2 * math.pi / 24))
     assert found.volume == pytest.approx(shell * MM**3, rel=0.02)
 
 
@@ -116,9 +114,7 @@ def test_overlap_of_an_open_mesh_has_a_depth_and_no_volume():
 
 def test_surfaces_without_a_solid_have_contacts_and_no_interference():
     first, surfaces = assembly({"a": (CUBE, pose()), "b": (CUBE, pose(translation=(9.8 * MM, 0, 0)))})
-    hollow = dataclasses.replace(
-        first, parts=(first.parts[0], dataclasses.replace(first.parts[1], solid=False))
-    )
+    hollow = dataclasses.replace(first, parts=(first.parts[0], dataclasses.replace(first.parts[1], solid=False)))
     found = find(hollow, surfaces)
     assert found.patches
     assert found.interferences == ()

@@ -53,9 +53,7 @@ def test_the_reference_is_right():
 @settings(max_examples=15, deadline=None)
 @given(st.tuples(angle, angle, angle), place)
 def test_moving_the_whole_assembly_moves_the_contacts_with_it(angles, shift):
-    X = pose(
-        turned((1, 0, 0), angles[0]) @ turned((0, 1, 0), angles[1]) @ turned((0, 0, 1), angles[2]), shift
-    )
+    X = pose(turned((1, 0, 0), angles[0]) @ turned((0, 1, 0), angles[1]) @ turned((0, 0, 1), angles[2]), shift)
     shaft, hub = collared()
     found = find(*assembly({"a": (shaft, X), "b": (hub, X)}))
     close(areas(found))
@@ -114,7 +112,6 @@ def _moved(mesh, X):
 
 def _turned(surfaces, X):
     moved = tuple(
-        dataclasses.replace(s, axis=X[:3, :3] @ s.axis, point=X[:3, :3] @ s.point + X[:3, 3])
-        for s in surfaces.surfaces
+        dataclasses.replace(s, axis=X[:3, :3] @ s.axis, point=X[:3, :3] @ s.point + X[:3, 3]) for s in surfaces.surfaces
     )
     return dataclasses.replace(surfaces, digest=surfaces.digest + "-moved", surfaces=moved)

@@ -241,11 +241,7 @@ def test_planes_tilted_beyond_the_alignment_touch_without_mating():
 def test_axes_mate_as_far_as_their_clearance_allows_and_not_beyond():
     # 0.2 mm of clearance over 15 mm allows 2 · 0.2 / 15 rad = 1.5°.
     shaft, hub = shaft_in_bore(0.2 * MM)
-    about = (
-        pose(translation=(0, 0, 7.5 * MM))
-        @ pose(turned((1, 0, 0), 1.2))
-        @ pose(translation=(0, 0, -7.5 * MM))
-    )
+    about = pose(translation=(0, 0, 7.5 * MM)) @ pose(turned((1, 0, 0), 1.2)) @ pose(translation=(0, 0, -7.5 * MM))
     (patch,) = (p for p in contacts(shaft, hub, X_first=about).patches if p.kind == "cylinder")
     assert patch.misalignment == pytest.approx(math.radians(1.2), rel=1e-6)
     shaft, hub = shaft_in_bore(0.02 * MM)
@@ -255,11 +251,7 @@ def test_axes_mate_as_far_as_their_clearance_allows_and_not_beyond():
 def test_the_offset_of_two_axes_is_measured_where_they_engage():
     shaft, hub = shaft_in_bore(0.1 * MM)
     # Turned about the middle of the bore: no offset there, although the shaft's own middle is 2.5 mm off.
-    about = (
-        pose(translation=(0, 0, 7.5 * MM))
-        @ pose(turned((0, 1, 0), 0.3))
-        @ pose(translation=(0, 0, -7.5 * MM))
-    )
+    about = pose(translation=(0, 0, 7.5 * MM)) @ pose(turned((0, 1, 0), 0.3)) @ pose(translation=(0, 0, -7.5 * MM))
     (patch,) = contacts(shaft, hub, X_first=about).patches
     assert patch.offset == pytest.approx(0.0, abs=1e-8)
     (patch,) = contacts(shaft, hub, X_first=pose(translation=(0.06 * MM, 0, 0))).patches

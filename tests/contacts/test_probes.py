@@ -43,9 +43,7 @@ def test_depths_are_distances_to_the_boundary_and_name_the_nearest_facet():
 def test_points_inside_a_solid_are_told_from_points_in_its_cavities():
     ring = [(5, 0), (20, 0), (20, 10), (5, 10)]
     tube = MeshIndex(revolution([(r * MM, z * MM) for r, z in ring], 48)[0])
-    points = np.random.default_rng(3).uniform(
-        [-25 * MM, -25 * MM, -5 * MM], [25 * MM, 25 * MM, 15 * MM], (400, 3)
-    )
+    points = np.random.default_rng(3).uniform([-25 * MM, -25 * MM, -5 * MM], [25 * MM, 25 * MM, 15 * MM], (400, 3))
     radius = np.hypot(points[:, 0], points[:, 1]) / MM
     height = points[:, 2] / MM
     within = (radius > 5) & (radius < 20) & (height > 0) & (height < 10)

@@ -63,5 +63,5 @@ def intended(name, a, b, kind="revolute", axis=(0, 0, 1), point=(0, 0, 0)):
 
 
 def assume(a, b, kind, *, axis=None, point=None, ignore=False):
-    vector = lambda x: None if x is None else np.asarray(x, float)  # noqa: E731
+    vector = lambda x: None if x is None else np.asarray(x, float)
     return Assumption((a, b), kind, ignore, vector(axis), vector(point), None, "because", HERE)

@@ -77,10 +77,7 @@ def plane(centre=(0, 0, 0), normal=Z, size=(0.02, 0.03), spin=0.0, **keys):
 def ring(centre=(0, 0, 0), normal=Z, inner=0.005, outer=0.008, **keys):
     """Annulus with its normal out of a."""
     u, v, w = frame_of(normal)
-    t, r = (
-        g.ravel()
-        for g in np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), np.linspace(inner, outer, 3))
-    )
+    t, r = (g.ravel() for g in np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), np.linspace(inner, outer, 3)))
     points = np.asarray(centre, float) + np.outer(r * np.cos(t), u) + np.outer(r * np.sin(t), v)
     keys.setdefault("area", np.pi * (outer**2 - inner**2))
     return patch(points, w, "plane", axis=w, point=centre, **keys)
@@ -110,10 +107,7 @@ def sphere(radius=0.008, centre=(0, 0, 0), cap=1.0, axis=Z, **keys):
 def cone(radius=0.005, half_angle=0.2, length=0.01, **keys):
     """Cone about z of a in b, apex below."""
     apex = -radius / np.tan(half_angle)
-    t, h = (
-        g.ravel()
-        for g in np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), np.linspace(0, length, 5))
-    )
+    t, h = (g.ravel() for g in np.meshgrid(np.linspace(0, 2 * np.pi, 24, endpoint=False), np.linspace(0, length, 5)))
     r = radius + h * np.tan(half_angle)
     radial = np.stack([np.cos(t), np.sin(t), 0 * t], 1)
     n = np.cos(half_angle) * radial - np.sin(half_angle) * Z

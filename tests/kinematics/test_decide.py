@@ -134,9 +134,7 @@ def test_pose_scale_and_order_change_nothing(name, seed, scale, far):
         ("ball in socket", "spherical", (0.02, 0, 0.01), Z),
     ],
 )
-def test_a_small_stray_patch_blocks_but_does_not_hide_the_joint(
-    name, expected, centre, normal, share, overlap
-):
+def test_a_small_stray_patch_blocks_but_does_not_hide_the_joint(name, expected, centre, normal, share, overlap):
     patches = CASES[name][0]
     area = share * sum(p.area for p in patches)
     stray = plane(centre, normal, (0.003, 0.003), area=area, gap=overlap)

@@ -24,8 +24,7 @@ def hinge(a, b, point, axis=Z, radius=0.004):
 def weld(a, b, at=(0, 0, 0)):
     at = np.asarray(at, float)
     return [
-        between(plane(at + d, n, (0.01, 0.01)), a, b)
-        for d, n in ((0.01 * e, s * e) for e in np.eye(3) for s in (1.0,))
+        between(plane(at + d, n, (0.01, 0.01)), a, b) for d, n in ((0.01 * e, s * e) for e in np.eye(3) for s in (1.0,))
     ]
 
 
@@ -37,9 +36,7 @@ def four_bar(ground="base"):
         "base~rocker": (0.25, 0, 0),
     }
     patches = [p for name, point in at.items() for p in hinge(*name.split("~"), point)]
-    return assembly(*(part(n) for n in ("base", "crank", "link", "rocker")), ground=ground), contacts(
-        *patches
-    )
+    return assembly(*(part(n) for n in ("base", "crank", "link", "rocker")), ground=ground), contacts(*patches)
 
 
 def test_a_four_bar_has_one_freedom_and_three_redundant_rows():
@@ -190,9 +187,7 @@ def test_j_preserves_the_freedoms_of_the_assembly_row_by_row():
 
     found = derive(four_bar()[0], {}, four_bar()[1])
     matrix = found.matrix
-    j = csr_matrix(
-        (matrix.data, matrix.indices, matrix.indptr), shape=(len(matrix.patch), 6 * len(matrix.bodies))
-    )
+    j = csr_matrix((matrix.data, matrix.indices, matrix.indptr), shape=(len(matrix.patch), 6 * len(matrix.bodies)))
     twists = found.mobility.freedoms.copy()
     twists[..., 3:] += np.cross(twists[..., :3], matrix.centre)
     twists[..., :3] *= matrix.length

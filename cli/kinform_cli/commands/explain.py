@@ -17,9 +17,7 @@ EXAMPLES = examples("kinform explain", "kinform explain KF203")
 def explain(
     code: Annotated[
         str | None,
-        typer.Argument(
-            metavar="CODE", show_default=False, help="Code or name of a rule; without it all are listed."
-        ),
+        typer.Argument(metavar="CODE", show_default=False, help="Code or name of a rule; without it all are listed."),
     ] = None,
     quiet: Quiet = False,
     debug: Debug = False,

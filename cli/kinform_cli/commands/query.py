@@ -48,9 +48,7 @@ def query(
     ] = None,
     slide: Annotated[
         str | None,
-        typer.Option(
-            "--slide", metavar="DIRECTION", show_default=False, help="Translation: x, y, z, -x … or 0,0,1."
-        ),
+        typer.Option("--slide", metavar="DIRECTION", show_default=False, help="Translation: x, y, z, -x … or 0,0,1."),
     ] = None,
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
@@ -79,13 +77,9 @@ def query(
             raise StageError("`kinform query`", "joints")
     rotation = None if point is None else (np.array(axis), np.array(point) * lengths.metres)
     try:
-        answer = kinematics.query(
-            design, a, b, turn=rotation, slide=None if direction is None else np.array(direction)
-        )
+        answer = kinematics.query(design, a, b, turn=rotation, slide=None if direction is None else np.array(direction))
     except KeyError as error:
-        raise refuse(
-            str(error.args[0]), file=source, remedy="name two of them, as they are written"
-        ) from None
+        raise refuse(str(error.args[0]), file=source, remedy="name two of them, as they are written") from None
     if format is TableFormat.json:
         motion = {"slide": direction} if rotation is None else {"turn": {"axis": axis, "point": rotation[1]}}
         console.emit(text.dumps(_data(design, motion, answer)))
@@ -153,9 +147,7 @@ def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
         return answer.text
     unit = lengths.unit
     numeric = ("patch", f"area {unit}²")
-    rows = table(
-        "part", "part", "patch", "surface", numeric[1], f"at {unit}", title="\nBlocked by", right=numeric
-    )
+    rows = table("part", "part", "patch", "surface", numeric[1], f"at {unit}", title="\nBlocked by", right=numeric)
     for blocker in answer.blocked_by:
         rows.add_row(
             *blocker.parts,

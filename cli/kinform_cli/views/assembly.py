@@ -97,9 +97,7 @@ def render(design: Design) -> RenderableType:
 def _tree(assembly: Assembly) -> Tree:
     files = {sub.name: sub.file for sub in assembly.subassemblies}
     tree = Tree(
-        Text.assemble(
-            (assembly.name, "bold"), f"  {count(len(assembly.parts), 'part')}, lengths in {assembly.units}"
-        )
+        Text.assemble((assembly.name, "bold"), f"  {count(len(assembly.parts), 'part')}, lengths in {assembly.units}")
     )
     branches: dict[str, Tree] = {"": tree}
     for part in assembly.parts:

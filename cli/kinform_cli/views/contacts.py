@@ -70,15 +70,11 @@ def render(design: Design) -> RenderableType:
     rows = table("#", "part", "part", "surface", numeric[0], numeric[1], "fit", title=title, right=numeric)
     for index, patch in enumerate(contacts.patches):
         kind = f"{patch.kind}, one side" if patch.one_sided else patch.kind
-        rows.add_row(
-            str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit
-        )
+        rows.add_row(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
     items: list[RenderableType] = [rows]
     if contacts.interferences:
         numeric = (f"volume {unit}³", f"depth {unit}")
-        overlaps = table(
-            "part", "part", *numeric, f"at {unit}", "kind", title="\nOverlapping solids", right=numeric
-        )
+        overlaps = table("part", "part", *numeric, f"at {unit}", "kind", title="\nOverlapping solids", right=numeric)
         for overlap in contacts.interferences:
             overlaps.add_row(
                 *overlap.parts,

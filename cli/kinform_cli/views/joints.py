@@ -77,9 +77,7 @@ def _range(joint: Joint) -> dict[str, Any] | None:
 def render(design: Design) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
     kinematics, lengths = _known(design), Lengths.of(design.assembly)
-    title = (
-        f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
-    )
+    title = f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
     rows = table(
         "name",
         "type",
@@ -94,9 +92,7 @@ def render(design: Design) -> RenderableType:
     for joint in kinematics.joints:
         rows.add_row(
             joint.name,
-            joint.type
-            if joint.pitch is None
-            else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.unit}/turn)",
+            joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.unit}/turn)",
             vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
             lengths.point(joint.point),
             str(joint.freedoms),
@@ -114,9 +110,7 @@ def render(design: Design) -> RenderableType:
 def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:
     lines: list[RenderableType] = [Text(f"\n{joint.name} is {joint.status}: {joint.reason}")]
     if joint.status == "ambiguous":
-        lines.append(
-            f"  singular values: {', '.join(number(float(value)) for value in joint.singular_values)}"
-        )
+        lines.append(f"  singular values: {', '.join(number(float(value)) for value in joint.singular_values)}")
     for blocker in joint.blockers:
         extent = f"{lengths.area(blocker.area)} {lengths.unit}², {100 * blocker.share:.2g} % of the contact"
         lines.append(

@@ -39,11 +39,7 @@ def render(design: Design) -> RenderableType:
     if design.report is not None:
         severities = [finding.severity for finding in design.report.findings]
         numbers = [count(severities.count(severity), severity) for severity in reversed(SEVERITIES)]
-        undecided = (
-            f", {count(design.report.inconclusive, 'rule')} inconclusive"
-            if design.report.inconclusive
-            else ""
-        )
+        undecided = f", {count(design.report.inconclusive, 'rule')} inconclusive" if design.report.inconclusive else ""
         items.append(f"Findings: {', '.join(numbers)}{undecided}")
     missing = dict.fromkeys(topic.command for topic in TOPICS.values() if not topic.known(design))
     if missing:

@@ -75,10 +75,7 @@ def render(design: Design) -> RenderableType:
             rows.add_row(
                 name,
                 kind,
-                *(
-                    _value(kind, float(x), lengths)
-                    for x in (values[0], values[-1], values.min(), values.max())
-                ),
+                *(_value(kind, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())),
                 _value(kind, float(fastest), lengths) + "/s",
             )
         items.append(rows)

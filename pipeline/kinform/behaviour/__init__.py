@@ -8,6 +8,7 @@ Paredis and Khosla, "Kinematics support for design and simulation of mechatronic
 
 from __future__ import annotations
 
+from kinform.behaviour.acting import one_freedom
 from kinform.behaviour.build import Behaviour, build
 from kinform.behaviour.components import (
     Actor,
@@ -47,6 +48,7 @@ __all__ = [
     "System",
     "build",
     "count",
+    "one_freedom",
     "signal",
     "smooth",
 ]

@@ -116,9 +116,7 @@ def make_load(
         return None, "", f'a load acts on "{load.part}", which is no part'
     point = load.point
     if point is None:
-        known = [
-            p for p in (() if mass is None else mass.parts) if p.name == load.part and p.mass is not None
-        ]
+        known = [p for p in (() if mass is None else mass.parts) if p.name == load.part and p.mass is not None]
         if not known:
             return None, "", "a load acts at its centre of mass, which is not known"
         point = known[0].centre_of_mass

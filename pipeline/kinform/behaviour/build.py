@@ -52,9 +52,7 @@ class _Builder:
         return System(tuple(self.components), nodes)
 
 
-def build(
-    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, gears: bool = False
-) -> Behaviour:
+def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, gears: bool = False) -> Behaviour:
     """The port model: bodies and ground, joints, drives, loads, and with `gears` the couplings of
     `[function]`, which geometry does not show.
 

@@ -258,9 +258,7 @@ class System:
         if not isinstance(component, JointComponent) or component.kind.rates == 0:
             return ()
         return tuple(
-            c
-            for c, _ in self.at(joint, "shaft")
-            if isinstance(c, MotionDrive | EffortDrive | Spring | Damper)
+            c for c, _ in self.at(joint, "shaft") if isinstance(c, MotionDrive | EffortDrive | Spring | Damper)
         )
 
     def body_at(self, component: str, port: str) -> Ground | RigidBody:

@@ -108,9 +108,7 @@ def compare(
     direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
     if direct is not None and "function" in direct.evidence:
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
-    named = {
-        name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)
-    }
+    named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
     motion = relative(kinematics, first.name, second.name, named)
     used = (direct,) if direct is not None else ()
     if motion is not None:
@@ -132,11 +130,7 @@ def compare(
         point=form.point,
         axis2=direct.axis2 if motion is None and direct is not None else None,
         pitch=form.pitch,
-        freedoms=direct.freedoms
-        if motion is None and direct is not None
-        else motion.freedoms
-        if motion
-        else 0,
+        freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
         joint=direct,
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,

@@ -81,9 +81,7 @@ class Context:
             if part.mesh is not None:
                 key = (part.mesh.path, part.mesh.body or "", part.mesh.digest)
                 uses.setdefault(key, []).append(part)
-        return tuple(
-            MeshUse(parts[0].mesh, tuple(parts)) for parts in uses.values() if parts[0].mesh is not None
-        )
+        return tuple(MeshUse(parts[0].mesh, tuple(parts)) for parts in uses.values() if parts[0].mesh is not None)
 
     @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -147,9 +145,7 @@ class Context:
         if isinstance(self.kinematics, Outcome):
             return self.kinematics
         joints = sorted(self.function.joints, key=lambda joint: joint.name)
-        found = tuple(
-            compare(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints
-        )
+        found = tuple(compare(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints)
         if all(comparison.state == "stated" for comparison in found):
             return skipped("all joints come from the function itself: there is no geometry to compare")
         return found

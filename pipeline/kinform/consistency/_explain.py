@@ -56,9 +56,7 @@ def rules_markdown() -> str:
     """The text of `docs/rules.md`."""
     lines = [INTRODUCTION, "| code | name | severity | what is wrong |", "|---|---|---|---|"]
     for rule in RULES:
-        lines.append(
-            f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severity} | {_summary(rule)} |"
-        )
+        lines.append(f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severity} | {_summary(rule)} |")
     for prefix, title in FAMILIES:
         lines.append(f"\n## {prefix}: {title}")
         for rule in RULES:

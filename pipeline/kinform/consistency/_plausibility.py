@@ -95,9 +95,7 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     if 0.0 < size < tiny:
         return doubt("error", f"the assembly is only {found} with units = '{units}'")
     if size > LARGE:
-        return doubt(
-            "warning", f"the assembly is {found} with units = '{units}': unusually large for a mechanism"
-        )
+        return doubt("warning", f"the assembly is {found} with units = '{units}': unusually large for a mechanism")
     if 0.0 < size < SMALL * tiny:
         return doubt("warning", f"the assembly is only {found} with units = '{units}': unusually small")
     return None
@@ -125,9 +123,7 @@ def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
 
 def _boxes(assembly: Assembly) -> dict[str, Array]:
     """Box of each part with a mesh, by name."""
-    return {
-        part.name: _box(part) for part in assembly.parts if part.mesh is not None and len(part.mesh.vertices)
-    }
+    return {part.name: _box(part) for part in assembly.parts if part.mesh is not None and len(part.mesh.vertices)}
 
 
 def _box(part: Part) -> Array:

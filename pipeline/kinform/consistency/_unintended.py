@@ -17,6 +17,4 @@ def unintended(context: Context) -> tuple[Joint, ...] | Outcome:
     if isinstance(kinematics, Outcome):
         return kinematics
     wanted, named = context.intended_pairs, context.intended_bodies
-    return tuple(
-        j for j in kinematics.joints if tuple(sorted(j.bodies)) not in wanted and named.issuperset(j.bodies)
-    )
+    return tuple(j for j in kinematics.joints if tuple(sorted(j.bodies)) not in wanted and named.issuperset(j.bodies))

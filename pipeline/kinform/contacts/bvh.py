@@ -66,7 +66,7 @@ class MeshIndex:
         self.normals: Array = cross / np.where(length > 0.0, length, 1.0)[:, None]
         """(F, 3) unit, part frame."""
         self._bvh: fcl.BVHModel | None = None
-        self._rims: Array | None = None
+        self._borders: Ints | None = None
 
     @property
     def bvh(self) -> fcl.BVHModel:
@@ -75,23 +75,29 @@ class MeshIndex:
             self._bvh = _model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
 
-    def rims(self, surfaces: MeshSurfaces) -> Array:
-        """For each surface, the greatest chord error of the surfaces that share an edge with it (m).
-
-        By so much the outline of a plane face may be off the curve that it stands for.
-        """
-        if self._rims is None:
+    def borders(self, surfaces: MeshSurfaces) -> Ints:
+        """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
+        if self._borders is None:
             faces = self.mesh.faces
             edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
             labels = np.tile(surfaces.labels, 3)
             order = np.lexsort((edges[:, 1], edges[:, 0]))
             edges, labels = edges[order], labels[order]
-            shared = np.nonzero((edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1]))[0]
-            chords = np.array([surface.chord for surface in surfaces.surfaces])
-            self._rims = np.zeros(len(chords))
-            for own, other in ((shared, shared + 1), (shared + 1, shared)):
-                np.maximum.at(self._rims, labels[own], chords[labels[other]])
-        return self._rims
+            shared = (edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1])
+            pairs = np.stack([labels[:-1][shared], labels[1:][shared]], axis=1)
+            self._borders = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
+        return self._borders
+
+    def rims(self, surfaces: MeshSurfaces) -> Array:
+        """For each surface, the greatest chord error of the surfaces that share an edge with it (m).
+
+        By so much the outline of a plane face may be off the curve that it stands for.
+        """
+        chords = np.array([surface.chord for surface in surfaces.surfaces])
+        rims = np.zeros(len(chords))
+        own, other = self.borders(surfaces).T
+        np.maximum.at(rims, own, chords[other])
+        return rims
 
     def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.

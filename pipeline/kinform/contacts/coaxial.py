@@ -45,7 +45,7 @@ def _aligned(axes: Axes, clearance: float, length: float, tolerance: float, tole
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
     tilt = tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
-    offset = spare + 2.0 * axes.uncertainty[1] + _OFFSET * tolerance
+    offset = spare + min(2.0 * axes.uncertainty[1], tolerance) + _OFFSET * tolerance
     return axes.misalignment <= min(tilt, _TILT) and axes.offset <= offset
 
 
@@ -100,9 +100,7 @@ def cone_mates(
         chart = ConeChart(axes.axis, apex, _base(axes, centre, middle_radius), half, middle_radius)
         slope = (math.tan(angles[1]) - math.tan(angles[0])) * math.cos(half) * side
         slack = axes.offset + 0.5 * (axes.misalignment + abs(angles[1] - angles[0])) * length
-        mates.append(
-            _mate(a, b, (row, column), "cone", chart, axes, angles, gap, slope, EDGE * tolerance, slack)
-        )
+        mates.append(_mate(a, b, (row, column), "cone", chart, axes, angles, gap, slope, EDGE * tolerance, slack))
     return mates
 
 

@@ -80,15 +80,11 @@ def find(
     depend on `jobs`.
     """
     tolerance = candidate_pairs(assembly)
-    known = (
-        {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
-    )
+    known = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in known]
     work = _Work(assembly, surfaces, tolerance)
     done: dict[Pair, PairContacts] = {}
-    for count, (pair, contacts) in enumerate(
-        zip(wanted, _computed(work, wanted, jobs), strict=True), start=1
-    ):
+    for count, (pair, contacts) in enumerate(zip(wanted, _computed(work, wanted, jobs), strict=True), start=1):
         done[pair] = contacts
         if progress is not None:
             progress(count, len(wanted))

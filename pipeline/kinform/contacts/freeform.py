@@ -58,9 +58,7 @@ def freeform_patches(
     patches = []
     for (row, column), shares, end in zip(found, areas, ends, strict=True):
         here = np.arange(end - len(shares), end)
-        here = here[
-            verdict.holds[here] & (np.abs(verdict.along_b - verdict.along_a)[here] <= EDGE * tolerance)
-        ]
+        here = here[verdict.holds[here] & (np.abs(verdict.along_b - verdict.along_a)[here] <= EDGE * tolerance)]
         weights = shares[here - end + len(shares)]
         if weights.sum() >= _LEAST * tolerance**2:
             patches.append(_patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance))

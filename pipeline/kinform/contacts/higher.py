@@ -107,8 +107,8 @@ def _touch(
     centres = ball.points[row] + along[:, None] * ball.axes[row]
     gaps = (centres - flat.points[column]) @ normal - radius
     shift = float(ball.point_uncertainty[row] + flat.point_uncertainty[column])
-    close = np.abs(gaps) <= _TOUCH * tolerance + shift
-    if not close.any():
+    close = np.abs(gaps) <= _TOUCH * tolerance
+    if shift > _TOUCH * tolerance or not close.any():
         return None
     return _Touch(
         rows=(row, column) if first else (column, row),

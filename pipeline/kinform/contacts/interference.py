@@ -69,10 +69,7 @@ class _Allowance:
         at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
         pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
         mated = bool(mates) and bool(
-            (
-                (samples.depth[deep] <= EDGE * self.tolerance)
-                & (at_mate[deep] | (samples.depth[deep] <= pressed))
-            ).all()
+            ((samples.depth[deep] <= EDGE * self.tolerance) & (at_mate[deep] | (samples.depth[deep] <= pressed))).all()
         )
         return deep, mated
 
@@ -162,9 +159,7 @@ def _sampled(a: PlacedPart, b: PlacedPart, piece: Piece, count: int) -> _Samples
     )
 
 
-def _by_volume(
-    a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Allowance
-) -> Interference | None:
+def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Allowance) -> Interference | None:
     """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
     volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
     facets = sum(len(piece.corners) for piece in pieces)

@@ -102,9 +102,7 @@ class Axes:
     uncertainty: tuple[float, float]
 
 
-def mean_direction(
-    first: Array, second: Array, uncertainty: tuple[float, float]
-) -> tuple[Array, float, float]:
+def mean_direction(first: Array, second: Array, uncertainty: tuple[float, float]) -> tuple[Array, float, float]:
     """Mean of two unit vectors that point the same way, the angle between them, and its uncertainty."""
     one, two = _shares(*uncertainty)
     mean = one * first + two * second

@@ -82,9 +82,7 @@ def _blocked(hits: Hits, own: Flags, low: Array, high: Array) -> Flags:
     return blocked
 
 
-def verify(
-    a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin: float, facing: float = 0.5
-) -> Verdict:
+def verify(a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin: float, facing: float = 0.5) -> Verdict:
     """Cast the probes against both parts.
 
     `opposed`: greatest cosine between the two facets' normals. `margin` (m): what lies this close to one

@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from kinform.contacts.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mates import EDGE, Mate, box_centre
 from kinform.contacts.placed import NearSurfaces, PlacedPart
+from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["one_sided_mates"]
+__all__ = ["one_sided_mates", "without_continuations"]
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -63,6 +64,28 @@ def one_sided_mates(
     return mates
 
 
+def without_continuations(patches: list[Patch], a: PlacedPart, b: PlacedPart) -> list[Patch]:
+    """The patches without those one-sided ones that only continue a two-sided one.
+
+    A fillet beside a face that lies on a plane says nothing that the face does not say: a one-sided patch
+    goes if its surface on one side is that of a two-sided patch, and those on the other share an edge.
+    """
+    firm = {patch.surfaces for patch in patches if not patch.one_sided}
+    beside: tuple[dict[int, list[int]], dict[int, list[int]]] = ({}, {})
+    for part, borders in zip((a, b), beside, strict=True):
+        for own, other in part.index.borders(part.surfaces).tolist():
+            borders.setdefault(own, []).append(other)
+    kept = []
+    for patch in patches:
+        i, j = patch.surfaces
+        continues = any((k, j) in firm for k in beside[0].get(i, [])) or any(
+            (i, k) in firm for k in beside[1].get(j, [])
+        )
+        if not (patch.one_sided and continues):
+            kept.append(patch)
+    return kept
+
+
 def _pairs(
     giver: NearSurfaces,
     taker: NearSurfaces,
@@ -96,9 +119,7 @@ def _chart(near: NearSurfaces, row: int, towards: Array) -> Chart:
     if kind == "sphere":
         distance = float(np.linalg.norm(arm))
         far = distance > 1e-3 * near.radii[row]
-        return SphereChart(
-            point, float(near.radii[row]), arm / distance if far else np.array([0.0, 0.0, 1.0])
-        )
+        return SphereChart(point, float(near.radii[row]), arm / distance if far else np.array([0.0, 0.0, 1.0]))
     base = perpendicular(axis, arm)
     if kind == "cylinder":
         return CylinderChart(axis, point, base, float(near.radii[row]))

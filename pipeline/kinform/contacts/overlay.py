@@ -104,9 +104,7 @@ class Cells:
         inner, inner_shares = corners[~on_rim], shares[~on_rim]
         points = np.concatenate([self.centroids, inner])
         weights = np.concatenate([0.75 * self.areas, inner_shares])
-        mean, total = _means(
-            points, weights, np.concatenate([self.bins, np.repeat(self.bins, 3)[~on_rim]]), count
-        )
+        mean, total = _means(points, weights, np.concatenate([self.bins, np.repeat(self.bins, 3)[~on_rim]]), count)
         return np.concatenate([mean, self.rim[rim_first]]), np.concatenate([total, rim_shares])
 
 

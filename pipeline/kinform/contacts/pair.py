@@ -14,7 +14,7 @@ from kinform.contacts.freeform import freeform_patches
 from kinform.contacts.higher import higher_pairs
 from kinform.contacts.interference import find_interference
 from kinform.contacts.mates import EDGE, Mate, box_overlap
-from kinform.contacts.onesided import one_sided_mates
+from kinform.contacts.onesided import one_sided_mates, without_continuations
 from kinform.contacts.patches import mated_patches, placed_in_world
 from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place
 from kinform.contacts.planes import plane_mates
@@ -64,6 +64,7 @@ def pair_contacts(
     mates += one_sided_mates(a, b, near, overlap, tolerance, tolerances)
     patches = mated_patches(a, b, near, mates, tolerance, tolerances)
     patches += freeform_patches(a, b, near, overlap, tolerance, tolerances)
+    patches = without_continuations(patches, a, b)
     patches = patches or higher_pairs(a, b, near, tolerance, tolerances)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     found = find_interference(a, b, patches, solids, tolerance)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,10 @@ Flags = NDArray[np.bool_]
 
 _EXACT = 1e-3
 """Share of the contact tolerance below which a gap is none."""
+_EVEN = 0.1
+"""Scatter of the measured gap, in contact tolerances, of a face that rests on a plane."""
+_LEAST = 4.0
+"""Least area of a one-sided patch, in squared tolerances."""
 
 
 def mated_patches(
@@ -44,9 +50,7 @@ def mated_patches(
     measured = verdict.along_b - verdict.along_a
     ends = np.cumsum([len(p.points) for p in probes])[:-1]
     patches = []
-    for (mate, cells), holds, gaps in zip(
-        laid, np.split(verdict.holds, ends), np.split(measured, ends), strict=True
-    ):
+    for (mate, cells), holds, gaps in zip(laid, np.split(verdict.holds, ends), np.split(measured, ends), strict=True):
         if mate.corners is not None:
             holds = holds & (np.abs(gaps) <= mate.limit)
         if not holds.any():
@@ -55,9 +59,25 @@ def mated_patches(
         kept = cells.kept(holds[cells.bins])
         if mate.corners is None:
             patches.append(_patch(a, b, ids, mate, kept, None, tolerance))
-        elif kept.areas.sum() >= tolerance**2:
+        elif _rests(mate, kept, gaps[holds], tolerance):
             patches.append(_patch(a, b, ids, mate, kept, gaps[holds], tolerance))
     return patches
+
+
+def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
+    """Whether measured gaps, one a bin, are those of a face that rests on another.
+
+    Facets that curve away from a plane touch it at a point or along a line, whatever area is within the
+    tolerance. On curved surfaces, gaps also scatter by the tessellation.
+    """
+    shares = np.bincount(cells.bins, weights=cells.areas)
+    area = float(shares.sum())
+    mean = float(shares @ gaps) / area
+    scatter = math.sqrt(float(shares @ (gaps - mean) ** 2) / area)
+    allowed = _EVEN * tolerance
+    if mate.kind not in ("plane", "other"):
+        allowed = max(allowed, 0.3 * mate.chord)
+    return area >= _LEAST * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
 
 
 def _cells(
@@ -65,8 +85,7 @@ def _cells(
 ) -> Cells | None:
     """Overlap of the mate's two surfaces where their gap is within its limit."""
     first, second = mate.corners or (
-        part.vertices[part.faces[side.facets[row]]]
-        for part, side, row in zip((a, b), near, mate.rows, strict=True)
+        part.vertices[part.faces[side.facets[row]]] for part, side, row in zip((a, b), near, mate.rows, strict=True)
     )
     cells = overlay(mate.chart, first, second, tolerance, mate.thin)
     if cells is None:

@@ -33,9 +33,7 @@ def plane_mates(
     return mates
 
 
-def _mate(
-    a: NearSurfaces, b: NearSurfaces, row: int, column: int, angle: float, tolerance: float
-) -> Mate | None:
+def _mate(a: NearSurfaces, b: NearSurfaces, row: int, column: int, angle: float, tolerance: float) -> Mate | None:
     """The mate of two opposed planes, unless they are apart everywhere in their common box."""
     middle, size = box_centre(a, b, row, column)
     turns = (float(a.axis_uncertainty[row]), float(b.axis_uncertainty[column]))

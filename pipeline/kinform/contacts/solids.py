@@ -110,6 +110,4 @@ def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
     moment = volumes @ (a + b + c) / 4.0
     centroid = origin + (moment / volume if volume > 0.0 else 0.0)
     area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return Piece(
-        volume * scale**3, area * scale**2, centroid * scale + middle, corners * scale + middle, part, facet
-    )
+    return Piece(volume * scale**3, area * scale**2, centroid * scale + middle, corners * scale + middle, part, facet)

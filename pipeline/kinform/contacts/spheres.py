@@ -30,7 +30,7 @@ def sphere_mates(
         offset = float(np.linalg.norm(b.points[column] - a.points[row]))
         shifts = (float(a.point_uncertainty[row]), float(b.point_uncertainty[column]))
         limit = radial_limit(tolerance, min(radii))
-        if abs(gap) > limit or offset > max(gap, 0.0) + sum(shifts) + _OFFSET * tolerance:
+        if abs(gap) > limit or offset > max(gap, 0.0) + min(sum(shifts), tolerance) + _OFFSET * tolerance:
             continue
         centre, shift = mean_position(a.points[row], b.points[column], shifts)
         radius = 0.5 * (radii[0] + radii[1])

@@ -65,9 +65,7 @@ class Purposes:
             self.scope.complain(f"both sides are {quoted(names[0])}", "name two different ones", *path)
         return first, second
 
-    def geometry(
-        self, table: Any, kind: str, what: str, *path: str | int
-    ) -> tuple[Any, Any, Any, float | None]:
+    def geometry(self, table: Any, kind: str, what: str, *path: str | int) -> tuple[Any, Any, Any, float | None]:
         """axis, axis2, point, pitch of a joint of this type; a problem for each that is missing."""
         scope = self.scope
         needed = {
@@ -95,9 +93,7 @@ class Purposes:
                 self.scope.complain(f"{what}: give either type or ignore = true", "remove one of them", *path)
             between = self.pair(table.between, self.place, *path, "between")
             axis, _, point, pitch = (
-                (None, None, None, None)
-                if table.type is None
-                else self.geometry(table, table.type, what, *path)
+                (None, None, None, None) if table.type is None else self.geometry(table, table.type, what, *path)
             )
             out.append(
                 Assumption(
@@ -135,9 +131,7 @@ class Purposes:
             return None
         lower, upper = table.range
         if not lower < upper:
-            self.scope.complain(
-                f"{what}: the range [{lower}, {upper}] is not ascending", "swap it", *path, "range"
-            )
+            self.scope.complain(f"{what}: the range [{lower}, {upper}] is not ascending", "swap it", *path, "range")
         scale = self.scope.metres if table.type in LINEAR else math.pi / 180.0
         return lower * scale, upper * scale
 
@@ -149,9 +143,7 @@ class Purposes:
             path = ("function", "coupling", k)
             first, second = self.pair(table.joints, self.joint, *path, "joints")
             if table.ratio == 0.0:
-                self.scope.complain(
-                    "the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio"
-                )
+                self.scope.complain("the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio")
             ratio = table.ratio * self._value_scale(first) / self._value_scale(second)
             out.append(Coupling((first, second), ratio, self.scope.file, self.scope.line(*path)))
         return out
@@ -171,9 +163,7 @@ class Purposes:
                 if (law is None) == (table.voltage is None):
                     self.scope.complain("a dc_motor needs either voltage or law", "give one of them", *path)
                 if table.gear == 0.0:
-                    self.scope.complain(
-                        "the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear"
-                    )
+                    self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
             out.append(
                 Drive(
                     self.joint(table.joint, *path, "joint"), table.kind, law,
@@ -188,9 +178,7 @@ class Purposes:
             return None
         if table.type != "table":
             return Law(**table.model_dump())
-        found = self.sources.find(
-            table.file, self.scope.folder, self.scope.file, self.scope.line(*path), "the table"
-        )
+        found = self.sources.find(table.file, self.scope.folder, self.scope.file, self.scope.line(*path), "the table")
         if found is None:
             return Law("table", file=table.file)
         times, values = self._columns(found)
@@ -223,9 +211,7 @@ class Purposes:
                 times.append(time)
                 values.append(value)
         if len(times) < 2:
-            self.scope.problems.add(
-                "the table has fewer than two rows", shown, 1, "give rows of time and value"
-            )
+            self.scope.problems.add("the table has fewer than two rows", shown, 1, "give rows of time and value")
         return tuple(times), tuple(values)
 
     def loads(self) -> list[Load]:
@@ -235,9 +221,7 @@ class Purposes:
         for k, table in enumerate(function.load if function else []):
             path = ("function", "load", k)
             if table.force is None and table.torque is None:
-                self.scope.complain(
-                    "a load has neither force nor torque", "add force = [x, y, z] in N", *path
-                )
+                self.scope.complain("a load has neither force nor torque", "add force = [x, y, z] in N", *path)
             out.append(
                 Load(
                     self.place(table.part, *path, "part"), self.scope.vector(table.force),
@@ -254,11 +238,7 @@ class Purposes:
         for k, table in enumerate(function.require if function else []):
             path = ("function", "require", k)
             values = self._quantities(table, *path)
-            values = {
-                key: value
-                for key, value in values.items()
-                if key not in ("name", "kind") and value is not None
-            }
+            values = {key: value for key, value in values.items() if key not in ("name", "kind") and value is not None}
             out.append(
                 Requirement(
                     self.scope.prefix + table.name,
@@ -297,9 +277,7 @@ class Purposes:
             named = [{self.joint(j, *path): v for j, v in pose.items()} for pose in value]
             return [{j: v * self._value_scale(j) for j, v in pose.items()} for pose in named]
         if kind == "path":
-            found = self.sources.find(
-                value, self.scope.folder, self.scope.file, self.scope.line(*path), "the path"
-            )
+            found = self.sources.find(value, self.scope.folder, self.scope.file, self.scope.line(*path), "the path")
             return value if found is None else self.sources.shown(found)
         if kind in ("length", "frame"):
             return (np.array(value) * self.scope.metres).tolist()
@@ -318,9 +296,7 @@ class Purposes:
         if table is None:
             return None
         if table.step > table.duration:
-            self.scope.complain(
-                "the step is longer than the duration", "give a shorter step", "simulation", "step"
-            )
+            self.scope.complain("the step is longer than the duration", "give a shorter step", "simulation", "step")
         initial = tuple(
             InitialValue(
                 self.joint(name, "simulation", "initial", name), value.position, value.velocity,

@@ -40,9 +40,7 @@ def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:
     path = Path(path)
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
-        raise InputError(
-            [Problem(f"the manifest {what}", str(path), None, "name a manifest (TOML); see kinform init")]
-        )
+        raise InputError([Problem(f"the manifest {what}", str(path), None, "name a manifest (TOML); see kinform init")])
     problems = Problems()
     sources = Sources(path.parent, problems, allow_outside)
     reader = _Reader(sources, problems)
@@ -77,9 +75,7 @@ class _Reader:
                 continue
             if Path(os.path.realpath(below)) in here:
                 chain = " → ".join([*(self.sources.shown(p) for p in here), self.sources.shown(below)])
-                scope.complain(
-                    f"sub-assemblies form a cycle: {chain}", "remove one of them", "subassembly", k, "file"
-                )
+                scope.complain(f"sub-assemblies form a cycle: {chain}", "remove one of them", "subassembly", k, "file")
                 continue
             name = prefix + table.name
             X = X_WF @ self._pose(scope, table, "subassembly", k)
@@ -173,13 +169,13 @@ class _Reader:
                     for k, entry in enumerate(getattr(owner, key, []) if owner else []):
                         path = (*((table,) if table else ()), key, k)
                         if entry.name in seen:
-                            first = scope.line(*path, "name")
+                            scope.line(*path, "name")
                             scope.complain(
                                 f"two {what}s are named {quoted(entry.name)}: the first is at line {seen[entry.name]}",
                                 "rename one of them", *path, "name",
                             )  # fmt: skip
                         else:
-                            seen[entry.name] = first = scope.line(*path, "name")
+                            seen[entry.name] = scope.line(*path, "name")
 
     def _groups(self, parts: set[PartName]) -> list[Group]:
         del parts
@@ -264,9 +260,7 @@ class _Reader:
             return None
         inertia = np.array(table.inertia, dtype=float)
         if not np.allclose(inertia, inertia.T, rtol=1e-9, atol=0.0):
-            scope.complain(
-                f"{what}: the inertia is not symmetric", "give a symmetric matrix", *path, "inertia"
-            )
+            scope.complain(f"{what}: the inertia is not symmetric", "give a symmetric matrix", *path, "inertia")
         assert table.mass is not None
         assert table.centre_of_mass is not None
         return MassOverride(table.mass, np.array(table.centre_of_mass) * scope.metres, inertia)

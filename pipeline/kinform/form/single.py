@@ -48,9 +48,7 @@ def load_meshes(
             continue
         if label in parts:
             problems.add(f"two bodies are named {quoted(label)}", str(path), None, "rename a file or a body")
-        parts[label] = Part(
-            PartName(label), mesh, np.eye(4), True, None, density, None, units, Source(path.name)
-        )
+        parts[label] = Part(PartName(label), mesh, np.eye(4), True, None, density, None, units, Source(path.name))
     problems.raise_if_any()
     first = Path(paths[0])
     return Assembly(

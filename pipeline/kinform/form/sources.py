@@ -22,9 +22,7 @@ def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        raise MeshError(
-            [Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")]
-        )
+        raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     return reader(path)
 
 
@@ -56,9 +54,7 @@ class Sources:
         if not path.is_file():
             near = [p.name for p in path.parent.iterdir() if p.is_file()] if path.parent.is_dir() else []
             remedy = (
-                did_you_mean(path.name, near, "the files there")
-                if near
-                else f"there is no folder {path.parent.name}"
+                did_you_mean(path.name, near, "the files there") if near else f"there is no folder {path.parent.name}"
             )
             message = f"{what} {stated} " + ("is a folder" if path.is_dir() else "does not exist")
             self.problems.add(message, file, line, remedy)
@@ -96,9 +92,7 @@ class Sources:
             except MeshError as error:
                 self._raw[path] = error
             except OSError as error:
-                self._raw[path] = MeshError(
-                    [Fault(f"cannot be read: {error.strerror}", "check its permissions")]
-                )
+                self._raw[path] = MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
         found = self._raw[path]
         if isinstance(found, MeshError):
             raise found

@@ -16,9 +16,7 @@ __all__ = ["report", "without_errors"]
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 
 
-def report(
-    error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems
-) -> None:
+def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems) -> None:
     """Add each of pydantic's errors to the problems."""
     schema = json_schema()
     for item in error.errors(include_url=False):
@@ -46,7 +44,7 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
     name = _shown_key(path)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = context["discriminator"].strip("'")
-        inner = _label(path, {}) if not where else where
+        inner = where if where else _label(path, {})
         if kind == "union_tag_not_found":
             return f"{inner}: {name} has no {tag}", f"add {tag}: {_choices(node)}"
         choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
@@ -112,9 +110,9 @@ def _real_path(loc: tuple[str | int, ...], raw: Any) -> Path:
     path: list[str | int] = []
     value = raw
     for i, step in enumerate(loc):
-        if isinstance(value, dict) and step in value:
-            value = value[step]
-        elif isinstance(value, list) and isinstance(step, int) and step < len(value):
+        if (isinstance(value, dict) and step in value) or (
+            isinstance(value, list) and isinstance(step, int) and step < len(value)
+        ):
             value = value[step]
         elif i < len(loc) - 1:
             continue
@@ -203,9 +201,7 @@ def _below(node: dict[str, Any], step: str | int, schema: dict[str, Any]) -> dic
 
 def _resolved(node: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
     """The node without $ref and without the null alternative of an optional key."""
-    follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][
-        n["$ref"].rpartition("/")[2]
-    ]  # noqa: E731
+    follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][n["$ref"].rpartition("/")[2]]
     own = {k: v for k, v in node.items() if k not in ("anyOf", "$ref")}
     if "$ref" in node:
         return {**_resolved(follow(node), schema), **own}

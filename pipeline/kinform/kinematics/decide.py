@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.evidence import COAXIAL, Evidence
+from kinform.kinematics.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.hypotheses import Motion, motions
 from kinform.kinematics.screws import span
 from kinform.kinematics.subspace import JointForm, name_space
@@ -77,9 +77,7 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     return Decision(name_space(basis, evidence.frame), basis, strict, "blocked", reason, kept, out, values)
 
 
-def _fits(
-    evidence: Evidence, candidates: tuple[Motion, ...], twists: Array, speeds: Array
-) -> NDArray[np.bool_]:
+def _fits(evidence: Evidence, candidates: tuple[Motion, ...], twists: Array, speeds: Array) -> NDArray[np.bool_]:
     """(items, motions): does the patch slide on itself, within its tolerances?"""
     length = evidence.frame.length
     velocity = twists[3:].T[None] + np.cross(twists[:3].T[None], evidence.arms[:, None])
@@ -144,8 +142,7 @@ def _consensus(
 ) -> tuple[NDArray[np.bool_], Motion] | None:
     """The patches to keep and the motion that they free, or None when all patches agree.
 
-    Where contact already leaves a freedom, only a turn about a curved surface may be added: leaving
-    out a thrust face would free every shaft.
+    Where contact already leaves a freedom, only a turn about a curved surface may be added.
     """
     area = evidence.areas
     best: tuple[tuple[float, int], NDArray[np.bool_], Motion] | None = None
@@ -158,24 +155,39 @@ def _consensus(
             continue
         if strict.shape[1] and not (motion.turn and motion.curved):
             continue
-        if (
-            strict.shape[1]
-            and float(np.linalg.norm(motion.twist - strict @ (strict.T @ motion.twist))) < INDEPENDENT
-        ):
+        if strict.shape[1] and float(np.linalg.norm(motion.twist - strict @ (strict.T @ motion.twist))) < INDEPENDENT:
+            continue
+        if _frees_thrust(evidence, motion, keep):
             continue
         if _excusable(evidence, motion, ~keep, speeds[:, k]):
             best = ((share, k), keep, motion)
     return None if best is None else (best[1], best[2])
 
 
+def _frees_thrust(evidence: Evidence, motion: Motion, keep: NDArray[np.bool_]) -> bool:
+    """Would a shaft slide out because the face that locates it along its axis is left out?"""
+    if motion.turn:
+        return False
+
+    def along(item: Item) -> bool:
+        return float(np.linalg.norm(np.cross(item.patch.axis, motion.axis))) < 0.01
+
+    shaft = any(item.patch.kind in COAXIAL and along(item) for item, k in zip(evidence.items, keep, strict=True) if k)
+    faces = (item for item, k in zip(evidence.items, keep, strict=True) if not k)
+    return shaft and any(item.patch.kind == "plane" and along(item) for item in faces)
+
+
 def _excusable(evidence: Evidence, motion: Motion, out: NDArray[np.bool_], speed: Array) -> bool:
-    """May these patches be left out of the decision for this motion?"""
+    """May these patches be left out of the decision for this motion? A shaft in its bore, a ball in its
+    socket never."""
     signs: list[int] = []
     for k in np.flatnonzero(out):
         item = evidence.items[k]
+        if item.patch.kind in (*COAXIAL, "sphere") and not item.patch.one_sided:
+            return False
         if item.interferes and item.patch.kind not in (*COAXIAL, "sphere"):
             continue
-        if item.patch.one_sided and item.patch.kind not in ("plane", *COAXIAL, "sphere"):
+        if item.patch.one_sided and item.patch.kind not in (*COAXIAL, "sphere"):
             continue
         own = speed[evidence.start[k] : evidence.start[k + 1]]
         large = 0.05 * float(np.abs(own).max())

@@ -93,9 +93,7 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     return close(len(bodies), edges, [j.twists for j in joints], ground, kinematics.matrix.length).mobility
 
 
-def _decide_all(
-    assembly: Assembly, contacts: Contacts, merger: Merger
-) -> dict[Pair, tuple[Evidence, Decision]]:
+def _decide_all(assembly: Assembly, contacts: Contacts, merger: Merger) -> dict[Pair, tuple[Evidence, Decision]]:
     """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
     known: dict[tuple[int, ...], tuple[Evidence, Decision] | None] = {}
     names = {part.name: part.name for part in assembly.parts}
@@ -114,9 +112,7 @@ def _decide_all(
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
-                contact = max(
-                    contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members
-                )
+                contact = max(contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members)
                 evidence = gather(members, assembly.tolerances, contact)
                 known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
             found = known[key]
@@ -127,9 +123,7 @@ def _decide_all(
             if frozenset(merger.root(p) for p in parts) in stated:
                 continue
             if found[1].form.type == "fixed" and found[1].status == "determined":
-                merger.fuse(
-                    names[parts[0]], names[parts[1]], f"contact {parts[0]}~{parts[1]} leaves no freedom"
-                )
+                merger.fuse(names[parts[0]], names[parts[1]], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:
             return out
@@ -186,9 +180,7 @@ def _assumed(pair: Pair, assumption: Assumption) -> Joint:
 def _size(assembly: Assembly) -> float:
     """Diagonal of the assembly's box (m); 1 without meshes."""
     corners = [
-        part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-        for part in assembly.parts
-        if part.mesh is not None
+        part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3] for part in assembly.parts if part.mesh is not None
     ]
     if not corners:
         return 1.0
@@ -225,9 +217,7 @@ def _finish(
         blocked=blocked,
         freedoms=_orthonormal(body_twists(closure, edges, spaces)),
         idle_bodies=tuple(sorted(name for name, n in idle.items() if n)),
-        uncertain=tuple(
-            j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"
-        ),
+        uncertain=tuple(j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"),
     )
     matrix = assemble(bodies, joints, patches)
     return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned)

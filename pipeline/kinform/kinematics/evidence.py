@@ -26,6 +26,10 @@ GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
 """(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
 
 
+STRAY = 0.02
+"""Share of the contact area below which a one-sided patch counts only where it touches."""
+
+
 @dataclass(frozen=True, eq=False)
 class Item:
     """One patch as seen from the first body of the pair."""
@@ -72,9 +76,7 @@ class Evidence:
         return np.array([item.area for item in self.items])
 
 
-def gather(
-    patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float
-) -> Evidence | None:
+def gather(patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float) -> Evidence | None:
     """Evidence of patches given as (index, patch, turned): turned when part a belongs to the second body.
 
     `contact` is the contact tolerance (m). None when no patch has an area.
@@ -84,6 +86,8 @@ def gather(
         for index, patch, turned in patches
         if patch.area > 0.0 and len(patch.points) > 0
     ]
+    total = sum(item.area for item in items)
+    items = [item for item in items if not _stray(item, total, contact)]
     if not items:
         return None
     points = np.concatenate([item.points for item in items])
@@ -91,9 +95,7 @@ def gather(
     counts = [len(item.points) for item in items]
     patch_weight = np.sqrt([item.area for item in items])
     patch_weight /= patch_weight.sum()
-    share = np.concatenate(
-        [w * item.weights / item.weights.sum() for w, item in zip(patch_weight, items, strict=True)]
-    )
+    share = np.concatenate([w * item.weights / item.weights.sum() for w, item in zip(patch_weight, items, strict=True)])
     return Evidence(
         items=tuple(items),
         frame=frame,
@@ -104,6 +106,12 @@ def gather(
         position=np.repeat([item.position for item in items], counts),
         arms=(points - frame.centre) / frame.length,
     )
+
+
+def _stray(item: Item, total: float, contact: float) -> bool:
+    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing."""
+    apart = item.patch.gap > GAP_BANDS[0][0] * contact
+    return item.patch.one_sided and apart and item.area < STRAY * total
 
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:

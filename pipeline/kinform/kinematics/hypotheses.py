@@ -49,9 +49,7 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
     """Candidate motions in a fixed order, best supported first."""
     lines = _axes(evidence, alignment)
     centres = _centres(evidence)
-    normals = _directions(
-        [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"], alignment
-    )
+    normals = _directions([(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"], alignment)
     directions = _slides(evidence, lines, normals, alignment)
     frame, out = evidence.frame, []
     for line in lines:
@@ -124,13 +122,9 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
             normal_matrix[2 + k, 2 + k] += 1.0 / direction**2
             right[2 + k] += float(unit @ own) / direction**2
     weight = np.sqrt(np.diag(normal_matrix))
-    solution = (
-        np.linalg.lstsq(normal_matrix / np.outer(weight, weight), right / weight, rcond=None)[0] / weight
-    )
+    solution = np.linalg.lstsq(normal_matrix / np.outer(weight, weight), right / weight, rcond=None)[0] / weight
     fitted = canonical(axis + solution[2] * u + solution[3] * v)
-    return Line(
-        fitted, origin + solution[0] * u + solution[1] * v, sum(i.area for i in items), tuple(indices)
-    )
+    return Line(fitted, origin + solution[0] * u + solution[1] * v, sum(i.area for i in items), tuple(indices))
 
 
 def _centres(evidence: Evidence) -> list[Array]:

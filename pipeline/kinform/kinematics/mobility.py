@@ -63,14 +63,10 @@ def close(
         row = np.zeros(total)
         row[offset[-1] + k] = 1.0
         rates.append(row)
-    return Closure(
-        np.array(rates).reshape(len(rates), total), tree, tuple(int(o) for o in offset), tuple(loose)
-    )
+    return Closure(np.array(rates).reshape(len(rates), total), tree, tuple(int(o) for o in offset), tuple(loose))
 
 
-def _close_block(
-    edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], size: float
-) -> Array:
+def _close_block(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], size: float) -> Array:
     """Null space (k, rates of the block) of the closure of all its independent loops."""
     count = sum(len(spaces[k]) for k in block)
     if count == 0:

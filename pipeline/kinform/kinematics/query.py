@@ -89,9 +89,7 @@ def _body(design: Design, name: str) -> str:
     try:
         part = design.assembly.parts_of(name)[0]
     except KeyError:
-        known = sorted(
-            {*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)}
-        )
+        known = sorted({*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)})
         raise KeyError(f"no part, group or body {name!r}; there are: {', '.join(known)}") from None
     return design.kinematics.body_of(part).name
 
@@ -101,11 +99,7 @@ def _patches(design: Design, first: str, second: str) -> list[tuple[int, Patch]]
     if design.contacts is None:
         return []
     of_part = {p: b.name for b in design.kinematics.bodies for p in b.parts}
-    return [
-        (k, p)
-        for k, p in enumerate(design.contacts.patches)
-        if {of_part[n] for n in p.parts} == {first, second}
-    ]
+    return [(k, p) for k, p in enumerate(design.contacts.patches) if {of_part[n] for n in p.parts} == {first, second}]
 
 
 def _outside(twist: Array, space: Array, frame: Frame) -> float:
@@ -134,9 +128,7 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))
 
 
-def _sentence(
-    a: str, b: str, what: str, in_pair: bool | None, in_all: bool, blockers: tuple[QueryBlocker, ...]
-) -> str:
+def _sentence(a: str, b: str, what: str, in_pair: bool | None, in_all: bool, blockers: tuple[QueryBlocker, ...]) -> str:
     pair = {None: f"{a} and {b} do not touch", True: f"their contact leaves the {what} free"}
     head = pair.get(in_pair, f"their contact blocks the {what} at {len(blockers)} patches")
     return f"{head}; in the whole assembly it is {'free' if in_all else 'not free'}"

@@ -116,9 +116,7 @@ def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:
     return np.asarray(np.average([a.foot(direction) for a in group], axis=0, weights=weights))
 
 
-def _moved(
-    joint: Joint, old: _Axis, direction: Array, foot: Array | None, misfit: Misfit
-) -> tuple[Joint, Misfit]:
+def _moved(joint: Joint, old: _Axis, direction: Array, foot: Array | None, misfit: Misfit) -> tuple[Joint, Misfit]:
     """The joint on its snapped line, and the misfit with what that moved."""
     angle = float(np.linalg.norm(np.cross(old.axis, direction)))
     if angle > misfit.angle:

@@ -61,9 +61,7 @@ def _about(vertices: Array, faces: NDArray[np.int64]) -> tuple[float, Array, Arr
     """
     a, b, c = (np.ascontiguousarray(vertices[faces[:, k]].T) for k in range(3))
     volumes = (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     ) / 6.0
     total = a + b + c
     first = (total * volumes).sum(axis=1) / 4.0

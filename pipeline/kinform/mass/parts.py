@@ -48,10 +48,7 @@ def _not_a_solid(health: MeshHealth) -> str:
     if health.facets == 0:
         return "the mesh has no facets"
     if not health.watertight:
-        return (
-            f"the mesh is not watertight ({health.open_edges} open and "
-            f"{health.overused_edges} overused edges)"
-        )
+        return f"the mesh is not watertight ({health.open_edges} open and {health.overused_edges} overused edges)"
     if not health.consistent_winding:
         return "the facets of the mesh are wound inconsistently"
     return ""

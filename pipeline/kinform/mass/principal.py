@@ -54,10 +54,7 @@ def impossible(mass: float, inertia: Array) -> str:
     if low < -ROUNDED * size:
         return f"the inertia tensor has a negative principal moment ({low:.6g} kg·m²)"
     if low + middle < (1.0 - ROUNDED) * high:
-        return (
-            "the principal moments break the triangle inequality "
-            f"({low:.6g} + {middle:.6g} < {high:.6g} kg·m²)"
-        )
+        return f"the principal moments break the triangle inequality ({low:.6g} + {middle:.6g} < {high:.6g} kg·m²)"
     return ""
 
 

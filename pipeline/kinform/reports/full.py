@@ -24,9 +24,7 @@ def render(report: CheckReport, design: Design) -> str:
             lines += _wrapped(f"{rule.code} {rule.rule}: {one_line(rule.reason)}", "  ", "      ")
         blocks.append("\n".join(lines))
     name = one_line(design.assembly.name)
-    blocks.append(
-        "\n".join([f"{name}: {verdict_line(report)}", severity_counts(report), rule_counts(report)])
-    )
+    blocks.append("\n".join([f"{name}: {verdict_line(report)}", severity_counts(report), rule_counts(report)]))
     return "\n\n".join(blocks) + "\n"
 
 

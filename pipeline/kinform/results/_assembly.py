@@ -108,9 +108,7 @@ def read(group: h5py.Group) -> Assembly:
         **_with_source(header),
         parts=_read_parts(group),
         groups=tuple(Group(**_with_source(row)) for row in read_rows(group, "groups", _GROUPS)),
-        assumptions=tuple(
-            Assumption(**_with_source(row)) for row in read_rows(group, "assumptions", _ASSUMPTIONS)
-        ),
+        assumptions=tuple(Assumption(**_with_source(row)) for row in read_rows(group, "assumptions", _ASSUMPTIONS)),
         tolerances=Tolerances(**tolerances),
         function=_function.read(group["function"]),
         simulation=None if request is None else _function.read_request(request),
@@ -149,9 +147,7 @@ def _write_poses(group: h5py.Group, assembly: Assembly) -> None:
     poses = [part.X_WP for part in assembly.parts]
     write_array(group, "X_WP", np.array(poses).reshape(-1, 4, 4), "1 (rotation), m (last column)")
     overrides = [
-        vars(part.override) | {"part": i}
-        for i, part in enumerate(assembly.parts)
-        if part.override is not None
+        vars(part.override) | {"part": i} for i, part in enumerate(assembly.parts) if part.override is not None
     ]
     write_rows(group, "overrides", _OVERRIDES, overrides)
 

@@ -91,9 +91,7 @@ def read(path: str | Path) -> Design:
 
 def to_bytes(design: Design) -> bytes:
     """The results file as bytes: the same design gives the same bytes, everywhere."""
-    file = h5py.File(
-        "results", "w", driver="core", backing_store=False, libver=("earliest", "v108"), track_order=False
-    )
+    file = h5py.File("results", "w", driver="core", backing_store=False, libver=("earliest", "v108"), track_order=False)
     with file:
         file.attrs["schema"] = SCHEMA
         file.attrs["kinform"] = __version__

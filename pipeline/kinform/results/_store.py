@@ -26,9 +26,7 @@ def check_target(path: str | Path) -> None:
     """Raise ResultsError when a file could not be written there, before hours of work are lost."""
     target = Path(os.path.realpath(path))
     if target.is_dir():
-        raise refuse(
-            path, "this is a folder, not a file", f"name a file in it, such as {Path(path) / 'results.h5'}"
-        )
+        raise refuse(path, "this is a folder, not a file", f"name a file in it, such as {Path(path) / 'results.h5'}")
     if not target.parent.is_dir():
         missing = Path(path).parent
         raise refuse(path, f"the folder {missing} does not exist", f"create it: mkdir -p {missing}")

@@ -216,9 +216,7 @@ def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = No
     return group[name][()] if labels is None else group[name].fields(list(labels))[()]
 
 
-def write_rows(
-    group: h5py.Group, name: str, columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]
-) -> None:
+def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) -> None:
     """Write a table from rows: field → value."""
     split = [[scalar for column in columns for scalar in column.split(row[column.field])] for row in rows]
     flat = [(label, column) for column in columns for label in column.labels]
@@ -256,9 +254,7 @@ def read_records(
     return tuple(cls(**row) for row in read_rows(group, name, columns))
 
 
-def write_array(
-    group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8"
-) -> h5py.Dataset:
+def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> h5py.Dataset:
     """Write one array, contiguous and uncompressed."""
     data = np.ascontiguousarray(array, dtype=dtype).reshape(np.shape(array))
     dataset = group.create_dataset(name, data=data, track_times=False)

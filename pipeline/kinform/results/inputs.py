@@ -122,9 +122,7 @@ def _bare_function(function: Function) -> Function:
         mobility=function.mobility,
         joints=tuple(replace(joint, file="", line=None) for joint in function.joints),
         couplings=tuple(replace(coupling, file="", line=None) for coupling in function.couplings),
-        drives=tuple(
-            replace(drive, file="", line=None, law=_bare_law(drive.law)) for drive in function.drives
-        ),
+        drives=tuple(replace(drive, file="", line=None, law=_bare_law(drive.law)) for drive in function.drives),
         loads=tuple(replace(load, file="", line=None) for load in function.loads),
         requirements=function.requirements,
     )

@@ -1,7 +1,13 @@
-"""Simulation of the port model: functional, kinematic, dynamic."""
+"""Simulation: how the device moves, at the functional, kinematic or dynamic level.
 
+Reads the port model of `kinform.behaviour`; importing it brings in neither scipy nor compiled kernels.
+"""
+
+from __future__ import annotations
+
+from kinform.simulation.settings import SolverSettings
 from kinform.simulation.simulate import simulate
 
-__all__ = ["CODE_VERSION", "simulate"]
+__all__ = ["CODE_VERSION", "SolverSettings", "simulate"]
 
 CODE_VERSION: int = 1

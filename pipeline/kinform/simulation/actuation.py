@@ -16,7 +16,6 @@ from kinform.behaviour.components import (
 )
 from kinform.behaviour.signals import Signal, smooth
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.spatial import cross
 
 __all__ = ["Actuation"]
 
@@ -83,7 +82,7 @@ class Actuation:
         deviation = getattr(signal, "deviation", None)
         if deviation is not None:
             self.notes.append(
-                f"the table that drives {actor.subject} is followed by a cubic spline that rests at its ends, "
+                f"the table that drives {actor.subject} is followed by a cubic spline at rest at its ends, "
                 f"within {deviation:.3g} rad or m of the table's straight lines"
             )
         return signal
@@ -119,7 +118,7 @@ class Actuation:
 
     def stored(self, q: Array) -> float:
         """Energy in the springs (J)."""
-        return sum(0.5 * s.stiffness * (q[at] - s.rest) ** 2 for at, _, s in self._springs)
+        return float(sum(0.5 * s.stiffness * (q[at] - s.rest) ** 2 for at, _, s in self._springs))
 
     def loads(self, X: Array, V: Array) -> tuple[Array, float]:
         """(L, 6) wrench of the loads on each link about the centre, and their power (W)."""
@@ -127,6 +126,6 @@ class Actuation:
         for load in self._loads:
             R, p = X[load.link, :3, :3], X[load.link, :3, 3]
             force, torque = (R @ load.force, R @ load.torque) if load.turning else (load.force, load.torque)
-            out[load.link, :3] += torque + cross(R @ load.point + p, force)
+            out[load.link, :3] += torque + np.cross(R @ load.point + p, force)
             out[load.link, 3:] += force
         return out, float((out * V).sum())

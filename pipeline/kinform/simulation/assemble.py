@@ -61,9 +61,7 @@ def assemble(system: System) -> tuple[Mechanism, tuple[str, ...]]:
     """The mechanism, and the bodies that nothing connects with the ground."""
     bodies, joints = system.bodies, system.joints
     index = {body.name: k for k, body in enumerate(bodies)}
-    pairs = [
-        (index[system.body_at(j.name, "a").name], index[system.body_at(j.name, "b").name]) for j in joints
-    ]
+    pairs = [(index[system.body_at(j.name, "a").name], index[system.body_at(j.name, "b").name]) for j in joints]
     rigid = [joint.kind.rates == 0 for joint in joints]
     topology = arrange(len(bodies), pairs, rigid, index[system.ground.name])
     slots = _slots(system)

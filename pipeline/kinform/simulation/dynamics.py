@@ -17,7 +17,7 @@ from kinform.behaviour.components import RigidBody, System
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.closure import factor
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.spatial import cross, cross_force, cross_motion
+from kinform.simulation.spatial import cross_force, cross_motion, skew
 
 __all__ = ["Dynamics", "Motion", "SingularMassError"]
 
@@ -44,21 +44,19 @@ class Motion:
 class Dynamics:
     """The mechanism with its masses, gravity and what acts on it."""
 
-    def __init__(self, mechanism: Mechanism, system: System, gravity: Array, actuation: Actuation):
+    def __init__(self, mechanism: Mechanism, system: System, gravity: Array, actuation: Actuation, rank: int):
+        """`rank`: of the loops for the rates that are not prescribed."""
         self.mechanism, self.gravity, self.actuation = mechanism, gravity, actuation
-        bodies = [b for b in system.bodies if isinstance(b, RigidBody)]
         link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
+        bodies = [b for b in system.bodies if isinstance(b, RigidBody) and link_of[b.subject] > 0]
         self._links = np.array([link_of[b.subject] for b in bodies], dtype=np.int64)
         self._mass = np.array([b.mass for b in bodies], dtype=np.float64)
         self._com = np.array([b.centre_of_mass for b in bodies]).reshape(-1, 3) - mechanism.centre
         self._inertia = np.array([b.inertia for b in bodies]).reshape(-1, 3, 3)
-        self._rank = 0
-        self._order = self._ancestry()
-
-    def with_rank(self, rank: int) -> Dynamics:
-        """The same with the rank of the loops for the rates that are not prescribed."""
+        self._lumped = np.zeros((len(bodies), 6, 6))
+        self._lumped[:, 3:, 3:] = self._mass[:, None, None] * np.eye(3)
         self._rank = rank
-        return self
+        self._order = self._ancestry()
 
     def _ancestry(self) -> Array:
         """(n, n) 1 where rate j moves the link of rate i and comes before it (or is it)."""
@@ -71,15 +69,12 @@ class Dynamics:
         """(B, 6, 6) inertia about the centre, and (B, 3) centres of mass."""
         R, p = X[self._links, :3, :3], X[self._links, :3, 3]
         com = (R @ self._com[:, :, None])[..., 0] + p
-        hat = np.zeros_like(R)
-        hat[:, 0, 1], hat[:, 0, 2], hat[:, 1, 2] = -com[:, 2], com[:, 1], -com[:, 0]
-        hat[:, 1, 0], hat[:, 2, 0], hat[:, 2, 1] = com[:, 2], -com[:, 1], com[:, 0]
+        hat = skew(com)
         first = self._mass[:, None, None] * hat
-        out = np.empty((len(com), 6, 6))
+        out = self._lumped.copy()
         out[:, :3, :3] = R @ self._inertia @ R.transpose(0, 2, 1) - first @ hat
         out[:, :3, 3:] = first
         out[:, 3:, :3] = -first
-        out[:, 3:, 3:] = self._mass[:, None, None] * np.eye(3)
         return out, com
 
     def mass_matrix(self, X: Array, screws: Array) -> Array:
@@ -92,7 +87,9 @@ class Dynamics:
         composite = (moved.T @ inertia.reshape(-1, 36)).reshape(-1, 6, 6)
         momenta = (composite @ screws[:, :, None])[..., 0]
         half = self._order * (momenta @ screws.T)
-        return np.asarray(half + half.T - np.diag(np.diag(half)))
+        full = half + half.T
+        full.flat[:: len(full) + 1] *= 0.5
+        return np.asarray(full)
 
     def motion(self, t: float, q: Array, v: Array) -> Motion:
         """Accelerations, efforts and power. Raises SingularMassError."""
@@ -124,6 +121,8 @@ class Dynamics:
         """Accelerations of all rates, and the efforts (n,) that the prescribed ones need."""
         mechanism, led, free = self.mechanism, self.actuation.led, self.actuation.free
         acceleration, needed = np.zeros(len(M)), np.zeros(len(M))
+        if not mechanism.closed and not len(led):
+            return _solve(M, force), needed
         acceleration[led] = self.actuation.led_accelerations(t)
         rest = force[free] - M[np.ix_(free, led)] @ acceleration[led]
         inner = M[np.ix_(free, free)]

@@ -142,8 +142,6 @@ class Follower:
         return f"{gap:.3g} rad or {gap * self.mechanism.length:.3g} m"
 
     def _singular(self) -> str:
-        names = [
-            s.name for s in self.mechanism.slots if np.isin(np.arange(s.v.start, s.v.stop), self.led.v).any()
-        ]
+        names = [s.name for s in self.mechanism.slots if np.isin(np.arange(s.v.start, s.v.stop), self.led.v).any()]
         led = " and ".join(names) if names else "the driven joints"
         return f"the loop is singular: {led} no longer determines the other joints (a dead point)"

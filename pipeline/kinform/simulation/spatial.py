@@ -16,48 +16,61 @@ __all__ = [
     "multiply",
     "quaternions",
     "rotation_vector",
+    "skew",
     "to_matrix",
 ]
 
 Array = NDArray[np.float64]
 
-NEXT = np.array([1, 2, 0])
-LAST = np.array([2, 0, 1])
+LEVI_CIVITA = np.zeros((3, 3, 3))
+for _i in range(3):
+    LEVI_CIVITA[_i, (_i + 1) % 3, (_i + 2) % 3] = 1.0
+    LEVI_CIVITA[_i, (_i + 2) % 3, (_i + 1) % 3] = -1.0
+
+SKEW = LEVI_CIVITA.transpose(0, 2, 1).reshape(3, 9)
+"""(3, 9): a @ SKEW is the matrix of a × …, row by row. A product is much faster than components."""
+
+_BLOCKS = np.zeros((6, 6, 6))
+_BLOCKS[:3, :3, :3] = _BLOCKS[:3, 3:, 3:] = _BLOCKS[3:, 3:, :3] = SKEW.reshape(3, 3, 3)
+TWIST = _BLOCKS.reshape(6, 36)
+"""(6, 36): the same for twists."""
+
+
+def skew(a: Array) -> Array:
+    """(n, 3, 3) matrices of a × … for a (n, 3)."""
+    return np.asarray((a @ SKEW).reshape(-1, 3, 3))
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a × b over the last axis; numpy's own takes four times as long on small arrays."""
-    product: Array = a[..., NEXT] * b[..., LAST] - a[..., LAST] * b[..., NEXT]
-    return product
+    """a × b, each (n, 3)."""
+    return np.asarray((skew(a) @ b[:, :, None])[..., 0])
 
 
 def cross_motion(a: Array, b: Array) -> Array:
-    """(…, 6) rate of change of twist b when it is carried along by twist a."""
-    w = a[..., :3]
-    return np.concatenate(
-        [cross(w, b[..., :3]), cross(w, b[..., 3:]) + cross(a[..., 3:], b[..., :3])], axis=-1
-    )
+    """(n, 6) rate of change of twists b that are carried along by twists a."""
+    return np.asarray(((a @ TWIST).reshape(-1, 6, 6) @ b[:, :, None])[..., 0])
 
 
 def cross_force(a: Array, f: Array) -> Array:
-    """(…, 6) rate of change of wrench f when it is carried along by twist a."""
-    w = a[..., :3]
-    return np.concatenate(
-        [cross(w, f[..., :3]) + cross(a[..., 3:], f[..., 3:]), cross(w, f[..., 3:])], axis=-1
-    )
+    """(n, 6) rate of change of wrenches f that are carried along by twists a."""
+    return np.asarray(-(f[:, None, :] @ (a @ TWIST).reshape(-1, 6, 6))[:, 0])
 
 
 def along_motion(X: Array, twist: Array) -> Array:
     """Twists (n, 6) carried from the zero pose by poses X (n, 4, 4)."""
     R, p = X[:, :3, :3], X[:, :3, 3]
-    omega = (R @ twist[:, :3, None])[..., 0]
-    return np.concatenate([omega, (R @ twist[:, 3:, None])[..., 0] + cross(p, omega)], axis=-1)
+    # Both halves of a twist as the columns of one matrix, turned at once.
+    halves = R @ twist.reshape(-1, 2, 3).transpose(0, 2, 1)
+    out = np.empty_like(twist)
+    out[:, :3] = halves[:, :, 0]
+    out[:, 3:] = halves[:, :, 1] + (skew(p) @ halves[:, :, :1])[..., 0]
+    return out
 
 
 def multiply(a: Array, b: Array) -> Array:
     """Quaternion product a ∘ b (4,)."""
     w, v, x, u = a[0], a[1:], b[0], b[1:]
-    return np.concatenate([[w * x - v @ u], w * u + x * v + cross(v, u)])
+    return np.concatenate([[w * x - v @ u], w * u + x * v + np.cross(v, u)])
 
 
 def to_matrix(q: Array) -> Array:

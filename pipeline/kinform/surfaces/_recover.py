@@ -120,9 +120,7 @@ def _assemble(
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]
     faces = _groups(labels)
-    surfaces = tuple(
-        _surface(descriptions[k], float(area[k]), faces[i], centre, diagonal) for i, k in enumerate(rank)
-    )
+    surfaces = tuple(_surface(descriptions[k], float(area[k]), faces[i], centre, diagonal) for i, k in enumerate(rank))
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
     noise = diagonal * float(np.sqrt(squares / samples)) if samples else 0.0

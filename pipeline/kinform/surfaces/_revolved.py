@@ -13,7 +13,14 @@ from kinform.surfaces._batch import Array, Ints, Mask, group_sum, normal_equatio
 from kinform.surfaces.kind import ALONG, Batch, Params, Probe
 
 __all__ = [
-    "axis_of_edges", "basis", "defining", "generators", "gauss_newton", "jacobian", "lines", "probe",
+    "axis_of_edges",
+    "basis",
+    "defining",
+    "gauss_newton",
+    "generators",
+    "jacobian",
+    "lines",
+    "probe",
     "widths",
 ]  # fmt: skip
 

@@ -26,9 +26,7 @@ class Cone:
         total = np.maximum(np.bincount(batch.region, weight, count), 1e-300)
         mean = group_sum(batch.region, normal * weight[:, None], count) / total[:, None]
         offset = normal - mean[batch.region]
-        matrix = group_sum(
-            batch.region, weight[:, None, None] * offset[:, :, None] * offset[:, None, :], count
-        )
+        matrix = group_sum(batch.region, weight[:, None, None] * offset[:, :, None] * offset[:, None, :], count)
         values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.ascontiguousarray(vectors[:, :, 0])
         region, edge, inner = batch.edges
@@ -90,9 +88,7 @@ class Cone:
         np.minimum.at(low, region, t)
         height = np.where(batch.size > 0, high - low, 0.0)
         cos = np.cos(params[:, 7])
-        largest = np.maximum(
-            params[:, 6] + high * np.tan(params[:, 7]), params[:, 6] + low * np.tan(params[:, 7])
-        )
+        largest = np.maximum(params[:, 6] + high * np.tan(params[:, 7]), params[:, 6] + low * np.tan(params[:, 7]))
         sagitta = largest * (1 - np.cos(sweep / 2)) * cos
         taper = height * np.abs(np.sin(params[:, 7]))
         return np.asarray((lines >= 5) & (sagitta > 4 * scale.fit) & (taper > 2 * scale.fit))

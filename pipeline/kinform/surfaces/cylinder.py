@@ -47,9 +47,7 @@ class Cylinder:
         middle = group_sum(group, points, count) / size[:, None]
         offset = points - middle[group]
         u, v = np.einsum("ij,ij->i", offset, x[group]), np.einsum("ij,ij->i", offset, y[group])
-        matrix, right = normal_equations(
-            group, np.stack([u, v, np.ones_like(u)], axis=1), u * u + v * v, count
-        )
+        matrix, right = normal_equations(group, np.stack([u, v, np.ones_like(u)], axis=1), u * u + v * v, count)
         solution = solve_normal(matrix, right)
         centre = solution[:, :2] / 2
         square = solution[:, 2] + (centre**2).sum(axis=1)

@@ -78,9 +78,7 @@ def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
     return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
 
 
-def curved(
-    kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array, scale: Scale
-) -> list[Description]:
+def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array, scale: Scale) -> list[Description]:
     """Every region of one kind, with its final fit."""
     work = batch.patchwork
     params = kind.refine(batch, params, tolerance, 6)

@@ -60,9 +60,7 @@ def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array,
     held = kind.probe(params[region[owner]], work.vertices[vertex])
     chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
     allowed = held.curvature_radius * chord[region[owner]]
-    within = (held.distance < tolerance[region[owner]]) & (
-        held.distance > -allowed - tolerance[region[owner]]
-    )
+    within = (held.distance < tolerance[region[owner]]) & (held.distance > -allowed - tolerance[region[owner]])
     bad = np.bincount(owner, ~within, len(polygon)) > 0
     normal = kind.probe(params[region], work.centre[polygon]).normal
     cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]

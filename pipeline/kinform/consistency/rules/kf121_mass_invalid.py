@@ -32,9 +32,7 @@ def check(context: Context) -> Outcome:
     """Known masses that are impossible, and problems of the mass stage that no other rule explains."""
     report = context.mass
     if isinstance(report, Outcome):
-        weighed = any(
-            part.density is not None or part.override is not None for part in context.assembly.parts
-        )
+        weighed = any(part.density is not None or part.override is not None for part in context.assembly.parts)
         return report if weighed else skipped("no part has a density or a stated mass")
     known = [properties for properties in report.parts if properties.mass is not None]
     if not known and not report.problems:
@@ -74,9 +72,7 @@ def _impossible(properties: MassProperties) -> str:
     shown = f"principal moments {number(low)}, {number(middle)} and {number(high)} kg·m²"
     if low < -SLACK * high or high <= 0.0:
         return f"{shown}: none may be negative"
-    return (
-        f"{shown}: the largest exceeds the sum of the others" if high > (low + middle) * (1.0 + SLACK) else ""
-    )
+    return f"{shown}: the largest exceeds the sum of the others" if high > (low + middle) * (1.0 + SLACK) else ""
 
 
 def _explained(part: Part) -> bool:

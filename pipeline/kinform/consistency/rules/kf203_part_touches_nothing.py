@@ -49,8 +49,7 @@ def check(context: Context) -> Outcome:
                 intended="contact with the rest of the assembly",
                 place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
                 declared=part.source,
-                remedy="Check the pose, add the part that is missing between, or join it by [[group]] "
-                "or [[assume]].",
+                remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
             )
         )
     return decided(findings)
@@ -97,9 +96,7 @@ def _home(context: Context, clusters: list[tuple[str, ...]]) -> tuple[str, ...]:
 def _intended(assembly: Assembly, cluster: tuple[str, ...]) -> bool:
     """Whether an intended joint leads out of the cluster: its absence is then reported as such."""
     inside = set(cluster)
-    ends = [
-        [inside.issuperset(assembly.parts_of(name)) for name in j.between] for j in assembly.function.joints
-    ]
+    ends = [[inside.issuperset(assembly.parts_of(name)) for name in j.between] for j in assembly.function.joints]
     return any(first != second for first, second in ends)
 
 

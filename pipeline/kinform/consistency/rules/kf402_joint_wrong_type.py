@@ -80,9 +80,7 @@ def _remedy(c: Comparison) -> str:
         return "Give the shaft shoulders or clips that hold it along the axis."
     if c.intended.type == "revolute" and c.type == "planar":
         return "Give the joint a journal and a bore; a flat face alone does not hold the axis."
-    return (
-        "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
-    )
+    return "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
 
 
 RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check)

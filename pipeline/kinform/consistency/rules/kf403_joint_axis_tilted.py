@@ -41,11 +41,7 @@ def check(context: Context) -> Outcome:
             unknown.append(f"'{c.intended.name}' is {angle(off)} off, known to {angle(c.angle_slack)}")
     if unknown:
         return inconclusive("; ".join(unknown), findings)
-    return (
-        decided(findings, f"{counted(count, 'axis', 'axes')} compared")
-        if count
-        else skipped("no axis to compare")
-    )
+    return decided(findings, f"{counted(count, 'axis', 'axes')} compared") if count else skipped("no axis to compare")
 
 
 def _finding(c: Comparison, off: float, limit: float) -> Finding:
@@ -53,8 +49,7 @@ def _finding(c: Comparison, off: float, limit: float) -> Finding:
     sense = 1.0 if float(c.axis @ c.intended.axis) >= 0.0 else -1.0
     return RULE.finding(
         [c.intended.name],
-        f"the axis of joint '{c.intended.name}' is {angle(off)} off the intended direction "
-        f"(allowed {angle(limit)})",
+        f"the axis of joint '{c.intended.name}' is {angle(off)} off the intended direction (allowed {angle(limit)})",
         found=f"axis {direction(sense * c.axis)}",
         intended=f"axis {direction(c.intended.axis)}",
         place=c.point if c.point is not None else c.intended.point,

@@ -43,9 +43,7 @@ def check(context: Context) -> Outcome:
             )
     if unknown:
         return inconclusive("; ".join(unknown), findings)
-    return (
-        decided(findings, f"{counted(count, 'place')} compared") if count else skipped("no axis to compare")
-    )
+    return decided(findings, f"{counted(count, 'place')} compared") if count else skipped("no axis to compare")
 
 
 def _finding(c: Comparison, off: float, units: str) -> Finding:

@@ -40,9 +40,7 @@ def check(context: Context) -> Outcome:
     exchanged = float(np.ptp(simulation.energy, axis=0).max())
     worst = int(np.argmax(drift))
     if float(drift[worst]) <= max(ALLOWED * exchanged, NOTHING):
-        return decided(
-            reason=f"drift {number(float(drift[worst]), 2)} J of {number(exchanged, 3)} J exchanged"
-        )
+        return decided(reason=f"drift {number(float(drift[worst]), 2)} J of {number(exchanged, 3)} J exchanged")
     finding = RULE.finding(
         (context.assembly.name,),
         f"the energy balance is off by {number(float(drift[worst]), 3)} J "

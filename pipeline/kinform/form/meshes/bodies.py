@@ -20,9 +20,7 @@ def named_bodies(raw: RawMesh) -> dict[str, RawMesh]:
     """Bodies that the file names, by name: objects, else groups, else solids; {} when it names fewer than two."""
     for labelling in raw.labellings:
         if len(labelling.names) > 1:
-            return {
-                name or "unnamed": _part(raw, labelling.labels == k) for k, name in enumerate(labelling.names)
-            }
+            return {name or "unnamed": _part(raw, labelling.labels == k) for k, name in enumerate(labelling.names)}
     return {}
 
 
@@ -44,9 +42,7 @@ def shell_bodies(raw: RawMesh) -> dict[str, RawMesh]:
 def select_body(raw: RawMesh, name: str) -> RawMesh:
     """The body of that name; raises MeshError with the names there are."""
     known = {
-        n or "unnamed": (labelling.labels == k)
-        for labelling in raw.labellings
-        for k, n in enumerate(labelling.names)
+        n or "unnamed": (labelling.labels == k) for labelling in raw.labellings for k, n in enumerate(labelling.names)
     }
     if name in known:
         return _part(raw, known[name])
@@ -72,9 +68,7 @@ def _with_cavities(vertices: Array, faces: Ints, label: Ints) -> Ints:
             continue
         probe = vertices[faces[label == k][0]].mean(axis=0)
         around = [
-            j
-            for j in shells
-            if volume[j] > abs(volume[k]) and _winding(vertices, faces[label == j], probe) > 0.5
+            j for j in shells if volume[j] > abs(volume[k]) and _winding(vertices, faces[label == j], probe) > 0.5
         ]
         if around:
             out[label == k] = min(around, key=lambda j: volume[j])

@@ -21,9 +21,7 @@ FLAT = 1e-9
 """A solid thinner than this share of its size has no volume."""
 
 
-def build_mesh(
-    raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool
-) -> Mesh:
+def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool) -> Mesh:
     """The welded mesh of a file, in metres.
 
     `weld` is the welding distance (m), None for 1e-6 of the diagonal. A closed mesh that is inside out

@@ -185,18 +185,12 @@ def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.i
     index = np.where(stated > 0, stated - 1, stated + before[owner] if len(owner) else stated)
     for corner in np.flatnonzero((index < 0) | (index >= count) | (stated == 0)):
         face = owner[corner]
-        lines.faults.append(
-            _index_fault(int(stated[corner]), lines.face_lines[face], int(before[face]), count)
-        )
+        lines.faults.append(_index_fault(int(stated[corner]), lines.face_lines[face], int(before[face]), count))
     return index, sizes
 
 
 def _index_fault(stated: int, line: int, before: int, count: int) -> Fault:
     if stated == 0:
         return Fault(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
-    known = (
-        f"{plural(before, 'vertex')} precede it" if stated < 0 else f"the file has {plural(count, 'vertex')}"
-    )
-    return Fault(
-        f"has index {stated} out of range at line {line}: {known}", f"correct it, or {REEXPORT}", line
-    )
+    known = f"{plural(before, 'vertex')} precede it" if stated < 0 else f"the file has {plural(count, 'vertex')}"
+    return Fault(f"has index {stated} out of range at line {line}: {known}", f"correct it, or {REEXPORT}", line)

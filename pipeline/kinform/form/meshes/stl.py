@@ -67,9 +67,7 @@ def parse_binary(data: bytes) -> RawMesh:
     if spare < 0:
         raise MeshError([_wrong_size(len(data), count)])
     if spare >= _RECORD.itemsize:
-        raise MeshError(
-            [Fault(f"has {spare} bytes after the {count} facets that its header claims", REEXPORT)]
-        )
+        raise MeshError([Fault(f"has {spare} bytes after the {count} facets that its header claims", REEXPORT)])
     if count == 0:
         raise MeshError([Fault("is empty: its header claims 0 facets", REEXPORT)])
     corners = np.frombuffer(data, _RECORD, count, _HEADER)["corners"].astype(np.float32)

@@ -18,8 +18,8 @@ __all__ = [
     "Name",
     "NonNegative",
     "Pair",
-    "Positive",
     "Posed",
+    "Positive",
     "Quantity",
     "Reference",
     "Table",
@@ -36,9 +36,7 @@ Name = Annotated[str, StringConstraints(min_length=1, pattern=r"^[^/\x00]+$")]
 Reference = Annotated[str, StringConstraints(min_length=1)]
 Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
-JointType = Literal[
-    "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"
-]
+JointType = Literal["fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"]
 
 
 @dataclass(frozen=True)

@@ -151,17 +151,13 @@ class Load(Table):
     point: Vector | None = Field(
         None, description="where the force acts, at the pose of the meshes; default the centre of mass"
     )
-    frame: Literal["world", "body"] = Field(
-        "world", description="fixed in the world, or turning with the body"
-    )
+    frame: Literal["world", "body"] = Field("world", description="fixed in the world, or turning with the body")
 
 
 class FunctionTable(Table):
     """`[function]`: what the device is for."""
 
-    mobility: Annotated[int, Field(ge=0)] | None = Field(
-        None, description="compared with the effective mobility"
-    )
+    mobility: Annotated[int, Field(ge=0)] | None = Field(None, description="compared with the effective mobility")
     joint: list[IntendedJointTable] = Field([], description="intended joints")
     coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
     drive: list[Drive] = Field([], description="what acts on joints")

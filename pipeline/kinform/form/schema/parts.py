@@ -58,21 +58,13 @@ class Part(Posed):
     body: Annotated[str, Field(min_length=1)] | None = Field(
         None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
     )
-    units: Unit | None = Field(
-        None, description="length unit of this mesh, where it differs from the assembly's"
-    )
+    units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
     material: Reference | None = Field(None, description="a [materials.NAME] or a built-in material")
     density: Positive | None = Field(None, description="kg/m³; in place of material")
-    mass: Positive | None = Field(
-        None, description="kg; overrides the geometry, with centre_of_mass and inertia"
-    )
+    mass: Positive | None = Field(None, description="kg; overrides the geometry, with centre_of_mass and inertia")
     centre_of_mass: Vector | None = Field(None, description="three lengths in the part frame; with mass")
-    inertia: Matrix | None = Field(
-        None, description="3×3, kg·m², about the centre of mass, part axes; with mass"
-    )
-    solid: bool = Field(
-        True, description="false: surfaces only; contacts yes, mass no, need not be watertight"
-    )
+    inertia: Matrix | None = Field(None, description="3×3, kg·m², about the centre of mass, part axes; with mass")
+    solid: bool = Field(True, description="false: surfaces only; contacts yes, mass no, need not be watertight")
 
 
 class Group(Table):

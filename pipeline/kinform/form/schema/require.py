@@ -57,9 +57,7 @@ class Reach(_Require):
     )
     region: Annotated[Cone | Box | Poses, Field(discriminator="type")] = Field(description="what to cover")
     tolerance: Annotated[NonNegative | None, Length] = Field(None, description="distance that is near enough")
-    angle_tolerance: Annotated[NonNegative | None, Angle] = Field(
-        None, description="degrees that are near enough"
-    )
+    angle_tolerance: Annotated[NonNegative | None, Angle] = Field(None, description="degrees that are near enough")
 
 
 class Follow(_Require):
@@ -72,9 +70,7 @@ class Follow(_Require):
         description="CSV file of time (s), x, y, z and optionally qw, qx, qy, qz, relative to the manifest"
     )
     tolerance: Annotated[Positive, Length] = Field(description="greatest distance from the path")
-    angle_tolerance: Annotated[Positive | None, Angle] = Field(
-        None, description="degrees from the orientation"
-    )
+    angle_tolerance: Annotated[Positive | None, Angle] = Field(None, description="degrees from the orientation")
 
 
 class Clear(_Require):
@@ -84,9 +80,7 @@ class Clear(_Require):
     between: Annotated[list[Reference] | None, Field(min_length=2, max_length=2), Place] = Field(
         None, description="two parts or groups; default all"
     )
-    over: Literal["ranges", "motion"] = Field(
-        "motion", description="the ranges of the joints, or the simulation"
-    )
+    over: Literal["ranges", "motion"] = Field("motion", description="the ranges of the joints, or the simulation")
     distance: Annotated[NonNegative, Length] = Field(0.0, description="least distance")
 
 
@@ -150,9 +144,7 @@ class Inertia(_Require):
     kind: Literal["inertia"]
     of: Annotated[Reference | None, Place] = Field(None, description="part or group; default all")
     axis: Annotated[Vector, Direction] = Field(description="direction of the axis")
-    point: Annotated[Vector | None, Point] = Field(
-        None, description="on the axis; default the centre of mass"
-    )
+    point: Annotated[Vector | None, Point] = Field(None, description="on the axis; default the centre of mass")
     minimum: NonNegative | None = Field(None, description="kg·m²")
     maximum: NonNegative | None = Field(None, description="kg·m²")
 
@@ -162,9 +154,7 @@ class Balance(_Require):
 
     kind: Literal["balance"]
     of: Annotated[Reference, Place] = Field(description="part or group")
-    joint: Annotated[Reference | None, Joint] = Field(
-        None, description="axis of this joint; or axis and point"
-    )
+    joint: Annotated[Reference | None, Joint] = Field(None, description="axis of this joint; or axis and point")
     axis: Annotated[Vector | None, Direction] = Field(None, description="direction of the axis")
     point: Annotated[Vector | None, Point] = Field(None, description="on the axis")
     limit: Positive = Field(description="kg·m: mass times distance from the axis")

@@ -1,0 +1,74 @@
+"""Motion without forces: prescribed joints lead, loops stay closed, everything else rests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.simulation.actuation import Actuation
+from kinform.simulation.follow import Follower, Led
+from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.record import Record, Sample
+from kinform.simulation.settings import SolverSettings
+from kinform.simulation.start import Start
+
+__all__ = ["resting", "run_kinematic"]
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+
+def _follower(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> Follower:
+    led = Led(actuation.led_q, actuation.led, actuation.led_values, actuation.led_rates)
+    return Follower(mechanism, led, start.q, settings)
+
+
+def run_kinematic(
+    mechanism: Mechanism,
+    actuation: Actuation,
+    start: Start,
+    times: Array,
+    settings: SolverSettings,
+    progress: Progress | None,
+) -> Record:
+    """Positions and rates at `times` (s), until the end or until a loop stops."""
+    follower = _follower(mechanism, actuation, start, settings)
+    unknown = np.full(mechanism.rates, np.nan)
+    samples: list[Sample] = []
+    for k, t in enumerate(times):
+        if k:
+            stop = follower.go(float(times[k - 1]), float(t))
+            if stop is not None:
+                return Record(tuple(samples), f"at t = {stop.place:.6g} s {stop.reason}")
+        v = follower.rates(float(t))
+        samples.append(Sample(float(t), follower.q.copy(), v, unknown, (np.nan, np.nan, np.nan)))
+        if progress is not None:
+            progress(k + 1, len(times))
+    return Record(tuple(samples), "")
+
+
+def resting(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> tuple[str, ...]:
+    """What is assumed of joints that no motion drive determines, in sentences."""
+    follower = _follower(mechanism, actuation, start, settings)
+    scale = mechanism.scale[follower.unknown]
+    size = np.abs(follower.loose / scale[:, None]).max(axis=1, initial=0.0)
+    loose = set(follower.unknown[size > 1e-8].tolist())
+    screws = mechanism.screws(mechanism.poses(start.q))
+    closing = np.abs(mechanism.closure(screws)).max(axis=0, initial=0.0) > 0.0
+    still: list[str] = []
+    yielding: list[str] = []
+    for slot in mechanism.slots:
+        own = [k for k in range(slot.v.start, slot.v.stop) if k in loose]
+        if own:
+            (yielding if closing[own].any() else still).append(slot.name)
+    notes = []
+    if still:
+        notes.append(f"no drive prescribes {', '.join(still)}: it stays at its initial position")
+    if yielding:
+        notes.append(
+            f"the drives do not determine the loops with {', '.join(yielding)}: "
+            "they move as little as keeps the loops closed"
+        )
+    return tuple(notes)

@@ -1,0 +1,83 @@
+"""Which level a simulation runs at, and what stands in the way of the higher ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kinform.behaviour import Behaviour, RigidBody
+from kinform.model.assembly import Assembly
+from kinform.model.kinematics import Kinematics
+from kinform.simulation.mechanism import Mechanism
+
+__all__ = ["LEVELS", "Choice", "choose", "notes_of_joints", "notes_of_level"]
+
+LEVELS = ("functional", "kinematic", "dynamic")
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The level, or "" with failures when the level asked for cannot be had."""
+
+    level: str
+    notes: tuple[str, ...] = ()
+    failures: tuple[tuple[str, str], ...] = ()
+
+
+def choose(
+    asked: str | None, behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...], formless: bool
+) -> Choice:
+    """The level asked for, else the highest that is known. `formless`: no part has a mesh."""
+    without_forces = "functional" if formless else "kinematic"
+    obstacles = _obstacles(behaviour, mechanism, adrift)
+    if asked == "dynamic":
+        return Choice("", failures=obstacles) if obstacles else Choice("dynamic")
+    if asked is not None:
+        return Choice(asked)
+    if not obstacles:
+        return Choice("dynamic")
+    subject, why = obstacles[0]
+    more = f", and {len(obstacles) - 1} more" if len(obstacles) > 1 else ""
+    return Choice(without_forces, (f"the level is {without_forces}, not dynamic: {subject}: {why}{more}",))
+
+
+def _obstacles(behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """(subject, why) of all that keeps the model from being dynamic."""
+    link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
+    out = [(name, "no joints connect this body with the ground") for name in adrift]
+    for body in behaviour.system.bodies:
+        moving = isinstance(body, RigidBody) and link_of[body.subject] > 0
+        if moving and isinstance(body, RigidBody) and body.mass is None:
+            out.append((body.subject, "its mass is not known"))
+    out.extend(behaviour.forces_missing)
+    return tuple(out)
+
+
+def notes_of_joints(kinematics: Kinematics) -> tuple[str, ...]:
+    """What is taken for granted of joints that geometry does not settle."""
+    notes = []
+    for joint in kinematics.joints:
+        if joint.type == "general":
+            continue
+        if joint.status == "blocked":
+            notes.append(f"{joint.name} moves as {joint.type}, although contacts block it")
+        elif joint.status == "inferred":
+            notes.append(f"{joint.name} is taken to be {joint.type}: {', '.join(joint.evidence)}")
+    return tuple(notes)
+
+
+def notes_of_level(
+    assembly: Assembly, behaviour: Behaviour, level: str, adrift: tuple[str, ...], gears: bool
+) -> tuple[str, ...]:
+    """What plays no part at this level."""
+    notes = []
+    if adrift:
+        notes.append(f"no joints connect {', '.join(adrift)} with the ground: it stays where it is")
+    if not gears and assembly.function.couplings:
+        names = ", ".join(" and ".join(coupling.joints) for coupling in assembly.function.couplings)
+        notes.append(f"couplings are intended, not derived from geometry, and are not imposed: {names}")
+    if level != "dynamic":
+        forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
+        forces += sorted({f"load on {load.part}" for load in assembly.function.loads})
+        if forces:
+            notes.append(f"forces play no part at the {level} level: {', '.join(forces)}")
+    return tuple(notes)

@@ -1,0 +1,56 @@
+"""The example Makefile: builds converge, and a red gate stays red."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from known import ROOT
+
+KINFORM = Path(sys.executable).with_name("kinform")
+
+
+@pytest.fixture
+def project(tmp_path):
+    if not KINFORM.exists() or shutil.which("make") is None:
+        pytest.skip("needs make, and kinform installed beside the interpreter")
+    (tmp_path / "examples").mkdir()
+    shutil.copy(ROOT / "examples" / "Makefile", tmp_path / "examples" / "Makefile")
+    shutil.copytree(ROOT / "fixtures" / "seekers", tmp_path / "fixtures" / "seekers")
+    shutil.copytree(ROOT / "fixtures" / "broken", tmp_path / "fixtures" / "broken")
+    return tmp_path / "examples"
+
+
+def make(project, *arguments):
+    command = ["make", "-C", str(project), f"KINFORM={KINFORM}", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_a_green_build_has_nothing_left_to_do_and_a_changed_mesh_is_built_again(project):
+    only = "DESIGNS=seeker_1dof"
+    built = make(project, only, "all", "check")
+    assert built.returncode == 0, built.stderr
+    assert make(project, only, "-q", "all").returncode == 0
+    mesh = project.parent / "fixtures" / "seekers" / "seeker_1dof" / "camera.stl"
+    data = bytearray(mesh.read_bytes())
+    data[0:1] = b"K"
+    mesh.write_bytes(bytes(data))
+    result = project / "build" / "seeker_1dof.imported.h5"
+    later = result.stat().st_mtime + 2
+    import os
+
+    os.utime(mesh, (later, later))
+    assert make(project, only, "-q", "all").returncode == 1
+
+
+def test_a_red_gate_is_red_the_second_time_too(project):
+    broken = "broken=../fixtures/broken/seeker_axis_off/seeker_axis_off.toml"
+    first = make(project, "DESIGNS=broken", broken, "check")
+    second = make(project, "DESIGNS=broken", broken, "check")
+    assert first.returncode != 0
+    assert second.returncode != 0
+    assert "KF403" in first.stdout
+    assert "KF403" in second.stdout
