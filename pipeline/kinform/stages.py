@@ -155,7 +155,8 @@ def _without(design: Design, stage: str) -> Design:
     if stage == "contacts":
         stages.pop("surfaces", None)
         marks, design = Fingerprints(), replace(design, surfaces={})
-    return replace(design, **{_FIELDS[name]: None for name in later}, fingerprints=replace(marks, stages=stages))
+    cleared: dict[str, Any] = {_FIELDS[name]: None for name in later}
+    return replace(design, **cleared, fingerprints=replace(marks, stages=stages))
 
 
 def _advance(

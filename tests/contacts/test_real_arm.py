@@ -32,15 +32,14 @@ def test_areas_and_kinds_agree_with_an_independent_survey(shoulder):
     patches, _ = shoulder
     survey = json.loads((FOLDER / "survey.json").read_text())["joints"]
     (expected,) = (joint for joint in survey if joint["name"] == "shoulder_pan")
-    within = [p for p in patches if abs(p.gap) <= 0.2e-3]
-    assert sum(p.area for p in within) * 1e6 == pytest.approx(expected["0.2"]["area"], rel=0.15)
+    for band in ("0.05", "0.2"):
+        within = [p for p in patches if abs(p.gap) <= float(band) * 1e-3 + 1e-6]
+        assert sum(p.area for p in within) * 1e6 == pytest.approx(expected[band]["area"], rel=0.1)
     shafts = [p for p in patches if p.kind == "cylinder" and not p.one_sided]
     assert len(shafts) == 2
     for shaft in shafts:
         assert shaft.radii == pytest.approx((0.010, 0.010), abs=0.2e-3)
         assert 0.0 <= shaft.gap <= 0.15e-3
-    faces = [p for p in patches if p.kind == "plane" and abs(p.gap) < 1e-6]
-    assert sum(p.area for p in faces) * 1e6 == pytest.approx(367.5, rel=0.05)
 
 
 def test_no_patch_forbids_the_rotation_that_the_joint_has(shoulder):

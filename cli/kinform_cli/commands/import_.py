@@ -37,6 +37,7 @@ def import_(
         if manifest:
             design = stages.import_(sources[0], allow_outside=allow_outside)
         else:
+            assert units is not None
             design = stages.import_meshes(sources, units=units)
     results.write(design, output)
     if depfile is not None:

@@ -11,7 +11,7 @@ __all__ = ["EXAMPLES", "schema"]
 
 EXAMPLES = examples(
     "kinform schema > kinform.schema.json",
-    "#:schema ./kinform.schema.json     # first line of a manifest, for editors that check TOML",
+    "#:schema ./kinform.schema.json   # first line of a manifest, for editors",
 )
 
 

@@ -73,8 +73,8 @@ def render(design: Design) -> RenderableType:
         rows.add_row(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
     items: list[RenderableType] = [rows]
     if contacts.interferences:
-        numeric = (f"volume {unit}³", f"depth {unit}")
-        overlaps = table("part", "part", *numeric, f"at {unit}", "kind", title="\nOverlapping solids", right=numeric)
+        sizes = (f"volume {unit}³", f"depth {unit}")
+        overlaps = table("part", "part", *sizes, f"at {unit}", "kind", title="\nOverlapping solids", right=sizes)
         for overlap in contacts.interferences:
             overlaps.add_row(
                 *overlap.parts,

@@ -110,7 +110,7 @@ def compare(
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
     motion = relative(kinematics, first.name, second.name, named)
-    used = (direct,) if direct is not None else ()
+    used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints
     if not used:

@@ -186,7 +186,9 @@ class Purposes:
 
     def _columns(self, path: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Times (strictly ascending) and values of a CSV file; a header line is allowed."""
-        shown, times, values = self.sources.shown(path), [], []
+        shown = self.sources.shown(path)
+        times: list[float] = []
+        values: list[float] = []
         with path.open(newline="", encoding="utf-8-sig") as file:
             for number, row in enumerate(csv.reader(file), start=1):
                 if not row or not "".join(row).strip():
@@ -283,11 +285,12 @@ class Purposes:
             return (np.array(value) * self.scope.metres).tolist()
         if kind == "angle":
             return math.radians(value)
-        converted = {
+        convert: dict[str, Callable[[Any], Any]] = {
             "point": self.scope.point,
             "vector": self.scope.vector,
             "direction": lambda v: self.scope.direction(v, *path),
-        }[kind](value)
+        }
+        converted = convert[kind](value)
         return None if converted is None else converted.tolist()
 
     def simulation(self) -> SimulationRequest | None:

@@ -107,7 +107,7 @@ class _Reader:
         self._names()
         groups = self._groups({part.name for part in parts})
         places = {*(self._stated_parts()), *(group.name for group in groups)}
-        joints = {
+        joints: dict[str, str] = {
             scope.prefix + table.name: table.type
             for scope in self.found
             for table in (scope.manifest.function.joint if scope.manifest.function else [])
@@ -179,7 +179,8 @@ class _Reader:
 
     def _groups(self, parts: set[PartName]) -> list[Group]:
         del parts
-        known, owner, out = self._stated_parts(), {}, []
+        known, out = self._stated_parts(), []
+        owner: dict[str, str] = {}
         for scope in self.found:
             for k, table in enumerate(scope.manifest.group):
                 name, members = scope.prefix + table.name, []

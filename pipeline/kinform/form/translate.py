@@ -108,12 +108,12 @@ def _pruned(value: Any, path: Path, drop: set[Path]) -> Any:
 def _real_path(loc: tuple[str | int, ...], raw: Any) -> Path:
     """Pydantic's location without the tags of unions, which are not keys of the file."""
     path: list[str | int] = []
-    value = raw
+    value: Any = raw
     for i, step in enumerate(loc):
         if (isinstance(value, dict) and step in value) or (
             isinstance(value, list) and isinstance(step, int) and step < len(value)
         ):
-            value = value[step]
+            value = _entry(value, step)
         elif i < len(loc) - 1:
             continue
         else:
@@ -127,7 +127,7 @@ def _label(path: Path, raw: Any) -> str:
     keys: list[str] = []
     name, value, listed_table = "", raw, False
     for step in path:
-        value = value[step] if isinstance(value, dict | list) and _has(value, step) else None
+        value = _entry(value, step) if _has(value, step) else None
         if isinstance(step, int):
             if isinstance(value, dict):
                 listed_table = True
@@ -142,8 +142,14 @@ def _label(path: Path, raw: Any) -> str:
     return f"{label} {quoted(name)}" if name and keys[0] != "assembly" else label
 
 
+def _entry(value: Any, step: str | int) -> Any:
+    return value[step]
+
+
 def _has(value: Any, step: str | int) -> bool:
-    return step in value if isinstance(value, dict) else isinstance(step, int) and step < len(value)
+    if isinstance(value, dict):
+        return step in value
+    return isinstance(value, list) and isinstance(step, int) and step < len(value)
 
 
 def _shown_key(path: Path) -> str:

@@ -6,6 +6,7 @@ Arrays are float64 and read-only. `X_WP` is the pose of the part frame P in the 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-def freeze(array: NDArray[np.generic]) -> NDArray[np.generic]:
+def freeze(array: NDArray[Any]) -> NDArray[Any]:
     """The same array, made read-only."""
     array.setflags(write=False)
     return array

@@ -122,7 +122,8 @@ def read(group: h5py.Group) -> Assembly:
 
 def _row(record: Any) -> dict[str, Any]:
     source: Source = record.source
-    return vars(record) | {"source_file": source.file, "source_line": source.line}
+    row: dict[str, Any] = vars(record) | {"source_file": source.file, "source_line": source.line}
+    return row
 
 
 def _with_source(row: Mapping[str, Any]) -> dict[str, Any]:

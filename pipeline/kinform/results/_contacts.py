@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import h5py
 import numpy as np
@@ -68,9 +69,11 @@ def read(group: h5py.Group) -> tuple[Contacts, dict[Pair, str]]:
     """The contacts, and the fingerprints by pair."""
     pairs = read_rows(group, "pairs", _PAIRS)
     samples = _read_samples(group)
-    rows = read_rows(group, "patches", _PATCHES)
+    rows: list[dict[str, Any]] = [
+        row | owned for row, owned in zip(read_rows(group, "patches", _PATCHES), samples, strict=True)
+    ]
     contacts = Contacts(
-        patches=tuple(Patch(**row, **owned) for row, owned in zip(rows, samples, strict=True)),
+        patches=tuple(Patch(**row) for row in rows),
         interferences=read_records(group, "interferences", _INTERFERENCES, Interference),
         candidates=tuple(row["parts"] for row in pairs if row["candidate"]),
         tolerance={row["parts"]: row["tolerance"] for row in pairs if row["tolerance"] is not None},

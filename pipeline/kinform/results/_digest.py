@@ -55,7 +55,8 @@ def _feed(hasher: Any, value: Any) -> None:
 
 def _feed_record(hasher: Any, record: Any) -> None:
     hasher.update(f"c{type(record).__name__};".encode())
-    for name in _fields(type(record)):
+    kind: Any = type(record)
+    for name in _fields(kind):
         _feed(hasher, getattr(record, name))
 
 

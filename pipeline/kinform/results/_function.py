@@ -118,6 +118,6 @@ def _read_drives(group: h5py.Group) -> tuple[Drive, ...]:
     for i, row in enumerate(read_rows(group, "drives", _DRIVES)):
         kind, file = row.pop("law_type"), row.pop("law_file")
         numbers = {column.field: row.pop(column.field) for column in _LAW}
-        points = {"times": tuple(times[i].tolist()), "values": tuple(table[i].tolist())}
+        points: dict[str, Any] = {"times": tuple(times[i].tolist()), "values": tuple(table[i].tolist())}
         drives.append(Drive(**row, law=None if kind is None else Law(kind, file=file, **numbers, **points)))
     return tuple(drives)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import h5py
 
 from kinform.model.assembly import freeze
@@ -54,10 +56,11 @@ def read(group: h5py.Group) -> Simulation:
     """The run that `write` wrote."""
     (summary,) = read_rows(group, "summary", _SUMMARY)
     monitors = read_columns(group, "monitors")
+    known: dict[str, Any] = {name: read_array(group, name) for name in _ARRAYS}
+    known |= {name: read_texts(group, name) for name in _NAMES}
     return Simulation(
         **summary,
-        **{name: read_array(group, name) for name in _ARRAYS},
-        **{name: read_texts(group, name) for name in _NAMES},
+        **known,
         joint_offset=read_array(group, "joint_offset"),
         residual=freeze(monitors["residual"].copy()),
         rank=freeze(monitors["rank"].copy()),

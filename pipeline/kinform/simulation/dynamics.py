@@ -39,6 +39,8 @@ class Motion:
     """(n,) by all drives (N·m, N); what a prescribed motion needs included."""
     power: float
     """W that drives, dampers and loads put in; springs store instead."""
+    margin: float
+    """How far the loops are from a singular pose: see `Factor.margin`."""
 
 
 class Dynamics:
@@ -105,9 +107,9 @@ class Dynamics:
         bias = self._bias(inertia, V, A, screws) - (screws * (mechanism.moves.T @ load)).sum(axis=1)
         given, stored = acts.efforts(t, q, v)
         force = given + stored - bias
-        acceleration, needed = self._accelerate(t, M, force, screws, A)
+        acceleration, needed, margin = self._accelerate(t, M, force, screws, A)
         power = float((given + needed) @ v) + load_power
-        return Motion(acceleration, given + stored + needed, power)
+        return Motion(acceleration, given + stored + needed, power, margin)
 
     def _bias(self, inertia: Array, V: Array, A: Array, screws: Array) -> Array:
         """(n,) efforts that hold the present rates against inertia and gravity."""
@@ -117,19 +119,19 @@ class Dynamics:
         wrench = (inertia @ acceleration[:, :, None])[..., 0] + cross_force(twist, momentum)
         return np.asarray((screws * (self.mechanism.moves[self._links].T @ wrench)).sum(axis=1))
 
-    def _accelerate(self, t: float, M: Array, force: Array, screws: Array, A: Array) -> tuple[Array, Array]:
-        """Accelerations of all rates, and the efforts (n,) that the prescribed ones need."""
+    def _accelerate(self, t: float, M: Array, force: Array, screws: Array, A: Array) -> tuple[Array, Array, float]:
+        """Accelerations of all rates, the efforts (n,) that the prescribed ones need, and the margin."""
         mechanism, led, free = self.mechanism, self.actuation.led, self.actuation.free
         acceleration, needed = np.zeros(len(M)), np.zeros(len(M))
         if not mechanism.closed and not len(led):
-            return _solve(M, force), needed
+            return _solve(M, force), needed, 1.0
         acceleration[led] = self.actuation.led_accelerations(t)
         rest = force[free] - M[np.ix_(free, led)] @ acceleration[led]
         inner = M[np.ix_(free, free)]
         if not mechanism.closed:
             acceleration[free] = _solve(inner, rest)
             needed[led] = M[led] @ acceleration - force[led]
-            return acceleration, needed
+            return acceleration, needed, 1.0
         rows = mechanism.closure(screws)
         loops = factor(rows[:, free], mechanism.scale[free], self._rank)
         target = -mechanism.closure_bias(A) - rows[:, led] @ acceleration[led]
@@ -142,7 +144,7 @@ class Dynamics:
         if len(led):
             multipliers = loops.multipliers(M[free] @ acceleration - force[free])
             needed[led] = M[led] @ acceleration - force[led] - rows[:, led].T @ multipliers
-        return acceleration, needed
+        return acceleration, needed, loops.margin
 
     def project(self, q: Array, v: Array) -> tuple[Array, Array]:
         """Positions and rates nearest, by the mass matrix, on closed loops; prescribed joints stay."""

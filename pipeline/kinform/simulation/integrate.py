@@ -33,6 +33,7 @@ class _Run:
         self.y = np.concatenate([start.q, start.v, [0.0]])
         self.samples: list[Sample] = []
         self.steps = 0
+        self.margin, self.tightest = np.inf, 0.0
 
     def split(self, t: float, y: Array) -> tuple[Array, Array, float]:
         """Positions, rates and work, prescribed joints on their laws."""
@@ -53,6 +54,12 @@ class _Run:
         """Derivative of the state."""
         q, v, _ = self.split(t, y)
         motion = self.dynamics.motion(t, q, v)
+        if motion.margin < self.margin:
+            self.margin, self.tightest = motion.margin, t
+        if motion.margin < self.settings.near:
+            # Close to a singular pose the accelerations depend on how well the loops are closed.
+            q, v = self.dynamics.project(q, v)
+            motion = self.dynamics.motion(t, q, v)
         return np.concatenate([self.mechanism.q_rates(q, v), motion.acceleration, [motion.power]])
 
     def sample(self, t: float, y: Array) -> None:
@@ -60,6 +67,16 @@ class _Run:
         q, v, work = self.closed(t, y)
         effort = self.dynamics.motion(t, q, v).effort
         self.samples.append(Sample(t, q, v, effort, (*self.dynamics.energy(q, v), work)))
+
+    def record(self, stopped: str) -> Record:
+        """What there is, with a warning where the loops came close to a singular pose."""
+        notes: tuple[str, ...] = ()
+        if self.margin < self.settings.doubtful:
+            notes = (
+                f"near t = {self.tightest:.4g} s the loops pass a singular pose, where they could go on in "
+                "several ways: taken is the one that the momentum continues",
+            )
+        return Record(tuple(self.samples), stopped, notes)
 
     def gap(self, t: float) -> float:
         """Largest gap of the loops at the present state."""
@@ -79,11 +96,11 @@ def run_dynamic(
         for begin, end in zip([first, *inner], [*inner, last], strict=True):
             why = _segment(run, begin, end, progress) if end > begin else ""
             if why:
-                return Record(tuple(run.samples), why)
+                return run.record(why)
     except SingularMassError:
         reached = run.samples[-1].time if run.samples else first
-        return Record(tuple(run.samples), f"after t = {reached:.6g} s a free motion moves no mass")
-    return Record(tuple(run.samples), "")
+        return run.record(f"after t = {reached:.6g} s a free motion moves no mass")
+    return run.record("")
 
 
 def _segment(run: _Run, begin: float, end: float, progress: Progress | None) -> str:

@@ -34,6 +34,8 @@ class Record:
 
     samples: tuple[Sample, ...]
     stopped: str
+    notes: tuple[str, ...] = ()
+    """What is to be known of the run, in sentences."""
 
 
 def blank(status: str, reason: str, failures: tuple[tuple[str, str], ...] = ()) -> Simulation:
@@ -90,7 +92,7 @@ def publish(mechanism: Mechanism, record: Record, level: str, assumptions: tuple
         energy=np.array([sample.energy for sample in samples]).reshape(-1, 3),
         residual=np.array([_residual(mechanism, sample.q) for sample in samples]),
         rank=np.array([_rank(mechanism, sample.q, free) for sample in samples], dtype=np.int64),
-        assumptions=assumptions,
+        assumptions=(*assumptions, *record.notes),
     )
 
 

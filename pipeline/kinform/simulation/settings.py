@@ -26,6 +26,11 @@ class SolverSettings:
     loops, as for mobility (`Tolerances.free`)."""
     singular: float = 1e-6
     """A pose is singular when the smallest singular value that counts falls below this share."""
+    near: float = 0.1
+    """Below this share loops are closed at every evaluation of the integrator too, not only after steps:
+    with less a four-bar lost its energy on passing its collinear pose."""
+    doubtful: float = 1e-2
+    """A run that came below this share passed a singular pose, and says so."""
     stride: float = 0.2
     """Greatest motion of a driven joint (rad, or lengths) in one step along a path."""
     correction: float = 0.05

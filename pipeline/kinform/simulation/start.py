@@ -22,6 +22,11 @@ __all__ = ["Start", "Stated", "begin", "stated_values"]
 
 Array = NDArray[np.float64]
 
+OVERDRIVEN = (
+    "drives and initial values state more than the loops leave free and contradict each other, "
+    "or the mechanism starts in a singular pose (a dead point)"
+)
+
 
 @dataclass(frozen=True)
 class Stated:
@@ -100,8 +105,8 @@ def begin(
         follower = Follower(mechanism, path, q, settings)
         stop = follower.go(0.0, 1.0)
         if stop is not None:
-            problem = f"the loops cannot be brought to the initial positions: {stop.reason}"
-            return Start(q, np.zeros(mechanism.rates), notes, ("initial positions", problem))
+            why = OVERDRIVEN if follower.overdriven else f"the loops cannot be brought there: {stop.reason}"
+            return Start(q, np.zeros(mechanism.rates), notes, ("initial positions", why))
         q = follower.q
     moving = [value for value in own if value.velocity != 0.0]
     if moving and not coasting:
@@ -118,7 +123,8 @@ def begin(
     follower = Follower(mechanism, pace, q, settings)
     v = follower.rates(0.0)
     if follower.open_rates(0.0) > settings.open * max(1.0, float(np.abs(v).max(initial=0.0))):
-        return Start(q, v, notes, ("initial velocities", "the loops cannot move at the initial velocities"))
+        why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
+        return Start(q, v, notes, ("initial velocities", why))
     return Start(q, v, notes)
 
 

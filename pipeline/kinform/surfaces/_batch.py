@@ -49,6 +49,15 @@ class Ragged:
         return owner, self.items[self.starts[rows][owner] + within]
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Cross products of rows (n, 3): numpy's own spends most of its time on moving axes about."""
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return out
+
+
 def starts_of(groups: Ints, count: int) -> Ints:
     """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
     return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
@@ -74,12 +83,14 @@ def components(a: Ints, b: Ints, count: int) -> Ints:
 def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
     """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
     k = jacobian.shape[1]
-    matrix = np.empty((count, k, k))
+    matrix: Array = np.empty((count, k, k))
     for i in range(k):
         for j in range(i, k):
             matrix[:, i, j] = np.bincount(groups, jacobian[:, i] * jacobian[:, j], count)
             matrix[:, j, i] = matrix[:, i, j]
-    right = np.stack([np.bincount(groups, jacobian[:, i] * residual, count) for i in range(k)], axis=1)
+    right: Array = np.stack(
+        [np.bincount(groups, jacobian[:, i] * residual, count).astype(float) for i in range(k)], axis=1
+    )
     return matrix, right
 
 

@@ -88,8 +88,8 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
     inner = np.flatnonzero(work.smooth)
     inner = inner[parts.freeform[work.a[inner]] == parts.freeform[work.b[inner]]]
     inner = inner[parts.freeform[work.a[inner]] >= 0]
-    for number, polygons in enumerate(_groups(parts.freeform)):
-        out.append(freeform(work, polygons, inner[parts.freeform[work.a[inner]] == number]))
+    for number, patch in enumerate(_groups(parts.freeform)):
+        out.append(freeform(work, patch, inner[parts.freeform[work.a[inner]] == number]))
     return out
 
 

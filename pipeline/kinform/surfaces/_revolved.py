@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, group_sum, normal_equations, quantile, solve_normal
+from kinform.surfaces._batch import Array, Ints, Mask, cross, group_sum, normal_equations, quantile, solve_normal
 from kinform.surfaces.kind import ALONG, Batch, Params, Probe
 
 __all__ = [
     "axis_of_edges",
     "basis",
     "defining",
+    "even",
     "gauss_newton",
     "generators",
     "jacobian",
@@ -24,13 +25,16 @@ __all__ = [
     "widths",
 ]  # fmt: skip
 
+SECOND = 0.4
+"""A strip counts as like the widest when it subtends at least this share of its angle."""
+
 
 def basis(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors across each axis (N, 3)."""
     helper = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
-    x = np.cross(axis, helper)
+    x = cross(axis, helper)
     x /= np.maximum(np.linalg.norm(x, axis=1), 1e-300)[:, None]
-    return x, np.cross(axis, x)
+    return x, cross(axis, x)
 
 
 def _split(params: Params, points: Array) -> tuple[Array, Array, Array]:
@@ -146,8 +150,8 @@ def _moved(params: Params, change: Array, cone: bool) -> Params:
     out[:, 6] = np.maximum(params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), 1e-9)
     if cone:
         out[:, 7] = np.clip(params[:, 7] + np.clip(change[:, 5], -0.3, 0.3), -1.567, 1.567)
-    good = np.isfinite(out).all(axis=1)
-    return np.where(good[:, None], out, params)
+    good = np.all(np.isfinite(out), axis=1, keepdims=True)
+    return np.where(good, out, params)
 
 
 def axis_of_edges(batch: Batch) -> tuple[Array, Array]:
@@ -167,18 +171,28 @@ def widths(batch: Batch, params: Params) -> Array:
     work = batch.patchwork
     owner, vertex = work.corners.expand(batch.polygon)
     mine = params[batch.region]
-    x, y = basis(mine[:, :3])
     _, _, middle = _split(mine, work.centre[batch.polygon])
     _, rho, radial = _split(mine[owner], work.vertices[vertex])
     cos = np.einsum("ij,ij->i", radial, middle[owner])
-    side = np.cross(mine[:, :3], middle)
+    side = cross(mine[:, :3], middle)
     sin = np.einsum("ij,ij->i", radial, side[owner])
     angle = np.where(rho > 1e-3 * np.abs(mine[owner, 6]), np.arctan2(sin, cos), 0.0)
     high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))
     np.maximum.at(high, owner, angle)
     np.minimum.at(low, owner, angle)
-    del x, y
     return high - low
+
+
+def even(batch: Batch, width: Array) -> Mask:
+    """Whether each region's widest polygon has a second of like width: a flat between two bevels is none."""
+    order = np.lexsort((-width, batch.region))
+    region, ordered = batch.region[order], width[order]
+    start = np.searchsorted(region, np.arange(batch.count + 1))
+    out = np.zeros(batch.count, bool)
+    several = np.diff(start) >= 2
+    first = start[:-1][several]
+    out[several] = ordered[first + 1] >= SECOND * ordered[first]
+    return out
 
 
 def lines(batch: Batch, params: Params, tolerance: Array) -> Ints:

@@ -86,7 +86,9 @@ class Cone:
         high, low = np.full(batch.count, -np.inf), np.full(batch.count, np.inf)
         np.maximum.at(high, region, t)
         np.minimum.at(low, region, t)
-        height = np.where(batch.size > 0, high - low, 0.0)
+        filled = batch.size > 0
+        high, low = np.where(filled, high, 0.0), np.where(filled, low, 0.0)
+        height = high - low
         cos = np.cos(params[:, 7])
         largest = np.maximum(params[:, 6] + high * np.tan(params[:, 7]), params[:, 6] + low * np.tan(params[:, 7]))
         sagitta = largest * (1 - np.cos(sweep / 2)) * cos

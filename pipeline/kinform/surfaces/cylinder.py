@@ -79,9 +79,10 @@ class Cylinder:
         return _revolved.jacobian(params, points, cone=False)
 
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
-        """At least four generators, and a sagitta well above the tolerance."""
+        """At least four generators, two strips of like width, and a sagitta well above the tolerance."""
         lines = _revolved.lines(batch, params, np.full(batch.count, scale.fit))
         widths = _revolved.widths(batch, params)
         sweep = np.minimum(np.bincount(batch.region, widths, batch.count), np.pi)
         sagitta = params[:, 6] * (1 - np.cos(sweep / 2))
-        return np.asarray((lines >= 4) & (sagitta > 4 * scale.fit) & (params[:, 6] < LARGEST))
+        even = _revolved.even(batch, widths)
+        return np.asarray((lines >= 4) & even & (sagitta > 4 * scale.fit) & (params[:, 6] < LARGEST))

@@ -65,7 +65,8 @@ def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array,
     normal = kind.probe(params[region], work.centre[polygon]).normal
     cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]
     widest = np.minimum(0.5 * reach[region] + 5e-3 + work.slack[polygon], 1.2)
-    return ~bad & (cosine > np.cos(widest))
+    fits: Mask = ~bad & (cosine > np.cos(widest))
+    return fits
 
 
 def _reach(kind: Kind, batch: Batch, params: Params) -> Array:
@@ -81,7 +82,8 @@ def _reach(kind: Kind, batch: Batch, params: Params) -> Array:
     np.minimum.at(top, region[gap], sorted_width[gap])
     largest = np.zeros(batch.count)
     np.maximum.at(largest, region, sorted_width)
-    return np.minimum(WIDER * np.minimum(top, largest), 1.2) + 1e-3
+    reach: Array = np.minimum(WIDER * np.minimum(top, largest), 1.2) + 1e-3
+    return reach
 
 
 def _neighbours(ground: Ground, batch_region: Ints, polygon: Ints, side: Ints) -> tuple[Ints, Ints]:

@@ -48,7 +48,7 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     return np.where(number >= 0, root[np.maximum(number, 0)], -1)
 
 
-def _roots(larger: Ints, smaller: Ints, size: Array) -> Ints:
+def _roots(larger: Ints, smaller: Ints, size: Array | Ints) -> Ints:
     """The surface that each becomes part of: the largest that it lies on, itself no part of another."""
     root = np.arange(len(size))
     rank = np.empty(len(size), np.int64)

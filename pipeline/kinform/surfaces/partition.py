@@ -52,7 +52,7 @@ class Partition:
     """(P,) number of the freeform patch of each polygon, or -1."""
 
 
-def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, Ints]:
+def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, int]:
     """(region, polygon, side of each region, number) of smooth pieces of like-sized polygons."""
     edges = np.flatnonzero(work.smooth)
     edges = edges[free[work.a[edges]] & free[work.b[edges]]]
@@ -63,7 +63,8 @@ def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, Ints]:
     wide = np.maximum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
     narrow = np.minimum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
     alike = wide < ALIKE * narrow
-    regions, polygons, sides, count = [], [], [], 0
+    regions, polygons, sides = [], [], []
+    count: int = 0
     for side in (1, -1):
         use = alike & (work.sign[edges] * side >= 0)
         label = components(a[use], b[use], work.count)
@@ -78,7 +79,7 @@ def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, Ints]:
         count += len(names)
     region, polygon = np.concatenate(regions), np.concatenate(polygons)
     order = np.lexsort((polygon, region))
-    return region[order], polygon[order], np.concatenate(sides), np.int64(count)
+    return region[order], polygon[order], np.concatenate(sides), count
 
 
 def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
@@ -93,7 +94,7 @@ def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
     entries.sort(key=lambda entry: entry[:4])
     taken = ~free
     chosen = []
-    for _, order, _, number, polygons in entries:
+    for _, order, _, which, polygons in entries:
         result = found[order]
         fresh = polygons[~taken[polygons]]
         if len(fresh) < max(result.kind.least, 0.9 * len(polygons)):
@@ -103,9 +104,9 @@ def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
             Region(
                 result.kind,
                 fresh,
-                result.params[number],
-                int(result.side[number]),
-                float(result.tolerance[number]),
+                result.params[which],
+                int(result.side[which]),
+                float(result.tolerance[which]),
             )
         )
     return chosen
@@ -174,7 +175,7 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     free = np.ones(work.count, bool)
     ground = Ground.of(work, scale, free)
     region, polygon, side, count = _pieces(work, free)
-    batch = Batch(work, region, polygon, int(count))
+    batch = Batch(work, region, polygon, count)
     if count:
         found = [pursue(ground, kind, batch, side, majority=0.6) for kind in CURVED]
         _take(regions, _choose(found, work, free), free)

@@ -51,7 +51,7 @@ class Sphere:
             change = -solve_normal(matrix, right, 1e-11)
             moved = params.copy()
             moved[:, 3:7] += np.clip(change, -params[:, 6:7], params[:, 6:7])
-            params = np.where(np.isfinite(moved).all(axis=1)[:, None], moved, params)
+            params = np.where(np.all(np.isfinite(moved), axis=1, keepdims=True), moved, params)
         return params
 
     def probe(self, params: Params, points: Array) -> Probe:

@@ -138,7 +138,7 @@ def _flatness(vertices: Array, faces: Ints, polygon: Ints, normal: Array, centre
 def _moments(polygon: Ints, area: Array, normal: Array, centroid: Array) -> tuple[Array, Array, Array]:
     """Area, unit normal and centroid of each polygon."""
     count = int(polygon.max()) + 1 if len(polygon) else 0
-    total = np.bincount(polygon, area, count)
+    total: Array = np.bincount(polygon, area, count).astype(float)
     mean = group_sum(polygon, normal * area[:, None], count)
     empty = total <= 0
     weight = np.where(empty[polygon], 1.0, area)

@@ -57,7 +57,7 @@ def check(context: Context) -> Outcome:
 
 def _clusters(assembly: Assembly, contacts: Contacts) -> list[tuple[str, ...]]:
     """Parts connected by patches, groups, assumptions, and stick bodies by their intended joints."""
-    index = {part.name: k for k, part in enumerate(assembly.parts)}
+    index = {str(part.name): k for k, part in enumerate(assembly.parts)}
     sets = UnionFind(len(index))
 
     def join(names: tuple[str, ...]) -> None:

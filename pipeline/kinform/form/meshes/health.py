@@ -32,7 +32,8 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     kept = faces[~_collapsed(faces)]
     if not len(kept):
         raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
-    shape, kept = used_only(vertices, kept)
+    used, kept = used_only(vertices, kept)
+    shape: Array = np.ascontiguousarray(used, dtype=np.float64)
     if solid and _thickness(shape) <= max(FLAT * float(np.linalg.norm(np.ptp(shape, axis=0))), 0.0):
         raise MeshError([Fault(
             "has zero thickness: all its vertices lie in one plane",
@@ -54,7 +55,8 @@ def _welded(raw: RawMesh, metres: float, weld: float | None) -> tuple[Array, Int
     faces = place[raw.faces]
     distance = 1e-6 * float(np.linalg.norm(np.ptp(vertices, axis=0))) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
-    return vertices[leaders], close[faces], distance
+    welded: Array = vertices[leaders]
+    return welded, close[faces], distance
 
 
 def _collapsed(faces: Ints) -> NDArray[np.bool_]:

@@ -166,7 +166,8 @@ def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.i
     """Vertex index of each corner of each face, and the number of corners of each face."""
     tokens = [_AFTER_SLASH.sub("", rest).split() if "/" in rest else rest.split() for rest in lines.faces]
     sizes = np.array(list(map(len, tokens)), dtype=np.int64)
-    for face in np.flatnonzero(sizes < 3):
+    for short in np.flatnonzero(sizes < 3):
+        face = int(short)
         number = lines.face_lines[face]
         message = f"has a face of {plural(int(sizes[face]), 'corner')} at line {number}; it needs 3"
         lines.faults.append(Fault(message, REEXPORT, number))

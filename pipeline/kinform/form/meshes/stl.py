@@ -84,7 +84,9 @@ def parse_binary(data: bytes) -> RawMesh:
 def parse_ascii(text: str) -> RawMesh:
     """Facets of an ASCII STL file, labelled by its solids; raises MeshError with lines."""
     text = text.replace("\r\n", "\n").replace("\r", "\n").lstrip("\ufeff")
-    corners, labels, names, faults = [], [], [], []
+    corners, labels = [], []
+    names: list[str] = []
+    faults: list[Fault] = []
     for name, start, stop in _solids(text, faults):
         body = _facets(text, start, stop, faults)
         corners.append(body)

@@ -149,6 +149,6 @@ def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: NDAr
     u = out[first] / np.linalg.norm(out[first], axis=1, keepdims=True)
     v = np.cross(along, u)
     # a forward facet's outward normal is along × out, so its material lies at decreasing angles
-    angle = np.mod(-np.arctan2(np.einsum("ij,ij->i", out, v), np.einsum("ij,ij->i", out, u)), 2 * np.pi)
+    angle: Array = np.mod(-np.arctan2(np.einsum("ij,ij->i", out, v), np.einsum("ij,ij->i", out, u)), 2 * np.pi)
     angle[angle > 2 * np.pi - _SAME_ANGLE] = 0.0
     return angle

@@ -52,8 +52,12 @@ class Manifest(Table):
     group: list[Group] = Field([], description="parts that are fastened together")
     subassembly: list[Subassembly] = Field([], description="other manifests, placed as a whole")
     assume: list[Assume] = Field([], description="what the user overrides")
-    tolerances: TolerancesTable = Field(TolerancesTable(), description="lengths and angles that decide")
-    fasteners: Fasteners = Field(Fasteners(), description="fastening by suggestion")
+    tolerances: TolerancesTable = Field(
+        default_factory=lambda: TolerancesTable.model_validate({}), description="lengths and angles that decide"
+    )
+    fasteners: Fasteners = Field(
+        default_factory=lambda: Fasteners.model_validate({}), description="fastening by suggestion"
+    )
     function: FunctionTable | None = Field(None, description="what the device is for")
     simulation: SimulationTable | None = Field(None, description="the motion to simulate")
 

@@ -67,7 +67,7 @@ def device(parts, joints, *, drives=(), loads=(), couplings=(), intended=(), **r
 
 def intended(name, a, b, kind, axis=None, point=None, **more):
     """An intended joint in the designer's order and sign."""
-    values = dict(axis2=None, pitch=None, range=None, file="device.toml", line=1) | more
+    values = {"axis2": None, "pitch": None, "range": None, "file": "device.toml", "line": 1} | more
     axis = None if axis is None else np.asarray(axis, float)
     point = None if point is None else np.asarray(point, float)
     return IntendedJoint(name, (a, b), kind, axis, point=point, **values)
