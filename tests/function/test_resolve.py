@@ -9,6 +9,7 @@ import pytest
 
 from kinform.function import resolve
 from kinform.model.assembly import Group
+from kinform.model.function import Function
 from kinform.model.kinematics import Body
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "simulation"))

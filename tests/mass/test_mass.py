@@ -26,11 +26,11 @@ BOX_FACES = np.array(
 
 
 def mesh(vertices, faces, digest="shape", **health):
-    facts = dict(
-        facets=len(faces), vertices=len(vertices), watertight=True, consistent_winding=True,
-        manifold_status="NoError", volume=1.0, degenerate_facets=0, duplicate_facets=0, open_edges=0,
-        overused_edges=0, shells=1, weld=0.0,
-    )  # fmt: skip
+    facts = {
+        "facets": len(faces), "vertices": len(vertices), "watertight": True, "consistent_winding": True,
+        "manifold_status": "NoError", "volume": 1.0, "degenerate_facets": 0, "duplicate_facets": 0, "open_edges": 0,
+        "overused_edges": 0, "shells": 1, "weld": 0.0,
+    }  # fmt: skip
     return Mesh(np.asarray(vertices, float), np.asarray(faces), MeshHealth(**facts | health), "m.stl", None, digest)
 
 
@@ -74,7 +74,7 @@ def ball(radius, n=24):
 
 
 def part(shape, name="a", density=1000.0, X_WP=None, **more):
-    values = dict(solid=True, material=None, override=None, units="m", source=HERE) | more
+    values = {"solid": True, "material": None, "override": None, "units": "m", "source": HERE} | more
     return Part(name, shape, X_WP=np.eye(4) if X_WP is None else X_WP, density=density, **values)
 
 

@@ -1,0 +1,36 @@
+"""Everything in the model survives the results file, to the last bit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from designs import arrays_in, designs, difference
+from hypothesis import HealthCheck, given, settings
+
+from kinform import results
+from kinform.model.design import Design
+
+SETTINGS = settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+
+
+def _through_file(design: Design, folder: Path) -> Design:
+    path = folder / "r.h5"
+    results.write(design, path)
+    return results.read(path)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("round_trip")
+
+
+@SETTINGS
+@given(design=designs())
+def test_a_design_comes_back_bit_for_bit_and_is_written_again_as_the_same_bytes(design: Design, folder: Path) -> None:
+    again = _through_file(design, folder)
+    assert difference(design, again) is None
+    assert results.to_bytes(again) == (folder / "r.h5").read_bytes()
+    assert not any(array.flags.writeable for array in arrays_in(again))
