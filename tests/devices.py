@@ -32,7 +32,8 @@ def joint(a, b, kind, axis=None, point=None, axis2=None, pitch=None, status="det
     unit2 = None if axis2 is None else np.asarray(axis2, float) / np.linalg.norm(axis2)
     point = None if point is None else np.asarray(point, float)
     count = FREEDOMS[kind] if freedoms is None else freedoms
-    twists = np.zeros((count, 6)) if kind == "general" else twists_of(kind, unit, point, pitch, unit2)
+    placed = kind != "general" and (point is not None or kind in ("fixed", "prismatic"))
+    twists = twists_of(kind, unit, point, pitch, unit2) if placed else np.zeros((count, 6))
     return Joint(
         f"{a}~{b}", (a, b), kind, unit, point, unit2, pitch, count, twists, ("cylinder",), status,
         "made by hand", (), (), np.zeros(6),

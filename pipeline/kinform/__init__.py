@@ -7,6 +7,8 @@
 from __future__ import annotations
 
 import importlib
+import sys
+import types
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,14 +44,26 @@ def open(path: str | Path) -> Results:
     return api.open_results(path)
 
 
+_LAZY = {"run": "kinform.run", "Named": "kinform.api", "Outcome": "kinform.api", "Results": "kinform.api"}
+"""Public names that are imported when they are first used, and where from."""
+
+
 def __getattr__(name: str) -> Any:
-    if name == "run":
-        # the module is callable, so that `kinform.run` is the function whoever imports it first
-        return importlib.import_module("kinform.run")
-    if name in ("Named", "Outcome", "Results"):
-        return getattr(importlib.import_module("kinform.api"), name)
-    raise AttributeError(f"module 'kinform' has no attribute {name!r}")
+    if name not in _LAZY:
+        raise AttributeError(f"module 'kinform' has no attribute {name!r}")
+    return globals().setdefault(name, getattr(importlib.import_module(_LAZY[name]), name))
 
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+class _Package(types.ModuleType):
+    """This package: `kinform.run` is the function, also after something imported the module of that name."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name != "run" or not isinstance(value, types.ModuleType):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

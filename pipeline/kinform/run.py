@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-import types
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 from kinform import stages
 from kinform.api import Outcome
@@ -66,13 +63,3 @@ def _import(manifest: str | Path | Sequence[str | Path], units: str | None, allo
 def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:
     """The progress of one stage, as the stage reports it."""
     return None if progress is None else lambda done, total: progress(stage, done, total)
-
-
-class _CallableModule(types.ModuleType):
-    """`kinform.run(...)` works although `kinform.run` is also this module."""
-
-    def __call__(self, *args: Any, **keywords: Any) -> Outcome:
-        return run(*args, **keywords)
-
-
-sys.modules[__name__].__class__ = _CallableModule

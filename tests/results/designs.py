@@ -13,7 +13,7 @@ import numpy as np
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from kinform.model.assembly import Assembly, Mesh, MeshHealth, Part
+from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
@@ -90,8 +90,9 @@ def parts(draw: Any) -> tuple[Part, ...]:
         for i, (v, f) in enumerate(draw(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3)), max_size=2)))
     ]
     mesh = st.sampled_from([None, *meshes])
+    override = st.none() | of(MassOverride, inertia=array(3, 3))
     names = draw(st.lists(texts, max_size=3, unique=True))
-    return tuple(draw(of(Part, name=st.just(name), mesh=mesh, X_WP=array(4, 4))) for name in sorted(names))
+    return tuple(draw(of(Part, name=st.just(name), mesh=mesh, X_WP=array(4, 4), override=override)) for name in sorted(names))
 
 
 @st.composite
@@ -179,7 +180,7 @@ def designs(draw: Any) -> Design:
     digests = draw(st.lists(texts, max_size=2, unique=True))
     surfaces = {digest: draw(surfaces_of(digest)) for digest in digests}
     found = draw(st.none() | contacts())
-    stages = draw(st.dictionaries(st.just("assembly"), texts.filter(bool)))
+    stages = draw(st.dictionaries(st.just("assembly"), st.text("0123456789abcdef", min_size=1)))
     pairs = {pair: draw(texts) for pair in (found.candidates if found else ())}
     meshes = {digest: draw(texts) for digest in digests}
     kinematics = st.none() | of(Kinematics)

@@ -6,13 +6,16 @@ from pathlib import Path
 
 import pytest
 from designs import arrays_in, designs, difference
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 
 from kinform import results
 from kinform.model.design import Design
 
 SETTINGS = settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+    max_examples=60,
+    deadline=None,
+    phases=[Phase.generate],  # these values are too large to be shrunk in good time
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )
 
 

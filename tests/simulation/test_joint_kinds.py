@@ -11,7 +11,7 @@ from kinform.behaviour import build
 from kinform.behaviour.joints import KINDS
 from kinform.kinematics.screws import perpendicular
 from kinform.simulation.assemble import assemble
-from kinform.simulation.spatial import quaternions, rotation_vector, to_matrix
+from kinform.simulation.spatial import cross_motion, quaternions, rotation_vector, to_matrix
 
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 POINT = np.array([0.3, -0.2, 0.5])
@@ -84,8 +84,6 @@ def test_turning_the_tree_round_gives_the_inverse_motion(kind):
 @pytest.mark.parametrize("ends", [("base", "part"), ("part", "base")])
 def test_twists_change_as_the_bias_says(kind, ends):
     """The acceleration at constant rates, against differences of the twist."""
-    from kinform.simulation.spatial import cross_motion
-
     model = mechanism(kind, *ends)
     q, h = at(model), 1e-6
     v = np.random.default_rng(1).normal(size=model.rates)

@@ -26,13 +26,14 @@ from kinform.behaviour.components import (
     System,
 )
 from kinform.behaviour.count import Count, count
-from kinform.behaviour.signals import Signal, signal, smooth
+from kinform.behaviour.signals import Constant, Signal, signal, smooth
 
 __all__ = [
     "CODE_VERSION",
     "Actor",
     "Behaviour",
     "Component",
+    "Constant",
     "Count",
     "Damper",
     "EffortDrive",

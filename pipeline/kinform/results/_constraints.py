@@ -17,6 +17,7 @@ from kinform.results._table import (
     read_rows,
     read_texts,
     real,
+    stored_text,
     vector,
     write_array,
     write_columns,
@@ -42,8 +43,8 @@ def write(group: h5py.Group, matrix: ConstraintMatrix, patches: Sequence[Patch])
         {
             "patch": ("1", matrix.patch.astype("<i8")),
             "sample": ("1", matrix.sample.astype("<i8")),
-            "part_a": ("", np.array([a for a, _ in parts], dtype=TEXT)),
-            "part_b": ("", np.array([b for _, b in parts], dtype=TEXT)),
+            "part_a": ("", np.array([stored_text(a) for a, _ in parts], dtype=TEXT)),
+            "part_b": ("", np.array([stored_text(b) for _, b in parts], dtype=TEXT)),
         },
     )
     write_rows(group, "scaling", _SCALING, [vars(matrix)])

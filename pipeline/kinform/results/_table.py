@@ -40,6 +40,7 @@ __all__ = [
     "read_rows",
     "read_texts",
     "real",
+    "stored_text",
     "text",
     "texts",
     "values",
@@ -76,7 +77,8 @@ class Column:
     """The scalars → the field's value."""
 
 
-def _write_text(value: str | None) -> str:
+def stored_text(value: str | None) -> str:
+    """The text as a dataset holds it."""
     if value is None:
         return _NOTHING
     if value.startswith(_NOTHING) or "\0" in value or (not value.isascii() and _has_surrogates(value)):
@@ -118,7 +120,7 @@ def _write_json(value: Any) -> str:
 
 def text(field: str) -> Column:
     """A text, or None."""
-    return Column(field, (field,), TEXT, "", lambda v: (_write_text(v),), lambda s: _read_text(s[0]))
+    return Column(field, (field,), TEXT, "", lambda v: (stored_text(v),), lambda s: _read_text(s[0]))
 
 
 def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
@@ -269,7 +271,7 @@ def read_array(group: h5py.Group, name: str) -> NDArray[Any]:
 
 def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
     """Write a list of texts."""
-    data = np.array([_write_text(item) for item in items], dtype=object)
+    data = np.array([stored_text(item) for item in items], dtype=object)
     dataset = group.create_dataset(name, shape=data.shape, dtype=TEXT, track_times=False)
     if len(items):
         dataset[...] = data

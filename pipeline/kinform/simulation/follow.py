@@ -90,15 +90,13 @@ class Follower:
             if why is None:
                 place += step
                 step *= 2.0
-                margin = self._margin()
-                if margin < self.settings.singular:
+                if self._margin() < self.settings.singular:
                     return Stop(place, self._singular())
-                if end - place < shortest:
-                    place = end
                 continue
             step *= 0.5
             if step < shortest:
-                return Stop(place, why)
+                stuck = self._margin() < self.settings.doubtful
+                return Stop(place, self._singular() if stuck else why)
         return None
 
     def _step(self, place: float, step: float) -> str | None:

@@ -172,31 +172,64 @@ def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float
 
     A seed must conform to its own hypothesis: at least `kind.least` polygons and the share `majority`.
     """
-    scale = ground.scale
+    scale, count = ground.scale, batch.count
     params, usable = kind.propose(batch)
     batch = batch.select(usable[batch.region])
-    loose, tight = np.full(batch.count, 2.5 * scale.fit), np.full(batch.count, scale.fit)
+    loose, tight = np.full(count, 2.5 * scale.fit), np.full(count, scale.fit)
     params = kind.refine(batch, params, loose, 2)
     seeded = batch.size
     batch = _settled(ground, kind, batch, params, side, loose)
     batch = batch.select((batch.size >= majority * seeded)[batch.region])
-    layers, before = FIRST_LAYERS, -1
+    batch, params = _grown(ground, kind, batch, params, side)
+    batch, number = _compact(batch)
+    own, sides, tight = params[number], side[number], tight[number]
+    own = kind.refine(batch, own, tight, 3)
+    tolerance = _scatter(kind, batch, own, scale)
+    batch = _settled(ground, kind, batch, own, sides, tolerance)
+    own = kind.refine(batch, own, tolerance, 4)
+    keep = kind.credible(batch, own, scale)
+    batch = batch.select(keep[batch.region])
+    params[number], tight = own, np.full(count, scale.fit)
+    tight[number] = tolerance
+    return Found(kind, Batch(ground.patchwork, number[batch.region], batch.polygon, count), params, side, tight)
+
+
+def _grown(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Ints) -> tuple[Batch, Params]:
+    """Rounds of fitting and growing. A region that did not change in a round is finished and leaves, so
+    that the later rounds work on the few that still grow."""
+    scale, count, params = ground.scale, batch.count, params.copy()
+    finished: list[tuple[Ints, Ints]] = []
+    batch, number = _compact(batch)
+    own, sides = params[number], side[number]
+    layers = FIRST_LAYERS
     for stage in range(14):
-        params = kind.refine(batch, params, loose if stage == 0 else tight, 3)
-        batch = _settled(ground, kind, batch, params, side, tight)
-        batch = _thin_out(batch)
-        reach = _reach(kind, batch, params)
-        batch = _spread(ground, kind, batch, params, side, reach, tight, layers)
-        layers = min(layers * 2, 512)
-        if len(batch.region) == before:
+        if not len(batch.region):
             break
-        before = len(batch.region)
-    params = kind.refine(batch, params, tight, 3)
-    tolerance = _scatter(kind, batch, params, scale)
-    batch = _settled(ground, kind, batch, params, side, tolerance)
-    params = kind.refine(batch, params, tolerance, 4)
-    keep = kind.credible(batch, params, scale)
-    return Found(kind, batch.select(keep[batch.region]), params, side, tolerance)
+        tight = np.full(batch.count, scale.fit)
+        before = batch.size
+        own = kind.refine(batch, own, 2.5 * tight if stage == 0 else tight, 3)
+        batch = _thin_out(_settled(ground, kind, batch, own, sides, tight))
+        reach = _reach(kind, batch, own)
+        batch = _spread(ground, kind, batch, own, sides, reach, tight, layers)
+        layers = min(layers * 2, 512)
+        params[number] = own
+        still = batch.size == before if stage else np.zeros(batch.count, bool)
+        settled = still[batch.region]
+        finished.append((number[batch.region[settled]], batch.polygon[settled]))
+        batch, kept = _compact(batch.select(~settled))
+        own, sides, number = own[kept], sides[kept], number[kept]
+    finished.append((number[batch.region], batch.polygon))
+    region, polygon = (np.concatenate(column) for column in zip(*finished, strict=True))
+    order = np.lexsort((polygon, region))
+    return Batch(ground.patchwork, region[order], polygon[order], count), params
+
+
+def _compact(batch: Batch) -> tuple[Batch, Ints]:
+    """The batch with its regions numbered without gaps, and the old number of each."""
+    number = np.flatnonzero(batch.size)
+    new = np.full(batch.count, -1)
+    new[number] = np.arange(len(number))
+    return Batch(batch.patchwork, new[batch.region], batch.polygon, len(number)), number
 
 
 def _settled(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array) -> Batch:

@@ -177,7 +177,12 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     region, polygon, side, count = _pieces(work, free)
     batch = Batch(work, region, polygon, count)
     if count:
-        found = [pursue(ground, kind, batch, side, majority=0.6) for kind in CURVED]
+        found = []
+        for kind in CURVED:
+            found.append(pursue(ground, kind, batch, side, majority=0.6))
+            # a piece that a simpler kind explains whole is not tried as a more complex one
+            explained = found[-1].batch.size >= 0.98 * batch.size
+            batch = batch.select(~explained[batch.region])
         _take(regions, _choose(found, work, free), free)
     tried = np.zeros(len(work.a), np.int64)
     barren = 0

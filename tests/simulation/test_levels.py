@@ -1,0 +1,331 @@
+"""Which level a simulation runs at, what it refuses, and what it says that it assumed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from devices import (
+    Z,
+    assembly,
+    body,
+    device,
+    drive,
+    initial,
+    intended,
+    joint,
+    kinematics,
+    rod,
+    sine,
+    without_mass,
+)
+
+from kinform.kinematics import functional
+from kinform.mass import compile_mass
+from kinform.model.assembly import Mesh, MeshHealth
+from kinform.model.function import Coupling, Function, Law, Load, SimulationRequest
+from kinform.model.kinematics import Body
+from kinform.simulation import simulate
+
+HEALTH = MeshHealth(1, 3, True, True, "NoError", 1.0, 0, 0, 0, 0, 1, 0.0)
+MESH = Mesh(np.eye(3), np.array([[0, 1, 2]]), HEALTH, "m.stl", None, "mesh")
+
+
+def hinge(**request):
+    """One rod on one hinge."""
+    arm = rod("arm", (0, 0, 0), (1, 0, 0))
+    return device([arm], [joint("arm", "base", "revolute", Z, (0, 0, 0))], **request)
+
+
+def meshed(made, chain, mass):
+    """The same device with a mesh on every part."""
+    return replace(made, parts=tuple(replace(p, mesh=MESH) for p in made.parts)), chain, mass
+
+
+def massless(made, chain, mass):
+    bare = without_mass(made)
+    return bare, chain, compile_mass(bare, chain)
+
+
+def test_without_simulation_and_drives_nothing_is_requested():
+    made, chain, mass = hinge()
+    made = replace(made, simulation=None)
+    run = simulate(made, chain, mass)
+    assert (run.status, run.level) == ("not requested", "")
+    assert run.time.shape == (0,)
+    assert simulate(made, chain, mass, level="dynamic").status == "done"
+
+
+def test_a_drive_alone_requests_a_simulation_and_the_defaults_are_listed():
+    made, chain, mass = hinge(drives=[drive("arm~base", "motion", sine(10, 1))])
+    run = simulate(replace(made, simulation=None), chain, mass)
+    assert run.status == "done"
+    assert run.time[-1] == 1.0
+    assert any("duration 1 s" in note for note in run.assumptions)
+
+
+def test_with_all_masses_known_the_level_is_dynamic():
+    assert simulate(*meshed(*hinge(duration=0.1))).level == "dynamic"
+
+
+def test_without_masses_it_is_kinematic_and_says_why():
+    run = simulate(*meshed(*massless(*hinge(duration=0.1))))
+    assert (run.status, run.level) == ("done", "kinematic")
+    assert any("arm" in note and "mass" in note for note in run.assumptions)
+    assert np.isnan(run.joint_effort).all()
+    assert np.isnan(run.energy).all()
+
+
+def test_without_meshes_and_masses_it_is_functional():
+    assert simulate(*massless(*hinge(duration=0.1))).level == "functional"
+
+
+@pytest.mark.parametrize("level", ["functional", "kinematic", "dynamic"])
+def test_a_level_can_be_forced_by_argument_and_by_manifest(level):
+    wanted = [intended("swing", "arm", "base", "revolute", Z, (0, 0, 0))]
+    made = meshed(*hinge(duration=0.1, intended=wanted))
+    assert simulate(*made, level=level).level == level
+    assert simulate(*meshed(*hinge(duration=0.1, intended=wanted, level=level))).level == level
+
+
+def test_an_unknown_level_is_an_error_that_lists_the_known_ones():
+    with pytest.raises(ValueError, match="functional, kinematic, dynamic"):
+        simulate(*hinge(), level="quantum")
+
+
+def test_forcing_dynamics_without_mass_is_refused_with_the_body():
+    run = simulate(*massless(*hinge(duration=0.1)), level="dynamic")
+    assert run.status == "refused"
+    assert run.failures == (("arm", "its mass is not known"),)
+    assert "arm" in run.reason
+
+
+def test_the_mass_of_what_is_fixed_to_the_ground_does_not_matter():
+    parts = [rod("arm", (0, 0, 0), (1, 0, 0)), body("stand", mass=None)]
+    joints = [joint("arm", "stand", "revolute", Z, (0, 0, 0)), joint("base", "stand", "fixed")]
+    run = simulate(*device(parts, joints, duration=0.1), level="dynamic")
+    assert run.status == "done"
+
+
+@pytest.mark.parametrize(
+    ("bad", "word"),
+    [
+        (joint("arm", "base", "revolute", Z, (0, 0, 0), status="ambiguous"), "ambiguous"),
+        (joint("arm", "base", "general", freedoms=2), "general"),
+        (joint("arm", "base", "revolute", Z, None), "point"),
+        (joint("arm", "base", "screw", Z, (0, 0, 0)), "pitch"),
+    ],
+)
+def test_joints_that_are_not_settled_are_refused_by_name(bad, word):
+    made, _, mass = hinge(duration=0.1)
+    run = simulate(made, kinematics(made.parts, [bad]), mass)
+    assert run.status == "refused"
+    assert run.failures[0][0] == "arm~base"
+    assert word in run.failures[0][1]
+
+
+def test_a_pair_that_constrains_nothing_is_left_out():
+    parts = [rod("arm", (0, 0, 0), (1, 0, 0)), rod("tip", (1, 0, 0), (2, 0, 0))]
+    joints = [
+        joint("arm", "base", "revolute", Z, (0, 0, 0)),
+        joint("arm", "tip", "revolute", Z, (1, 0, 0)),
+        joint("base", "tip", "general", freedoms=6),
+    ]
+    run = simulate(*device(parts, joints, duration=0.1))
+    assert run.status == "done"
+    assert run.joint_names == ("arm~base", "arm~tip")
+
+
+@pytest.mark.parametrize("status", ["blocked", "inferred"])
+def test_joints_taken_for_granted_are_listed(status):
+    made, _, mass = hinge(duration=0.1)
+    settled = joint("arm", "base", "revolute", Z, (0, 0, 0), status=status)
+    run = simulate(made, kinematics(made.parts, [settled]), mass)
+    assert run.status == "done"
+    assert any("arm~base" in note for note in run.assumptions)
+
+
+def test_a_body_that_nothing_connects_stays_in_kinematics_and_is_refused_in_dynamics():
+    parts = [rod("arm", (0, 0, 0), (1, 0, 0)), body("loose")]
+    joints = [joint("arm", "base", "revolute", Z, (0, 0, 0))]
+    made = meshed(*device(parts, joints, duration=0.1))
+    free = simulate(*made)
+    assert (free.status, free.level) == ("done", "kinematic")
+    assert any("loose" in note and "stays" in note for note in free.assumptions)
+    assert np.all(free.p_WB[:, free.body_names.index("loose")] == 0.0)
+    forced = simulate(*made, level="dynamic")
+    assert forced.status == "refused"
+    assert forced.failures[0][0] == "loose"
+
+
+@pytest.mark.parametrize(
+    ("acting", "subject", "word"),
+    [
+        (drive("elbow", "motion", sine(1, 1)), "elbow", "no joint"),
+        (drive("ball~base", "motion", sine(1, 1)), "ball~base", "3 freedoms"),
+        (drive("arm~base", "motion"), "arm~base", "no law"),
+        (drive("arm~base", "motion", sine(np.nan, 1)), "arm~base", "finite"),
+        (drive("arm~base", "motion", Law("table", times=(1.0, 1.0), values=(0.0, 1.0))), "arm~base", "increase"),
+    ],
+)
+def test_drives_that_cannot_be_are_failures_not_crashes(acting, subject, word):
+    parts = [rod("arm", (0, 0, 0), (1, 0, 0)), body("ball", 1.0, (0, 0, 1), [1, 1, 1])]
+    joints = [joint("arm", "base", "revolute", Z, (0, 0, 0)), joint("ball", "base", "spherical", None, (0, 0, 1))]
+    run = simulate(*device(parts, joints, drives=[acting], duration=0.1))
+    assert run.status == "refused"
+    assert run.failures[0][0] == subject
+    assert word in run.failures[0][1]
+
+
+def test_two_motions_of_one_joint_are_a_failure():
+    drives = [drive("arm~base", "motion", sine(1, 1)), drive("arm~base", "motion", sine(2, 1))]
+    run = simulate(*hinge(drives=drives))
+    assert run.failures == (("arm~base", "two drives prescribe its motion"),)
+
+
+@pytest.mark.parametrize("kind", ["servo", "dc_motor"])
+def test_drives_that_are_not_modelled_keep_a_run_from_being_dynamic(kind):
+    made = meshed(*hinge(drives=[drive("arm~base", kind, sine(1, 1))], duration=0.1))
+    assert simulate(*made, level="dynamic").status == "refused"
+    run = simulate(*made)
+    assert run.level == "kinematic"
+    assert any(kind in note for note in run.assumptions)
+
+
+def test_forces_play_no_part_below_dynamics_and_the_run_says_so():
+    push = Load("arm", np.array([0, 1.0, 0]), None, None, "world", "device.toml", 1)
+    made = hinge(drives=[drive("arm~base", "effort", Law("constant", value=1.0))], loads=[push], duration=0.1)
+    run = simulate(*meshed(*made), level="kinematic")
+    note = next(note for note in run.assumptions if "forces" in note)
+    assert "effort on arm~base" in note
+    assert "load on arm" in note
+    assert np.all(run.joint_position == 0.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "word"),
+    [(initial("elbow", 1), "no joint"), (initial("arm~base", np.inf), "not a number")],
+)
+def test_initial_values_without_a_freedom_are_failures(value, word):
+    run = simulate(*hinge(initial=(value,)))
+    assert run.status == "refused"
+    assert word in run.failures[0][1]
+
+
+def test_initial_values_follow_the_designers_order_and_sense():
+    wanted = [intended("swing", "base", "arm", "revolute", (0, 0, 1), (0, 0, 0))]
+    start = (initial("swing", 20.0, 30.0),)
+    run = simulate(*hinge(intended=wanted, initial=start, duration=0.01, gravity=np.zeros(3)))
+    # kinform counts base relative to arm: both values change their sign.
+    assert run.joint_position[0, 0] == pytest.approx(-np.radians(20.0), abs=1e-15)
+    assert run.joint_velocity[0, 0] == pytest.approx(-np.radians(30.0), abs=1e-15)
+    half = np.radians(10.0)
+    arm = run.q_WB[0, run.body_names.index("arm")]
+    np.testing.assert_allclose(arm, [np.cos(half), 0, 0, np.sin(half)], atol=1e-15)
+
+
+def test_a_motion_law_goes_before_an_initial_value_and_the_run_says_so():
+    drives = [drive("arm~base", "motion", sine(10, 1, offset=5))]
+    run = simulate(*hinge(drives=drives, initial=(initial("arm~base", 20.0),), duration=0.1))
+    assert run.joint_position[0, 0] == pytest.approx(np.radians(5.0))
+    assert any("initial value" in note for note in run.assumptions)
+
+
+def test_the_grid_ends_at_the_duration_also_when_the_step_does_not_divide_it():
+    even = simulate(*hinge(duration=0.1, step=0.025)).time
+    np.testing.assert_allclose(even, [0.0, 0.025, 0.05, 0.075, 0.1], rtol=1e-15)
+    assert even[-1] == 0.1
+    np.testing.assert_allclose(simulate(*hinge(duration=0.1, step=0.04)).time, [0.0, 0.04, 0.08, 0.1])
+
+
+def test_undriven_joints_rest_where_they_start_in_kinematics():
+    parts = [rod("arm", (0, 0, 0), (1, 0, 0)), rod("tip", (1, 0, 0), (2, 0, 0))]
+    joints = [joint("arm", "base", "revolute", Z, (0, 0, 0)), joint("arm", "tip", "revolute", Z, (1, 0, 0))]
+    drives = [drive("arm~base", "motion", Law("ramp", rate=90.0))]
+    made = device(parts, joints, drives=drives, initial=(initial("arm~tip", 30.0),), duration=1.0, step=0.5)
+    run = simulate(*made, level="kinematic")
+    np.testing.assert_allclose(np.degrees(run.joint_position), [[0, 30], [45, 30], [90, 30]], atol=1e-12)
+    np.testing.assert_allclose(np.degrees(run.joint_velocity), [[90, 0]] * 3, atol=1e-12)
+    assert any("arm~tip" in note and "stays" in note for note in run.assumptions)
+
+
+def test_the_progress_counts_output_times():
+    calls = []
+    simulate(*hinge(duration=0.1, step=0.02), progress=lambda done, total: calls.append((done, total)))
+    assert calls[-1] == (6, 6)
+
+
+def test_a_free_motion_without_mass_is_refused_by_the_joint():
+    point = body("bob", 1.0, (1, 0, 0))
+    run = simulate(*device([point], [joint("base", "bob", "spherical", None, (0, 0, 0))], duration=0.1))
+    assert run.status == "refused"
+    assert run.failures[0][0] == "base~bob"
+
+
+def test_a_stiff_model_ends_with_a_reason_instead_of_running_for_ever():
+    from kinform.simulation import SolverSettings
+
+    drives = [drive("arm~base", "damper", damping=1e7)]
+    made = hinge(drives=drives, initial=(initial("arm~base", 0, 10),), duration=1.0)
+    run = simulate(*made, settings=SolverSettings(steps=50))
+    assert run.status == "stopped"
+    assert "stiff" in run.reason
+    assert len(run.time) < 101
+
+
+def test_no_ground_is_refused():
+    made, chain, mass = hinge()
+    bodies = tuple(Body(b.name, b.parts, False) for b in chain.bodies)
+    assert simulate(made, replace(chain, bodies=bodies), mass).status == "refused"
+
+
+def functional_device(**request):
+    """Two wheels on a base, geared to each other: nothing but function."""
+    joints = (
+        intended("in", "base", "pinion", "revolute", Z, (0, 0, 0)),
+        intended("out", "wheel", "base", "revolute", Z, (1, 0, 0)),
+    )
+    couplings = (Coupling(("out", "in"), -0.5, "device.toml", 1),)
+    drives = (drive("in", "motion", Law("ramp", rate=90.0)),)
+    parts = [body(name, mass=None) for name in ("base", "pinion", "wheel")]
+    function = Function(joints=joints, couplings=couplings, drives=drives)
+    made = assembly(parts, function, SimulationRequest(duration=1.0, step=0.5, **request))
+    chain = functional(made)
+    return made, chain, compile_mass(made, chain)
+
+
+def test_the_function_alone_is_simulated_with_its_couplings():
+    run = simulate(*functional_device())
+    assert (run.status, run.level) == ("done", "functional")
+    # The designer's value of `out` counts the base relative to the wheel, as `in` the pinion to the base.
+    names = dict(zip(run.joint_names, run.joint_position[-1], strict=True))
+    assert names["base~pinion"] == pytest.approx(np.pi / 2)
+    assert names["base~wheel"] == pytest.approx(np.pi / 4)
+
+
+def test_couplings_are_not_imposed_on_what_geometry_gives_and_the_run_says_so():
+    made, chain, mass = functional_device()
+    run = simulate(*meshed(made, chain, mass), level="kinematic")
+    assert run.joint_position[-1, run.joint_names.index("base~wheel")] == 0.0
+    assert any("coupling" in note for note in run.assumptions)
+
+
+def test_without_joints_and_meshes_there_is_nothing_to_simulate():
+    made = assembly([body("base", mass=None), body("part", mass=None)])
+    chain = kinematics(made.parts, [])
+    assert simulate(made, chain, compile_mass(made, chain)).status == "refused"
+
+
+def test_importing_the_simulation_imports_neither_numba_nor_scipy():
+    code = "import sys, kinform.simulation as s; print(sorted({'numba', 'scipy'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_running_twice_gives_the_same_bits():
+    first, second = (simulate(*hinge(duration=0.5)) for _ in range(2))
+    for name in ("p_WB", "q_WB", "joint_position", "joint_velocity", "joint_effort", "energy"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
