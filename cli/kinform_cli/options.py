@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
@@ -26,6 +27,7 @@ __all__ = [
     "Severity",
     "TableFormat",
     "Units",
+    "cores",
     "examples",
 ]
 
@@ -105,8 +107,17 @@ Debug = Annotated[
 ]
 Jobs = Annotated[
     int,
-    typer.Option("--jobs", "-j", min=1, metavar="N", help="Work on up to N pairs of parts at a time."),
+    typer.Option(
+        "--jobs", "-j", min=0, metavar="N", show_default=False, help="Use up to N cores; 0, the default: all of them."
+    ),
 ]
+
+
+def cores(jobs: int) -> int:
+    """How many processes `--jobs` stands for."""
+    return jobs or os.cpu_count() or 1
+
+
 Results = Annotated[Path, typer.Argument(metavar="F.h5", show_default=False, help="Results file to read.")]
 Output = Annotated[
     Path,

@@ -92,7 +92,9 @@ def parts(draw: Any) -> tuple[Part, ...]:
     mesh = st.sampled_from([None, *meshes])
     override = st.none() | of(MassOverride, inertia=array(3, 3))
     names = draw(st.lists(texts, max_size=3, unique=True))
-    return tuple(draw(of(Part, name=st.just(name), mesh=mesh, X_WP=array(4, 4), override=override)) for name in sorted(names))
+    return tuple(
+        draw(of(Part, name=st.just(name), mesh=mesh, X_WP=array(4, 4), override=override)) for name in sorted(names)
+    )
 
 
 @st.composite

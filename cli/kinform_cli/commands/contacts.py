@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Jobs, Output, Quiet, Results, examples
+from kinform_cli.options import Debug, Jobs, Output, Quiet, Results, cores, examples
 from kinform_cli.progress import Working
 from kinform_cli.text import count
 
@@ -16,14 +16,14 @@ EXAMPLES = examples(
 )
 
 
-def contacts(source: Results, output: Output, jobs: Jobs = 1, quiet: Quiet = False, debug: Debug = False) -> None:
+def contacts(source: Results, output: Output, jobs: Jobs = 0, quiet: Quiet = False, debug: Debug = False) -> None:
     """Find the analytic surfaces of each part, and where parts touch or overlap."""
     files.check_output(output)
     from kinform import results, stages
 
     design = files.read(source)
     with files.needing(source), Working("contacts") as progress:
-        design = stages.contacts(design, jobs=jobs, progress=progress)
+        design = stages.contacts(design, jobs=cores(jobs), progress=progress)
     results.write(design, output)
     found = design.contacts
     assert found is not None

@@ -20,6 +20,7 @@ from kinform_cli.options import (
     Quiet,
     Severity,
     Units,
+    cores,
     examples,
 )
 from kinform_cli.progress import Working
@@ -52,7 +53,7 @@ def run(
         FindingsFormat.full
     ),
     fail_on: FailOn = Severity.error,
-    jobs: Jobs = 1,
+    jobs: Jobs = 0,
     depfile: Depfile = None,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -80,7 +81,7 @@ def run(
         outcome = kinform.run(
             sources[0] if manifest else sources,
             output,
-            jobs=jobs,
+            jobs=cores(jobs),
             progress=lambda stage, done, total: _show(working, stage, done, total),
             allow_outside=allow_outside,
             units=units,

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from typing import Any
 
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports.words import verdict_line
 
-__all__ = ["SCHEMA", "render"]
+__all__ = ["SCHEMA", "document", "render"]
 
 SCHEMA = "kinform/findings/1"
 
 
 def render(report: CheckReport, design: Design) -> str:
+    """The document as text."""
+    return json.dumps(document(report, design), indent=1, ensure_ascii=False) + "\n"
+
+
+def document(report: CheckReport, design: Design) -> dict[str, Any]:
     """An object with the schema, the verdict, counts, findings and rules."""
     counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}
     outcomes = ("passed", "failed", "inconclusive", "skipped")
-    document = {
+    return {
         "schema": SCHEMA,
         "assembly": design.assembly.name,
         "verdict": verdict_line(report),
@@ -26,4 +32,3 @@ def render(report: CheckReport, design: Design) -> str:
         "findings": [dataclasses.asdict(f) for f in report.findings],
         "rules": [dataclasses.asdict(r) for r in report.rules],
     }
-    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"

@@ -60,6 +60,8 @@ def notes_of_joints(kinematics: Kinematics) -> tuple[str, ...]:
             continue
         if joint.status == "blocked":
             notes.append(f"{joint.name} moves as {joint.type}, although contacts block it")
+        elif joint.evidence == ("function",):
+            notes.append(f"{joint.name} is {joint.type} because [function] says so: no geometry shows it")
         elif joint.status == "inferred":
             notes.append(f"{joint.name} is taken to be {joint.type}: {', '.join(joint.evidence)}")
     return tuple(notes)

@@ -1,0 +1,249 @@
+"""What `kinform show --format json` prints: one object a topic, SI and radians, world axes.
+
+The object of `joints` is a contract that scripts rely on; in all of them a value that is not known, not
+finite, or not computed yet is null.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from kinform.errors import StageError
+from kinform.model.assembly import Assembly, Part
+from kinform.model.design import Design
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint, Kinematics, Mobility
+from kinform.model.mass import MassProperties
+from kinform.model.simulation import Simulation
+from kinform.reports import as_json
+
+__all__ = ["TOPICS", "coordinates", "mobility_counts", "plain", "summary", "summary_json"]
+
+
+def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
+    """The values of one topic, or of all of them, as JSON has them: dicts, lists, text, numbers, None.
+
+    Topics: assembly, contacts, joints, mobility, mass, simulation, findings. Raises StageError when the
+    stage of the topic has not run, and ValueError for another topic.
+    """
+    if topic is None:
+        known = {name: summary(design, name) if _known(design, name) else None for name in TOPICS}
+        return {"schema": "kinform/design/1", **known}
+    if topic not in TOPICS:
+        raise ValueError(f"unknown topic {topic!r}: expected one of {', '.join(TOPICS)}")
+    if not _known(design, topic):
+        raise StageError(f"`kinform show {topic}`", TOPICS[topic][0])
+    head = {"schema": f"kinform/{topic}/1", "assembly": design.assembly.name, "units": design.assembly.units}
+    found: dict[str, Any] = plain(head | TOPICS[topic][2](design))
+    return found
+
+
+def summary_json(design: Design, topic: str | None = None) -> str:
+    """`summary` as JSON text, ending in a newline."""
+    return json.dumps(summary(design, topic), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON has it: arrays as lists, and null for what is not a finite number."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None
+    return value
+
+
+def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
+    """All counts by name."""
+    return {
+        "instantaneous": mobility.instantaneous,
+        "finite": mobility.finite,
+        "effective": mobility.effective,
+        "idle": mobility.idle,
+        "redundant": mobility.redundant,
+        "blocked_mobility": mobility.blocked,
+    }
+
+
+def coordinates(run: Simulation) -> Iterator[tuple[str, str, int]]:
+    """Name, type of joint, and column of each joint coordinate of a run."""
+    for joint, (name, kind) in enumerate(zip(run.joint_names, run.joint_types, strict=True)):
+        first, end = int(run.joint_offset[joint]), int(run.joint_offset[joint + 1])
+        for column in range(first, end):
+            yield (name if end - first == 1 else f"{name}.{column - first}"), kind, column
+
+
+def _fields(record: object, *names: str) -> dict[str, Any]:
+    return {name: getattr(record, name) for name in names}
+
+
+def _assembly(design: Design) -> dict[str, Any]:
+    assembly = design.assembly
+    return {
+        "ground": assembly.ground,
+        "parts": [_part(part) for part in assembly.parts],
+        "groups": [_fields(group, "name", "parts") for group in assembly.groups],
+        "subassemblies": [_fields(sub, "name", "file", "mobility") for sub in assembly.subassemblies],
+        "assumptions": [
+            _fields(assumption, "between", "type", "ignore", "axis", "point", "pitch", "reason")
+            for assumption in assembly.assumptions
+        ],
+        "function": _function(assembly),
+        "tolerances": asdict(assembly.tolerances),
+        "files": assembly.files,
+        "notes": assembly.notes,
+    }
+
+
+def _part(part: Part) -> dict[str, Any]:
+    mesh = part.mesh
+    return {
+        "name": part.name,
+        "mesh": None if mesh is None else _fields(mesh, "path", "body", "digest") | asdict(mesh.health),
+        "pose": part.X_WP,
+        **_fields(part, "solid", "material", "density"),
+        "mass": None if part.override is None else part.override.mass,
+        "units": part.units,
+    }
+
+
+def _function(assembly: Assembly) -> dict[str, Any]:
+    def joint(wanted: IntendedJoint) -> dict[str, Any]:
+        return _fields(wanted, "name", "between", "type", "axis", "axis2", "point", "pitch", "range")
+
+    function = assembly.function
+    return {"mobility": function.mobility, "joints": [joint(wanted) for wanted in function.joints]}
+
+
+def _contacts(design: Design) -> dict[str, Any]:
+    contacts = design.contacts
+    assert contacts is not None
+    of_patch = (
+        "parts", "surfaces", "kind", "one_sided", "area", "gap", "fit", "axis", "point", "radii", "misalignment",
+        "offset", "chord",
+    )  # fmt: skip
+    of_overlap = ("parts", "volume", "depth", "place", "mated", "method")
+    return {
+        "patches": [{"index": i} | _fields(patch, *of_patch) for i, patch in enumerate(contacts.patches)],
+        "interferences": [_fields(overlap, *of_overlap) for overlap in contacts.interferences],
+        "pairs": [{"parts": pair, "tolerance": contacts.tolerance.get(pair)} for pair in contacts.candidates],
+    }
+
+
+def _joints(design: Design) -> dict[str, Any]:
+    kinematics = _kinematics(design)
+    return {
+        "bodies": [_fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
+        "joints": [_joint(joint) for joint in kinematics.joints],
+        "mobility": mobility_counts(kinematics.mobility),
+    }
+
+
+def _joint(joint: Joint) -> dict[str, Any]:
+    of_blocker = ("parts", "patch", "area", "share", "place", "gap", "forbids")
+    unknown = joint.range_status == "unknown" and joint.range_lower is None and joint.range_upper is None
+    limits = {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
+    return {
+        **_fields(joint, "name", "bodies", "type", "axis", "point"),
+        **({"axis2": joint.axis2} if joint.type == "universal" else {}),
+        **_fields(joint, "pitch", "freedoms"),
+        **({"twists": joint.twists} if joint.type == "general" else {}),
+        **_fields(joint, "evidence", "status", "reason"),
+        "range": None if unknown else limits,
+        "patches": joint.patches,
+        "blocked_by": [_fields(blocker, *of_blocker) for blocker in joint.blockers],
+        "singular_values": joint.singular_values,
+    }
+
+
+def _mobility(design: Design) -> dict[str, Any]:
+    kinematics = _kinematics(design)
+    mobility = kinematics.mobility
+    return {
+        **mobility_counts(mobility),
+        **_fields(mobility, "idle_bodies", "uncertain"),
+        "bodies": [body.name for body in kinematics.bodies],
+        "freedoms": mobility.freedoms,
+    }
+
+
+def _mass(design: Design) -> dict[str, Any]:
+    report = design.mass
+    assert report is not None
+    return {
+        "valid": report.valid,
+        "parts": [_properties(part) for part in report.parts],
+        "bodies": [_properties(body) for body in report.bodies],
+        "problems": [{"part": part, "message": message} for part, message in report.problems],
+    }
+
+
+def _properties(item: MassProperties) -> dict[str, Any]:
+    names = ("name", "mass", "volume", "centre_of_mass", "inertia", "principal_moments", "principal_axes")
+    return _fields(item, *names, "mass_bound", "origin") | {"reason": item.reason or None}
+
+
+def _simulation(design: Design) -> dict[str, Any]:
+    run = design.simulation
+    assert run is not None
+    ran = bool(len(run.time))
+    return {
+        "status": run.status,
+        "reason": run.reason or None,
+        "level": run.level or None,
+        "duration": run.time[-1] if ran else None,
+        "samples": len(run.time),
+        "bodies": run.body_names,
+        "joints": [_course(run, *coordinate) for coordinate in coordinates(run)] if ran else [],
+        "residual": run.residual.max() if len(run.residual) else None,
+        "assumptions": run.assumptions,
+        "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
+    }
+
+
+def _course(run: Simulation, name: str, kind: str, column: int) -> dict[str, Any]:
+    values = run.joint_position[:, column]
+    return {
+        "name": name,
+        "type": kind,
+        "start": values[0],
+        "end": values[-1],
+        "lowest": values.min(),
+        "highest": values.max(),
+        "fastest": np.abs(run.joint_velocity[:, column]).max(),
+    }
+
+
+def _findings(design: Design) -> dict[str, Any]:
+    assert design.report is not None
+    return as_json.document(design.report, design)
+
+
+def _kinematics(design: Design) -> Kinematics:
+    assert design.kinematics is not None
+    return design.kinematics
+
+
+def _known(design: Design, topic: str) -> bool:
+    return getattr(design, TOPICS[topic][1]) is not None
+
+
+TOPICS: dict[str, tuple[str, str, Callable[[Design], dict[str, Any]]]] = {
+    "assembly": ("import", "assembly", _assembly),
+    "contacts": ("contacts", "contacts", _contacts),
+    "joints": ("joints", "kinematics", _joints),
+    "mobility": ("joints", "kinematics", _mobility),
+    "mass": ("mass", "mass", _mass),
+    "simulation": ("simulate", "simulation", _simulation),
+    "findings": ("check", "report", _findings),
+}
+"""By topic: the command that computes it, the field of Design that holds it, and its values."""
