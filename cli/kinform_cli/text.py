@@ -13,7 +13,7 @@ from rich.table import Table
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
 
-__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "plain", "table", "vector"]
+__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "table", "vector"]
 
 NONE = "–"
 """What stands in a table where there is no value."""
@@ -93,19 +93,8 @@ def table(*columns: str, title: str | None = None, right: Iterable[str] = ()) ->
     return grid
 
 
-def plain(value: Any) -> Any:
-    """The value as JSON has it: arrays as lists, and null for what is not a finite number."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    if hasattr(value, "tolist"):
-        return plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
 def dumps(value: Any) -> str:
-    """JSON text of a value, plain first."""
+    """JSON text of a value; null for what is not a finite number."""
+    from kinform.reports.json_views import plain
+
     return json.dumps(plain(value), indent=1, allow_nan=False)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from kinform.errors import StageError
-from kinform.model.assembly import Assembly
+from kinform.model.assembly import Assembly, Part
 from kinform.model.contacts import Contacts
 from kinform.model.design import Design
 from kinform.model.findings import CheckReport, Finding
@@ -30,9 +30,10 @@ Found = TypeVar("Found")
 class Named(Mapping[str, Item], Generic[Item]):
     """Things by name, in a fixed order; iterating gives the names, `.values()` the things."""
 
-    def __init__(self, what: str, items: tuple[Item, ...]):
+    def __init__(self, what: str, items: tuple[Item, ...], describe: Callable[[Item], str]):
         self._what = what
         self._items = {item.name: item for item in items}
+        self._describe = describe
 
     def __getitem__(self, name: str) -> Item:
         try:
@@ -48,7 +49,10 @@ class Named(Mapping[str, Item], Generic[Item]):
         return len(self._items)
 
     def __repr__(self) -> str:
-        return f"{self._what}: {', '.join(self._items) or 'none'}"
+        width = max(map(len, self._items), default=0)
+        return "\n".join(
+            [f"{self._what} ({len(self)}):", *(f"  {k:<{width}}  {self._describe(v)}" for k, v in self._items.items())]
+        )
 
 
 class Results:
@@ -68,14 +72,21 @@ class Results:
         return _known(self.design.contacts, "contacts", "contacts")
 
     @property
+    def parts(self) -> Named[Part]:
+        """Parts with their meshes and poses, by name."""
+        return Named("part", self.design.assembly.parts, _describe_part)
+
+    @property
     def bodies(self) -> Named[Body]:
         """Parts that move as one, by name."""
-        return Named("body", _known(self.design.kinematics, "bodies", "joints").bodies)
+        found = _known(self.design.kinematics, "bodies", "joints").bodies
+        return Named("body", found, lambda body: ", ".join(body.parts) + (" (ground)" if body.ground else ""))
 
     @property
     def joints(self) -> Named[Joint]:
         """Joints between bodies, by name: type, axis, point, freedoms, status, evidence."""
-        return Named("joint", _known(self.design.kinematics, "joints", "joints").joints)
+        found = _known(self.design.kinematics, "joints", "joints").joints
+        return Named("joint", found, lambda joint: f"{joint.type} ({joint.status})")
 
     @property
     def mobility(self) -> Mobility:
@@ -85,12 +96,12 @@ class Results:
     @property
     def mass(self) -> Named[MassProperties]:
         """Mass properties of the bodies, by name (kg, m, kg·m², world axes)."""
-        return Named("body", _known(self.design.mass, "mass", "mass").bodies)
+        return Named("body", _known(self.design.mass, "mass", "mass").bodies, _describe_mass)
 
     @property
     def part_mass(self) -> Named[MassProperties]:
         """Mass properties of the parts, by name."""
-        return Named("part", _known(self.design.mass, "mass", "mass").parts)
+        return Named("part", _known(self.design.mass, "mass", "mass").parts, _describe_mass)
 
     @property
     def simulation(self) -> Simulation:
@@ -106,6 +117,12 @@ class Results:
     def report(self) -> CheckReport:
         """Findings, and which rules ran, were skipped, or could not decide."""
         return _known(self.design.report, "findings", "check")
+
+    def summary(self, topic: str | None = None) -> dict[str, Any]:
+        """What `kinform show --format json` prints of a topic, or of all; see `kinform.reports.summary`."""
+        from kinform import reports
+
+        return reports.summary(self.design, topic)
 
     def save(self, path: str | Path) -> None:
         """Write the results file; see the contract of the results file. Raises ResultsError."""
@@ -134,6 +151,14 @@ class Outcome(Results):
         super().__init__(design)
         self.reused = reused
         self.recomputed = recomputed
+
+
+def _describe_part(part: Part) -> str:
+    return "stick body" if part.mesh is None else f"{len(part.mesh.faces)} facets of {part.mesh.path}"
+
+
+def _describe_mass(item: MassProperties) -> str:
+    return f"unknown: {item.reason}" if item.mass is None else f"{item.mass:.4g} kg"
 
 
 def open_results(path: str | Path) -> Results:

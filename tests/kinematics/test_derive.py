@@ -228,3 +228,13 @@ def test_the_order_of_parts_and_patches_changes_nothing():
     for a, b in zip(plain.joints, turned.joints, strict=True):
         assert np.allclose(a.axis, b.axis)
         assert np.allclose(a.point, b.point, atol=1e-12)
+
+
+def test_a_universal_joint_keeps_its_axes_with_their_bodies_in_either_order():
+    from dataclasses import replace
+
+    parts = (part("a", stick=True), part("b", stick=True))
+    stated = replace(intended("cross", "b", "a", "universal", axis=(1, 0, 0)), axis2=np.array([0.0, 1.0, 0.0]))
+    joint = functional(assembly(*parts, ground="a", joints=[stated])).joints[0]
+    assert joint.axis.tolist() == [0.0, 1.0, 0.0]
+    assert joint.axis2.tolist() == [1.0, 0.0, 0.0]

@@ -50,11 +50,12 @@ def show(
 ) -> None:
     """Show what a results file holds: tables for people, or JSON."""
     design = files.read(source)
-    from kinform_cli import text, views
+    from kinform import reports
+    from kinform_cli import views
 
     name = None if topic is None else topic.value
     with files.needing(source):
         if format is TableFormat.json:
-            console.emit(text.dumps(views.data(design, name)))
+            console.emit(reports.summary_json(design, name))
         else:
             console.out(views.render(design, name))

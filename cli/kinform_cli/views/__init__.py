@@ -1,8 +1,6 @@
-"""What `kinform show` prints: one module per topic, with `data` for JSON and `render` for people."""
+"""What `kinform show` prints for people: one module per topic. The JSON is `kinform.reports.summary_json`."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from rich.console import RenderableType
 
@@ -11,15 +9,7 @@ from kinform.model.design import Design
 from kinform_cli.views import overview
 from kinform_cli.views.topics import TOPICS
 
-__all__ = ["data", "render"]
-
-
-def data(design: Design, topic: str | None) -> Any:
-    """The topic's values for JSON, or all of them; raises StageError where its stage has not run."""
-    if topic is None:
-        return overview.data(design)
-    _require(design, topic)
-    return TOPICS[topic].view.data(design)
+__all__ = ["render"]
 
 
 def render(design: Design, topic: str | None) -> RenderableType:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import Any
-
 from rich.console import Group, RenderableType
 from rich.text import Text
 from rich.tree import Tree
@@ -13,67 +10,7 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.design import Design
 from kinform_cli.text import count, number
 
-__all__ = ["data", "render"]
-
-
-def data(design: Design) -> dict[str, Any]:
-    """Form and function as they were read, SI."""
-    assembly = design.assembly
-    return {
-        "schema": "kinform/assembly/1",
-        "assembly": assembly.name,
-        "units": assembly.units,
-        "ground": assembly.ground,
-        "parts": [_part_data(part) for part in assembly.parts],
-        "groups": [{"name": group.name, "parts": group.parts} for group in assembly.groups],
-        "subassemblies": [
-            {"name": sub.name, "file": sub.file, "mobility": sub.mobility} for sub in assembly.subassemblies
-        ],
-        "assumptions": [
-            {
-                "between": assumption.between,
-                "type": assumption.type,
-                "ignore": assumption.ignore,
-                "axis": assumption.axis,
-                "point": assumption.point,
-                "pitch": assumption.pitch,
-                "reason": assumption.reason,
-            }
-            for assumption in assembly.assumptions
-        ],
-        "function": {
-            "mobility": assembly.function.mobility,
-            "joints": [
-                {
-                    "name": joint.name,
-                    "between": joint.between,
-                    "type": joint.type,
-                    "axis": joint.axis,
-                    "point": joint.point,
-                }
-                for joint in assembly.function.joints
-            ],
-        },
-        "tolerances": asdict(assembly.tolerances),
-        "files": assembly.files,
-        "notes": assembly.notes,
-    }
-
-
-def _part_data(part: Part) -> dict[str, Any]:
-    mesh = part.mesh
-    return {
-        "name": part.name,
-        "mesh": None
-        if mesh is None
-        else {"path": mesh.path, "body": mesh.body, "digest": mesh.digest, **asdict(mesh.health)},
-        "pose": part.X_WP,
-        "solid": part.solid,
-        "material": part.material,
-        "density": part.density,
-        "mass": None if part.override is None else part.override.mass,
-        "units": part.units,
-    }
+__all__ = ["render"]
 
 
 def render(design: Design) -> RenderableType:

@@ -2,61 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from rich.console import Group, RenderableType
 
 from kinform.model.contacts import Contacts
 from kinform.model.design import Design
 from kinform_cli.text import Lengths, count, number, table
 
-__all__ = ["data", "render"]
+__all__ = ["render"]
 
 
 def _known(design: Design) -> Contacts:
     assert design.contacts is not None
     return design.contacts
-
-
-def data(design: Design) -> dict[str, Any]:
-    """Patches and interferences, SI; `index` is how joints and queries refer to a patch."""
-    contacts = _known(design)
-    return {
-        "schema": "kinform/contacts/1",
-        "assembly": design.assembly.name,
-        "units": design.assembly.units,
-        "patches": [
-            {
-                "index": index,
-                "parts": patch.parts,
-                "surfaces": patch.surfaces,
-                "kind": patch.kind,
-                "one_sided": patch.one_sided,
-                "area": patch.area,
-                "gap": patch.gap,
-                "fit": patch.fit,
-                "axis": patch.axis,
-                "point": patch.point,
-                "radii": patch.radii,
-                "misalignment": patch.misalignment,
-                "offset": patch.offset,
-                "chord": patch.chord,
-            }
-            for index, patch in enumerate(contacts.patches)
-        ],
-        "interferences": [
-            {
-                "parts": overlap.parts,
-                "volume": overlap.volume,
-                "depth": overlap.depth,
-                "place": overlap.place,
-                "mated": overlap.mated,
-                "method": overlap.method,
-            }
-            for overlap in contacts.interferences
-        ],
-        "pairs": [{"parts": pair, "tolerance": contacts.tolerance.get(pair)} for pair in contacts.candidates],
-    }
 
 
 def render(design: Design) -> RenderableType:

@@ -1,8 +1,6 @@
-"""Bodies and joints. The JSON form is a contract that scripts rely on."""
+"""Bodies and joints, and why a joint is not plainly determined."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -10,68 +8,13 @@ from rich.text import Text
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics
 from kinform_cli.text import Lengths, count, number, table, vector
-from kinform_cli.views import mobility
 
-__all__ = ["data", "render"]
+__all__ = ["render"]
 
 
 def _known(design: Design) -> Kinematics:
     assert design.kinematics is not None
     return design.kinematics
-
-
-def data(design: Design) -> dict[str, Any]:
-    """Bodies, joints and mobility, SI and radians; null for what is not computed yet."""
-    kinematics = _known(design)
-    return {
-        "schema": "kinform/joints/1",
-        "assembly": design.assembly.name,
-        "units": design.assembly.units,
-        "bodies": [
-            {"name": body.name, "parts": body.parts, "ground": body.ground, "merged": body.merged}
-            for body in kinematics.bodies
-        ],
-        "joints": [_joint_data(joint) for joint in kinematics.joints],
-        "mobility": mobility.counts(kinematics.mobility),
-    }
-
-
-def _joint_data(joint: Joint) -> dict[str, Any]:
-    return {
-        "name": joint.name,
-        "bodies": joint.bodies,
-        "type": joint.type,
-        "axis": joint.axis,
-        "point": joint.point,
-        **({"axis2": joint.axis2} if joint.type == "universal" else {}),
-        "pitch": joint.pitch,
-        "freedoms": joint.freedoms,
-        **({"twists": joint.twists} if joint.type == "general" else {}),
-        "evidence": joint.evidence,
-        "status": joint.status,
-        "reason": joint.reason,
-        "range": _range(joint),
-        "patches": joint.patches,
-        "blocked_by": [
-            {
-                "parts": blocker.parts,
-                "patch": blocker.patch,
-                "area": blocker.area,
-                "share": blocker.share,
-                "place": blocker.place,
-                "gap": blocker.gap,
-                "forbids": blocker.forbids,
-            }
-            for blocker in joint.blockers
-        ],
-        "singular_values": joint.singular_values,
-    }
-
-
-def _range(joint: Joint) -> dict[str, Any] | None:
-    if joint.range_status == "unknown" and joint.range_lower is None and joint.range_upper is None:
-        return None
-    return {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
 
 
 def render(design: Design) -> RenderableType:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.table import Table
@@ -13,41 +12,12 @@ from kinform.model.design import Design
 from kinform.model.mass import MassProperties, MassReport
 from kinform_cli.text import NONE, Lengths, table
 
-__all__ = ["bodies", "data", "render"]
+__all__ = ["bodies", "render"]
 
 
 def _known(design: Design) -> MassReport:
     assert design.mass is not None
     return design.mass
-
-
-def data(design: Design) -> dict[str, Any]:
-    """Everything, SI, world axes at the pose of the meshes."""
-    report = _known(design)
-    return {
-        "schema": "kinform/mass/1",
-        "assembly": design.assembly.name,
-        "units": design.assembly.units,
-        "valid": report.valid,
-        "parts": [_properties(part) for part in report.parts],
-        "bodies": [_properties(body) for body in report.bodies],
-        "problems": [{"part": part, "message": message} for part, message in report.problems],
-    }
-
-
-def _properties(item: MassProperties) -> dict[str, Any]:
-    return {
-        "name": item.name,
-        "mass": item.mass,
-        "volume": item.volume,
-        "centre_of_mass": item.centre_of_mass,
-        "inertia": item.inertia,
-        "principal_moments": item.principal_moments,
-        "principal_axes": item.principal_axes,
-        "mass_bound": item.mass_bound,
-        "origin": item.origin,
-        "reason": item.reason or None,
-    }
 
 
 def bodies(design: Design) -> RenderableType:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from rich.console import Group, RenderableType
 
 from kinform.model.design import Design
-from kinform.model.kinematics import Mobility
+from kinform.reports.json_views import mobility_counts
 from kinform_cli.text import table
 
-__all__ = ["counts", "data", "render"]
+__all__ = ["render"]
 
 _MEANINGS = (
     ("effective", "without idle freedoms: what the function's `mobility` is compared with"),
@@ -22,39 +20,12 @@ _MEANINGS = (
 )
 
 
-def counts(mobility: Mobility) -> dict[str, int | None]:
-    """All counts by name."""
-    return {
-        "instantaneous": mobility.instantaneous,
-        "finite": mobility.finite,
-        "effective": mobility.effective,
-        "idle": mobility.idle,
-        "redundant": mobility.redundant,
-        "blocked_mobility": mobility.blocked,
-    }
-
-
-def data(design: Design) -> dict[str, Any]:
-    """The counts, the idle bodies, the joints that the counts depend on, and the freedoms."""
-    assert design.kinematics is not None
-    mobility = design.kinematics.mobility
-    return {
-        "schema": "kinform/mobility/1",
-        "assembly": design.assembly.name,
-        **counts(mobility),
-        "idle_bodies": mobility.idle_bodies,
-        "uncertain": mobility.uncertain,
-        "bodies": [body.name for body in design.kinematics.bodies],
-        "freedoms": mobility.freedoms,
-    }
-
-
 def render(design: Design) -> RenderableType:
     """The counts with their meaning."""
     assert design.kinematics is not None
     mobility = design.kinematics.mobility
     grid = table("count", "", "meaning", title="Mobility relative to ground", right=["count"])
-    values = counts(mobility)
+    values = mobility_counts(mobility)
     for name, meaning in _MEANINGS:
         value = values[name]
         grid.add_row("not computed" if value is None else str(value), name.replace("_", " "), meaning)

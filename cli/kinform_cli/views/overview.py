@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -13,15 +11,7 @@ from kinform_cli.text import count
 from kinform_cli.views import assembly, joints, mass, mobility, simulation
 from kinform_cli.views.topics import TOPICS
 
-__all__ = ["data", "render"]
-
-
-def data(design: Design) -> dict[str, Any]:
-    """All topics by name; null where the stage has not run."""
-    return {
-        "schema": "kinform/design/1",
-        **{name: topic.view.data(design) if topic.known(design) else None for name, topic in TOPICS.items()},
-    }
+__all__ = ["render"]
 
 
 def render(design: Design) -> RenderableType:

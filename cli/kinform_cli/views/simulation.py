@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
+from kinform.reports.json_views import coordinates
 from kinform_cli.text import Lengths, count, degrees, number, table
 
-__all__ = ["data", "render"]
+__all__ = ["headline", "render"]
 
 _ROTATIONAL = ("revolute", "spherical", "universal", "screw")
 """Joints whose coordinates are all angles."""
@@ -24,52 +23,13 @@ def _known(design: Design) -> Simulation:
     return design.simulation
 
 
-def _coordinates(run: Simulation) -> Iterator[tuple[str, str, int]]:
-    """Name, type of joint, and column of each coordinate."""
-    for joint, (name, kind) in enumerate(zip(run.joint_names, run.joint_types, strict=True)):
-        first, end = int(run.joint_offset[joint]), int(run.joint_offset[joint + 1])
-        for column in range(first, end):
-            yield (name if end - first == 1 else f"{name}.{column - first}"), kind, column
-
-
-def data(design: Design) -> dict[str, Any]:
-    """What ran, and the first, last and extreme values of each joint, SI and radians."""
-    run = _known(design)
-    return {
-        "schema": "kinform/simulation/1",
-        "assembly": design.assembly.name,
-        "status": run.status,
-        "reason": run.reason or None,
-        "level": run.level or None,
-        "duration": float(run.time[-1]) if len(run.time) else None,
-        "samples": len(run.time),
-        "bodies": run.body_names,
-        "joints": [
-            {
-                "name": name,
-                "type": kind,
-                "start": run.joint_position[0, column],
-                "end": run.joint_position[-1, column],
-                "lowest": run.joint_position[:, column].min(),
-                "highest": run.joint_position[:, column].max(),
-                "fastest": abs(run.joint_velocity[:, column]).max(),
-            }
-            for name, kind, column in _coordinates(run)
-            if len(run.time)
-        ],
-        "residual": float(run.residual.max()) if len(run.residual) else None,
-        "assumptions": run.assumptions,
-        "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
-    }
-
-
 def render(design: Design) -> RenderableType:
     """One sentence, one row a joint coordinate, then what was assumed and what failed."""
     run, lengths = _known(design), Lengths.of(design.assembly)
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
         rows = table("joint", "type", "start", "end", "lowest", "highest", "fastest", right=_NUMBERS)
-        for name, kind, column in _coordinates(run):
+        for name, kind, column in coordinates(run):
             values = run.joint_position[:, column]
             fastest = abs(run.joint_velocity[:, column]).max()
             rows.add_row(

@@ -74,7 +74,7 @@ def functional(assembly: Assembly) -> Kinematics:
     for joint in assembly.function.joints:
         pair = _pair(assembly, of_part, joint.between)
         if pair is not None:
-            stated[pair] = _intended(pair, joint)
+            stated[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     joints = tuple(stated[pair] for pair in sorted(stated))
     return _finish(assembly, bodies, joints, (), Misfit(), {}, ())
 
@@ -154,7 +154,7 @@ def _stated(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> dict[Pa
     for joint in assembly.function.joints:
         pair = _pair(assembly, of_part, joint.between)
         if pair is not None and formless.intersection(pair):
-            out[pair] = _intended(pair, joint)
+            out[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     for assumption in assembly.assumptions:
         pair = _pair(assembly, of_part, assumption.between)
         if pair is not None and assumption.type is not None and not assumption.ignore:
@@ -162,9 +162,14 @@ def _stated(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> dict[Pa
     return out
 
 
-def _intended(pair: Pair, joint: IntendedJoint) -> Joint:
+def _intended(pair: Pair, joint: IntendedJoint, first: BodyName) -> Joint:
+    """The joint as stated; `first` is the body on the designer's first side. A universal joint's first
+    axis is fixed in its first body, so turning the bodies round exchanges its axes."""
+    axis, axis2 = joint.axis, joint.axis2
+    if joint.type == "universal" and first != pair[0]:
+        axis, axis2 = axis2, axis
     return stated_joint(
-        pair, joint.type, joint.axis, joint.point, joint.axis2, joint.pitch,
+        pair, joint.type, axis, joint.point, axis2, joint.pitch,
         evidence="function", reason=f"intended joint {joint.name}: one side has no geometry",
     )  # fmt: skip
 

@@ -46,7 +46,7 @@ def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
 
 def summary_json(design: Design, topic: str | None = None) -> str:
     """`summary` as JSON text, ending in a newline."""
-    return json.dumps(summary(design, topic), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(summary(design, topic), indent=1, allow_nan=False) + "\n"
 
 
 def plain(value: Any) -> Any:

@@ -38,7 +38,12 @@ __all__ = ["SCHEMA", "check_output", "read", "to_bytes", "write"]
 SCHEMA = "kinform/results/1"
 _FAMILY = "kinform/results/"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_RECOMPUTE = "compute it anew from the manifest: kinform run MANIFEST -o FILE"
+_DAMAGE = (
+    ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
+)  # fmt: skip
+"""What h5py and the codecs raise on a file whose content makes no sense."""
+_COMPUTE = "compute it from the manifest: kinform run MANIFEST -o FILE"
+_RECOMPUTE = f"delete it, and {_COMPUTE}"
 _NAME_ONE = "name a results file of kinform"
 _STAGE_OF = {"constraints": "joints", "mobility": "joints"}
 
@@ -165,21 +170,21 @@ def _opened(path: str | Path) -> Iterator[h5py.File]:
             stream = stack.enter_context(open(path, "rb"))
             signature = stream.read(len(_SIGNATURE))
         except FileNotFoundError as error:
-            raise _store.refuse(path, "there is no such file", f"check the name, or {_RECOMPUTE}") from error
+            raise _store.refuse(path, "there is no such file", f"check the name, or {_COMPUTE}") from error
         except OSError as error:
             raise _store.refuse(path, f"cannot be read: {error.strerror or error}", _NAME_ONE) from error
         if signature != _SIGNATURE:
             raise _store.refuse(path, "this is not a results file of kinform (not HDF5)", _NAME_ONE)
         try:
             file = stack.enter_context(h5py.File(stream, "r"))
-        except (OSError, RuntimeError, ValueError) as error:
+            schema, version = file.attrs.get("schema"), file.attrs.get("kinform", "unknown")
+        except _DAMAGE as error:
             raise _store.refuse(path, "the results file is truncated or damaged", _RECOMPUTE) from error
-        _check_schema(path, file)
+        _check_schema(path, schema, version)
         yield file
 
 
-def _check_schema(path: str | Path, file: h5py.File) -> None:
-    schema, version = file.attrs.get("schema"), file.attrs.get("kinform", "unknown")
+def _check_schema(path: str | Path, schema: object, version: object) -> None:
     if schema == SCHEMA:
         return
     if isinstance(schema, str) and schema.startswith(_FAMILY):

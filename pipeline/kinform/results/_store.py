@@ -32,9 +32,9 @@ def check_target(path: str | Path) -> None:
         raise refuse(path, f"the folder {missing} does not exist", f"create it: mkdir -p {missing}")
     if target.exists() and not target.is_file():
         raise refuse(path, "this is a device or a pipe, not a file", "name a regular file")
-    if target.exists() and not os.access(target, os.W_OK):
+    if target.exists() and not _may(target, os.W_OK):
         raise refuse(path, "the file is read-only", "make it writable, or name another file")
-    if not os.access(target.parent, os.W_OK | os.X_OK):
+    if not _may(target.parent, os.W_OK | os.X_OK):
         raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
 
 
@@ -55,6 +55,10 @@ def replace(path: str | Path, data: bytes) -> None:
         raise refuse(
             path, f"cannot be written: {reason}", "name a file in a writable folder with enough space"
         ) from error
+
+
+def _may(path: Path, mode: int) -> bool:
+    return os.access(path, mode, effective_ids=os.access in os.supports_effective_ids)
 
 
 def _holds(target: Path, data: bytes) -> bool:

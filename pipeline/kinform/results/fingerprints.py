@@ -27,8 +27,8 @@ _CODE = {
     "surfaces": ("surfaces",),
     "contacts": ("contacts",),
     "joints": ("kinematics",),
-    "mass": ("mass",),
-    "simulation": ("simulation", "function", "kinematics"),
+    "mass": ("mass", "kinematics"),
+    "simulation": ("simulation", "behaviour", "function", "kinematics"),
     "findings": ("consistency", "function", "kinematics"),
 }
 """Packages whose code decides the result of each stage."""

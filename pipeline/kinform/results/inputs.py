@@ -44,7 +44,7 @@ def _shapes(assembly: Assembly) -> Assembly:
     """Shapes and poses, groups, and pairs that are declared not to touch."""
     return replace(
         _bare(assembly),
-        parts=tuple(replace(part, density=None, override=None) for part in _bare(assembly).parts),
+        parts=_weightless(_bare(assembly).parts),
         assumptions=tuple(
             replace(a, type=None, axis=None, point=None, pitch=None, reason="", source=_NOWHERE)
             for a in assembly.assumptions
@@ -58,10 +58,12 @@ def _shapes(assembly: Assembly) -> Assembly:
 
 
 def _bodies_and_joints(assembly: Assembly) -> Assembly:
-    """What decides bodies and joints; of the function, only the joints that it names."""
-    function = _bare_function(assembly.function)
+    """What decides bodies and joints: of the function, only the joints that it names; densities, only where
+    the heaviest body becomes the ground."""
+    bare, function = _bare(assembly), _bare_function(assembly.function)
     joints = tuple(replace(joint, range=None) for joint in function.joints)
-    return replace(_bare(assembly), function=Function(joints=joints), simulation=None)
+    parts = bare.parts if bare.ground is None else _weightless(bare.parts)
+    return replace(bare, parts=parts, function=Function(joints=joints), simulation=None)
 
 
 def _densities(assembly: Assembly) -> Assembly:
@@ -111,6 +113,10 @@ def _bare(assembly: Assembly) -> Assembly:
         files=(),
         notes=(),
     )
+
+
+def _weightless(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    return tuple(replace(part, density=None, override=None) for part in parts)
 
 
 def _bare_part(part: Part, mesh: Mesh | None) -> Part:

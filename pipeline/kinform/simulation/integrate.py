@@ -100,6 +100,9 @@ def run_dynamic(
     except SingularMassError:
         reached = run.samples[-1].time if run.samples else first
         return run.record(f"after t = {reached:.6g} s a free motion moves no mass")
+    except np.linalg.LinAlgError:
+        reached = run.samples[-1].time if run.samples else first
+        return run.record(f"after t = {reached:.6g} s the motion grew beyond all numbers")
     return run.record("")
 
 

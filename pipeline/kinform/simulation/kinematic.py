@@ -65,7 +65,7 @@ def resting(mechanism: Mechanism, actuation: Actuation, start: Start, settings: 
             (yielding if closing[own].any() else still).append(slot.name)
     notes = []
     if still:
-        notes.append(f"no drive prescribes {', '.join(still)}: it stays at its initial position")
+        notes.append(f"what no drive prescribes stays at its initial position: {', '.join(still)}")
     if yielding:
         notes.append(
             f"the drives do not determine the loops with {', '.join(yielding)}: "

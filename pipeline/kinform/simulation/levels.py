@@ -73,7 +73,7 @@ def notes_of_level(
     """What plays no part at this level."""
     notes = []
     if adrift:
-        notes.append(f"no joints connect {', '.join(adrift)} with the ground: it stays where it is")
+        notes.append(f"what no joints connect with the ground stays where it is: {', '.join(adrift)}")
     if not gears and assembly.function.couplings:
         names = ", ".join(" and ".join(coupling.joints) for coupling in assembly.function.couplings)
         notes.append(f"couplings are intended, not derived from geometry, and are not imposed: {names}")

@@ -1,0 +1,212 @@
+"""Each rule fires on a design that is wrong in its way, and only there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from known import FIXTURES
+
+from kinform.consistency import RULES, UnknownRuleError, check, explain, verdict
+from kinform.model.contacts import Interference
+from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
+from kinform.model.function import Coupling, Drive, Function, IntendedJoint, Law, Load, Requirement, SimulationRequest
+from kinform.model.kinematics import Blocker
+
+HINGE = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
+
+
+@pytest.fixture
+def hinge(derive_design):
+    """A sound hinge with the function that it has."""
+    design = derive_design(HINGE)
+    joint = design.kinematics.joints[0]
+    stated = IntendedJoint("swing", joint.bodies, "revolute", joint.axis, None, joint.point, None, None, "m.toml", 20)
+    return with_function(design, Function(mobility=1, mobility_line=19, joints=(stated,)))
+
+
+def with_function(design, function):
+    return replace(design, assembly=replace(design.assembly, function=function))
+
+
+def changed_function(design, **changes):
+    return with_function(design, replace(design.assembly.function, **changes))
+
+
+def changed_joint(design, **changes):
+    kinematics = design.kinematics
+    return replace(design, kinematics=replace(kinematics, joints=(replace(kinematics.joints[0], **changes),)))
+
+
+def changed_intent(design, **changes):
+    stated = replace(design.assembly.function.joints[0], **changes)
+    return changed_function(design, joints=(stated,))
+
+
+def changed_mesh(design, **health):
+    first, *rest = design.assembly.parts
+    mesh = replace(first.mesh, health=replace(first.mesh.health, **health))
+    return replace(design, assembly=replace(design.assembly, parts=(replace(first, mesh=mesh), *rest)))
+
+
+def overlapping(design, mated):
+    overlap = Interference(("block", "shaft"), 1e-9, 1e-4, np.zeros(3), mated, "manifold")
+    return replace(design, contacts=replace(design.contacts, interferences=(overlap,)))
+
+
+def tilted(axis, degrees):
+    across = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    across /= np.linalg.norm(across)
+    return np.cos(np.radians(degrees)) * axis + np.sin(np.radians(degrees)) * across
+
+
+def drive(joint, kind="motion"):
+    return Drive(joint, kind, Law("constant"), {}, 1e-3, "m.toml", 30)
+
+
+def blocked(design):
+    blocker = Blocker(("block", "shaft"), 0, 1e-6, 0.05, np.zeros(3), 0.0, "rotation about (0, 0, 1)")
+    return changed_joint(design, status="blocked", blockers=(blocker,), reason="1 of 4 patches left out")
+
+
+WRONG = {
+    "KF101": lambda d: changed_mesh(d, watertight=False, open_edges=3),
+    "KF102": lambda d: changed_mesh(d, volume=-1e-6),
+    "KF103": lambda d: changed_mesh(d, consistent_winding=False),
+    "KF104": lambda d: changed_mesh(d, manifold_status="NotManifold"),
+    "KF105": lambda d: changed_mesh(d, degenerate_facets=2),
+    "KF106": lambda d: changed_mesh(d, duplicate_facets=2),
+    "KF107": lambda d: changed_mesh(d, shells=2),
+    "KF201": lambda d: overlapping(d, mated=False),
+    "KF202": lambda d: overlapping(d, mated=True),
+    "KF204": blocked,
+    "KF205": lambda d: changed_joint(d, status="inferred", evidence=("rim",)),
+    "KF206": lambda d: replace(
+        d, kinematics=replace(d.kinematics, misaligned=((d.kinematics.joints[0].name, 0.01, 0.0),))
+    ),
+    "KF301": lambda d: changed_function(d, mobility=2),
+    "KF402": lambda d: changed_intent(d, type="prismatic", point=None),
+    "KF403": lambda d: changed_intent(d, axis=tilted(d.assembly.function.joints[0].axis, 0.5)),
+    "KF404": lambda d: changed_intent(d, point=d.assembly.function.joints[0].point + np.array([0.002, 0.001, -0.003])),
+    "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),
+}
+UNDECIDED = {
+    "KF901": lambda d: changed_joint(d, status="ambiguous", reason="singular value 0.001"),
+    "KF902": lambda d: changed_function(
+        d, requirements=(Requirement("light", "mass", {"maximum": 1.0}, "m.toml", 40),)
+    ),
+    "KF903": lambda d: changed_function(d, couplings=(Coupling(("swing", "swing"), 2.0, "m.toml", 40),)),
+    "KF904": lambda d: changed_intent(d, range=(-1.0, 1.0)),
+    "KF905": lambda d: changed_function(
+        d, loads=(Load("shaft", np.array([0.0, 0.0, 1.0]), None, None, "world", "m.toml", 40),)
+    ),
+}
+
+
+def codes(design):
+    return {finding.code for finding in check(design).findings}
+
+
+def outcome(design, code):
+    return next(rule.outcome for rule in check(design).rules if rule.code == code)
+
+
+def test_a_sound_design_has_no_finding_and_passes(hinge):
+    report = check(hinge)
+    assert report.findings == ()
+    assert verdict(report) == 0
+
+
+@pytest.mark.parametrize("code", WRONG)
+def test_a_rule_fires_on_what_it_is_about(hinge, code):
+    assert code not in codes(hinge)
+    wrong = WRONG[code](hinge)
+    report = check(wrong)
+    found = [finding for finding in report.findings if finding.code == code]
+    assert found
+    for finding in found:
+        assert finding.severity in SEVERITIES
+        assert finding.subject
+        assert finding.message
+        assert finding.file is not None or finding.place is not None
+    notes_only = all(finding.severity == "note" for finding in found)
+    assert next(rule.outcome for rule in report.rules if rule.code == code) == ("passed" if notes_only else "failed")
+
+
+@pytest.mark.parametrize("code", UNDECIDED)
+def test_what_no_rule_can_decide_is_not_a_pass(hinge, code):
+    assert outcome(hinge, code) != "inconclusive"
+    report = check(UNDECIDED[code](hinge))
+    assert next(rule.outcome for rule in report.rules if rule.code == code) == "inconclusive"
+    assert verdict(report) != 0
+
+
+def test_a_part_that_touches_nothing_is_found(derive_design, hinge):
+    apart = derive_design(FIXTURES / "pairs" / "free_apart" / "free_apart.toml")
+    assert "KF203" in codes(apart)
+    assert "KF203" not in codes(hinge)
+
+
+def test_an_intended_joint_without_contact_is_missing(derive_design):
+    apart = derive_design(FIXTURES / "pairs" / "free_apart" / "free_apart.toml")
+    first, second = (part.name for part in apart.assembly.parts)
+    wanted = IntendedJoint(
+        "j", (first, second), "revolute", np.array([0, 0, 1.0]), None, np.zeros(3), None, None, "m", 1
+    )
+    assert "KF401" in codes(with_function(apart, Function(joints=(wanted,))))
+
+
+def test_a_dynamic_level_needs_densities(hinge):
+    asked = replace(
+        hinge.assembly,
+        parts=tuple(replace(part, density=None) for part in hinge.assembly.parts),
+        simulation=SimulationRequest("dynamic", file="m.toml", line=50),
+    )
+    from kinform.mass import compile_mass
+    from kinform.simulation import simulate
+
+    mass = compile_mass(asked, hinge.kinematics)
+    design = replace(hinge, assembly=asked, mass=mass, simulation=simulate(asked, hinge.kinematics, mass))
+    assert "KF120" in codes(design)
+    assert "KF120" not in codes(hinge)
+
+
+def test_findings_do_not_depend_on_the_order_of_parts(hinge):
+    wrong = changed_function(changed_mesh(hinge, watertight=False), mobility=4)
+    turned = replace(wrong, assembly=replace(wrong.assembly, parts=wrong.assembly.parts[::-1]))
+    assert check(wrong).findings == check(turned).findings
+
+
+def test_stages_that_were_not_run_leave_rules_undecided(hinge):
+    report = check(replace(hinge, kinematics=None))
+    assert next(rule.outcome for rule in report.rules if rule.code == "KF402") == "inconclusive"
+    assert verdict(report) == 2
+
+
+def test_the_registry_is_sorted_unique_and_documented():
+    listed = [rule.code for rule in RULES]
+    assert listed == sorted(set(listed))
+    for rule in RULES:
+        text = explain(rule.code)
+        assert rule.code in text
+        assert "What to do" in text
+    with pytest.raises(UnknownRuleError):
+        explain("KF999")
+
+
+@given(
+    severities=st.lists(st.sampled_from(SEVERITIES), max_size=4),
+    outcomes=st.lists(st.sampled_from(["passed", "failed", "inconclusive", "skipped"]), max_size=4),
+    fail_on=st.sampled_from(SEVERITIES),
+)
+def test_the_verdict_is_one_for_findings_two_for_doubt_and_zero_only_for_a_pass(severities, outcomes, fail_on):
+    report = CheckReport(
+        tuple(Finding("KF1", "x", severity, ("a",), "m") for severity in severities),
+        tuple(RuleOutcome("KF1", "x", name) for name in outcomes),
+    )
+    bad = any(SEVERITIES.index(s) >= SEVERITIES.index(fail_on) for s in severities)
+    doubt = "inconclusive" in outcomes or all(name == "skipped" for name in outcomes)
+    assert verdict(report, fail_on) == (1 if bad else 2 if doubt else 0)
