@@ -6,13 +6,24 @@ import dataclasses
 import functools
 import hashlib
 import struct
+import weakref
 from typing import Any
 
 import numpy as np
 
 from kinform.model.assembly import Mesh
+from kinform.model.contacts import Contacts
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassReport
+from kinform.model.simulation import Simulation
+from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["digest"]
+
+_RESULTS = (MeshSurfaces, Contacts, Kinematics, MassReport, Simulation)
+"""Results of stages: large, never changed, and part of the inputs of several stages."""
+_known: weakref.WeakKeyDictionary[Any, str] = weakref.WeakKeyDictionary()
+"""Hashes of results that are still in use; these classes compare by identity."""
 
 
 def digest(*values: Any) -> str:
@@ -54,6 +65,17 @@ def _feed(hasher: Any, value: Any) -> None:
 
 
 def _feed_record(hasher: Any, record: Any) -> None:
+    if not isinstance(record, _RESULTS):
+        _feed_fields(hasher, record)
+        return
+    if record not in _known:
+        own = hashlib.sha256()
+        _feed_fields(own, record)
+        _known[record] = own.hexdigest()
+    hasher.update(f"r{_known[record]};".encode())
+
+
+def _feed_fields(hasher: Any, record: Any) -> None:
     hasher.update(f"c{type(record).__name__};".encode())
     kind: Any = type(record)
     for name in _fields(kind):

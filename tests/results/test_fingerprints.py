@@ -1,0 +1,105 @@
+"""A fingerprint changes with every part of its inputs, and covers all code and all input of its stage."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from designs import designs, difference
+from hypothesis import HealthCheck, Phase, given, settings
+
+import kinform
+from kinform.model.assembly import Assembly
+from kinform.model.design import Design
+from kinform.model.function import Function
+from kinform.results import fingerprints, inputs
+from kinform.results._digest import digest
+
+PACKAGE = Path(kinform.__file__).parent
+SETTINGS = settings(
+    max_examples=8,
+    deadline=None,
+    phases=[Phase.generate],
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
+)
+
+
+@SETTINGS
+@given(one=designs(), two=designs())
+def test_equal_content_has_one_digest_and_other_content_another(one: Design, two: Design) -> None:
+    assert digest(one) == digest(dataclasses.replace(one))
+    assert (digest(one) == digest(two)) == (difference(one, two) is None)
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [
+        (("ab", "c"), ("a", "bc")),
+        ((1.0,), (np.nextafter(1.0, 2.0),)),
+        ((0.0,), (-0.0,)),
+        ((None,), (0,)),
+        ((1,), (1.0,)),
+        (("1",), (1,)),
+        (((), ()), ((),)),
+        ((np.zeros((2, 3)),), (np.zeros((3, 2)),)),
+        ((np.zeros(2),), (np.zeros(2, dtype=np.int64),)),
+        (({"a": 1, "b": 2},), ({"a": 2, "b": 1},)),
+        ((Function(mobility=1),), (Function(mobility_line=1),)),
+    ],
+)
+def test_values_that_differ_have_other_digests(one: tuple[Any, ...], two: tuple[Any, ...]) -> None:
+    assert digest(*one) != digest(*two)
+
+
+def test_the_order_of_a_dict_and_the_memory_layout_of_an_array_do_not_matter() -> None:
+    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
+    array = np.arange(6.0).reshape(2, 3)
+    assert digest(array) == digest(np.asfortranarray(array)) == digest(array.astype(">f8"))
+
+
+def test_a_value_without_content_is_refused() -> None:
+    with pytest.raises(TypeError, match="cannot hash a object"):
+        digest(object())
+
+
+def _imports(package: str) -> set[str]:
+    """Packages of kinform that the code of a package imports."""
+    found = set()
+    for path in (PACKAGE / package).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("kinform."):
+                found.add(node.module.split(".")[1])
+            elif isinstance(node, ast.ImportFrom) and node.module == "kinform":
+                found |= {alias.name for alias in node.names}
+    return found - {package, "model", "errors"}
+
+
+@pytest.mark.parametrize("stage", ["surfaces", "contacts", "joints", "mass", "simulation", "findings"])
+def test_the_version_of_all_code_that_a_stage_imports_is_in_its_fingerprint(stage: str) -> None:
+    counted = set(fingerprints._CODE[stage])
+    for package in counted:
+        assert _imports(package) <= counted
+
+
+@pytest.mark.parametrize("stage", ["contacts", "joints", "mass", "simulation", "findings"])
+def test_a_fingerprint_covers_every_field_of_the_assembly(stage: str) -> None:
+    fields = {field.name for field in dataclasses.fields(Assembly)}
+    assert set(fingerprints._ASSEMBLY_FIELDS) == fields
+
+
+@SETTINGS
+@given(design=designs())
+def test_what_a_stage_sees_has_no_files_and_lines_except_for_the_findings(design: Design) -> None:
+    for stage in ("contacts", "joints", "mass", "simulation"):
+        view = inputs.assembly_for(stage, design.assembly)
+        function, request = view.function, view.simulation
+        placed = [*function.joints, *function.couplings, *function.drives, *function.loads]
+        assert all(item.file == "" and item.line is None for item in placed)
+        assert request is None or (request.file is None and request.line is None)
+        assert not any(item.source.line for item in (view, *view.parts, *view.groups, *view.assumptions))
+        assert [part.name for part in view.parts] == [part.name for part in design.assembly.parts]
+    assert inputs.assembly_for("findings", design.assembly) is design.assembly
