@@ -106,14 +106,14 @@ Debug = Annotated[
     typer.Option("--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1)."),
 ]
 Jobs = Annotated[
-    int,
+    int | None,
     typer.Option(
-        "--jobs", "-j", min=0, metavar="N", show_default=False, help="Use up to N cores; 0, the default: all of them."
+        "--jobs", "-j", min=1, metavar="N", show_default=False, help="Use up to N cores; default: all of them."
     ),
 ]
 
 
-def cores(jobs: int) -> int:
+def cores(jobs: int | None) -> int:
     """How many processes `--jobs` stands for."""
     return jobs or os.cpu_count() or 1
 

@@ -16,7 +16,7 @@ EXAMPLES = examples(
 )
 
 
-def contacts(source: Results, output: Output, jobs: Jobs = 0, quiet: Quiet = False, debug: Debug = False) -> None:
+def contacts(source: Results, output: Output, jobs: Jobs = None, quiet: Quiet = False, debug: Debug = False) -> None:
     """Find the analytic surfaces of each part, and where parts touch or overlap."""
     files.check_output(output)
     from kinform import results, stages

@@ -53,7 +53,7 @@ def run(
         FindingsFormat.full
     ),
     fail_on: FailOn = Severity.error,
-    jobs: Jobs = 0,
+    jobs: Jobs = None,
     depfile: Depfile = None,
     quiet: Quiet = False,
     debug: Debug = False,

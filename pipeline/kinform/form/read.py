@@ -125,7 +125,7 @@ class _Reader:
         ground = top.manifest.assembly.ground
         if ground is not None:
             purposes[0].place(ground, "assembly", "ground")
-        if not self._stated_parts():
+        if not self._stated_parts() and not len(self.problems):
             top.complain("the assembly has no part", "add a [[part]]")
         return Assembly(
             name=top.manifest.assembly.name,
@@ -171,7 +171,8 @@ class _Reader:
                         if entry.name in seen:
                             scope.line(*path, "name")
                             scope.complain(
-                                f"two {what}s are named {quoted(entry.name)}: the first is at line {seen[entry.name]}",
+                                f"two are named {quoted(entry.name)} (each {what} needs its own name): "
+                                f"the first is at line {seen[entry.name]}",
                                 "rename one of them", *path, "name",
                             )  # fmt: skip
                         else:

@@ -1,0 +1,129 @@
+"""The manifest: poses, units, names, function in SI, and every error with its line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinform.errors import InputError
+from kinform.form import load, schema
+
+HEAD = 'schema = 1\n[assembly]\nname = "x"\nunits = "mm"\n'
+TWO = HEAD + '[[part]]\nname = "a"\n[[part]]\nname = "b"\n'
+
+
+def read(folder, text, name="m.toml"):
+    (folder / name).write_text(text)
+    return load(folder / name)
+
+
+def problems(folder, text):
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    assert all(p.remedy and p.file and p.line for p in caught.value.problems)
+    return [(p.line, p.message) for p in caught.value.problems]
+
+
+def test_poses_and_units_of_sub_assemblies_compose(tmp_path):
+    read(
+        tmp_path,
+        'schema = 1\n[assembly]\nname = "s"\nunits = "in"\n[[part]]\nname = "rotor"\nposition = [1, 0, 0]\n'
+        '[[part]]\nname = "stator"\n[function]\nmobility = 1\n[[function.joint]]\nname = "spin"\n'
+        'between = ["stator", "rotor"]\ntype = "revolute"\naxis = [1, 0, 0]\npoint = [2, 0, 0]\n',
+        "sub.toml",
+    )
+    assembly = read(
+        tmp_path,
+        HEAD + '[[part]]\nname = "base"\n[[subassembly]]\nname = "motor"\nfile = "sub.toml"\n'
+        "position = [0, 0, 10]\nrpy = [0, 0, 90]\n",
+    )
+    assert [p.name for p in assembly.parts] == ["base", "motor/rotor", "motor/stator"]
+    assert assembly.part("motor/rotor").X_WP[:3, 3] == pytest.approx([0, 0.0254, 0.01], abs=1e-15)
+    joint = assembly.function.joints[0]
+    assert (joint.name, joint.between) == ("motor/spin", ("motor/stator", "motor/rotor"))
+    assert joint.axis == pytest.approx([0, 1, 0], abs=1e-15)
+    assert joint.point == pytest.approx([0, 0.0508, 0.01], abs=1e-15)
+    assert assembly.subassemblies[0].mobility == 1
+
+
+def test_ranges_pitches_and_requirements_come_in_si(tmp_path):
+    joint = (
+        '[[function.joint]]\nname = "j{n}"\nbetween = ["a", "b"]\ntype = "{t}"\naxis = [0, 0, 2]\npoint = [1, 2, 3]\n'
+    )
+    assembly = read(
+        tmp_path,
+        TWO
+        + joint.format(n=1, t="revolute") + "range = [-90, inf]\n"
+        + joint.format(n=2, t="prismatic") + "range = [-5, 10]\n"
+        + joint.format(n=3, t="screw") + "pitch = 2\n"
+        + '[[function.require]]\nname = "q"\nkind = "speed"\njoint = "j2"\nlimit = 100\n',
+    )  # fmt: skip
+    first, second, third = assembly.function.joints
+    assert first.range == (pytest.approx(-np.pi / 2), np.inf)
+    assert first.axis.tolist() == [0, 0, 1]
+    assert second.range == pytest.approx((-0.005, 0.01))
+    assert third.pitch == pytest.approx(0.002)
+    assert assembly.function.requirements[0].values["limit"] == pytest.approx(0.1)
+
+
+def test_a_table_law_is_read_and_its_faults_have_lines(tmp_path):
+    joint = (
+        '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "revolute"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\n'
+    )
+    drive = '[[function.drive]]\njoint = "j"\nkind = "motion"\nlaw = {type = "table", file = "t.csv"}\n'
+    (tmp_path / "t.csv").write_text("time,value\n0,0\n1,10\n")
+    law = read(tmp_path, TWO + joint + drive).function.drives[0].law
+    assert (law.times, law.values) == ((0.0, 1.0), (0.0, 10.0))
+    (tmp_path / "t.csv").write_text("time,value\n0,0\n1,x\n0,3\n")
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, TWO + joint + drive)
+    assert [(p.file, p.line) for p in caught.value.problems] == [("t.csv", 3), ("t.csv", 4)]
+
+
+WRONG = {
+    "unknown key": (TWO + "[tolerances]\ncontakt = 1\n", 10, "contakt"),
+    "unit missing": ('schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\n', 2, "units"),
+    "other schema": (TWO.replace("schema = 1", "schema = 2"), 1, "schema 2"),
+    "syntax": (TWO + "[[part]\n", 9, "TOML"),
+    "slash in a name": (HEAD + '[[part]]\nname = "a/b"\n', 6, "/"),
+    "same name": (HEAD + '[[part]]\nname = "a"\n[[part]]\nname = "a"\n', 8, "line 6"),
+    "group of an unknown part": (TWO + '[[group]]\nname = "g"\nparts = ["a", "c"]\n', 11, '"c"'),
+    "part in two groups": (
+        TWO + '[[group]]\nname = "g"\nparts = ["a"]\n[[group]]\nname = "h"\nparts = ["a"]\n', 14, '"g"',
+    ),
+    "unknown material": (HEAD + '[[part]]\nname = "a"\nmaterial = "unobtainium"\n', 7, "unobtainium"),
+    "negative density": (HEAD + '[[part]]\nname = "a"\ndensity = -1\n', 7, "density"),
+    "infinite position": (HEAD + '[[part]]\nname = "a"\nposition = [0, inf, 0]\n', 7, "position"),
+    "quaternion": (HEAD + '[[part]]\nname = "a"\nquaternion = [1, 1, 0, 0]\n', 7, "length 1.41421"),
+    "unknown ground": (TWO.replace('units = "mm"', 'units = "mm"\nground = "c"'), 5, '"c"'),
+    "joint without axis": (
+        TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "prismatic"\n', 9, "needs axis",
+    ),
+    "zero axis": (
+        TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "planar"\naxis = [0, 0, 0]\n', 13, "zero",
+    ),
+    "reversed range": (
+        TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "prismatic"\naxis = [0, 0, 1]\nrange = [2, 1]\n',
+        14, "range",
+    ),
+    "drive on nothing": (
+        TWO + '[[function.drive]]\njoint = "j"\nkind = "effort"\nlaw = {type = "constant", value = 1}\n', 10, '"j"',
+    ),
+    "mass without inertia": (HEAD + '[[part]]\nname = "a"\nmass = 1\n', 5, "inertia"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_an_error_has_its_line_and_says_what(tmp_path, case):
+    text, line, word = WRONG[case]
+    found = problems(tmp_path, text)
+    assert [entry[0] for entry in found] == [line]
+    assert word in found[0][1]
+
+
+def test_the_schema_describes_every_table():
+    described = schema()
+    assert {"assembly", "part", "group", "subassembly", "assume", "function", "simulation"} <= set(
+        described["properties"]
+    )
+    assert described["additionalProperties"] is False
