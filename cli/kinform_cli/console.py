@@ -14,6 +14,7 @@ from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+    from rich.text import Text
 
 __all__ = [
     "Settings",
@@ -24,6 +25,7 @@ __all__ = [
     "say",
     "settings",
     "stderr",
+    "tell",
     "tolerate_any_character",
     "warn",
 ]
@@ -67,8 +69,16 @@ def stderr() -> Console:
     return _console(sys.stderr)
 
 
+def tell(text: str | Text) -> None:
+    """A line on stderr. That nobody can read it changes no verdict."""
+    try:
+        stderr().print(text, soft_wrap=True)
+    except OSError:
+        _forget(sys.stderr)
+
+
 def _forget(stream: IO[str]) -> None:
-    """What is written to the stream from now on goes nowhere."""
+    """What is written to the stream from now on goes nowhere, and so does what waits in it."""
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), stream.fileno())
 
@@ -83,9 +93,15 @@ def emit(text: str) -> None:
 
 
 def out(item: RenderableType) -> None:
-    """Write a table, a tree or sentences for people to stdout."""
-    _console(sys.stdout).print(item)
-    flush()
+    """Write a table, a tree or sentences for people to stdout; off a terminal no blanks end a line."""
+    console = _console(sys.stdout)
+    if console.is_terminal:
+        console.print(item)
+        flush()
+        return
+    with console.capture() as drawn:
+        console.print(item)
+    emit("\n".join(line.rstrip() for line in drawn.get().splitlines()))
 
 
 def flush() -> None:
@@ -98,16 +114,17 @@ def flush() -> None:
 
 def give_up() -> None:
     """Flush if that is possible, so that the end of the process has nothing left to fail on."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        _forget(sys.stdout)
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            _forget(stream)
 
 
-def say(text: str) -> None:
-    """One line on stderr about what was done; silent with --quiet."""
-    if not settings.quiet:
-        stderr().print(text, soft_wrap=True)
+def say(text: str | None) -> None:
+    """One line on stderr about what was done; silent with --quiet, or where there is nothing to say."""
+    if text is not None and not settings.quiet:
+        tell(text)
 
 
 def warn(text: str) -> None:
@@ -115,7 +132,7 @@ def warn(text: str) -> None:
     if not settings.quiet:
         from rich.text import Text
 
-        stderr().print(Text.assemble(("warning: ", "bold yellow"), text), soft_wrap=True)
+        tell(Text.assemble(("warning: ", "bold yellow"), text))
 
 
 def tolerate_any_character() -> None:

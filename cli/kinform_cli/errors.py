@@ -36,7 +36,7 @@ def report(error: BaseException) -> int:
     from kinform.errors import InputError, KinformError, ResultsError
 
     if console.settings.debug and not _is_usage(error):
-        console.stderr().print(_traceback(error), soft_wrap=True)
+        console.tell(_traceback(error))
     if isinstance(error, InputError):
         for problem in error.problems:
             _print_problem(problem)
@@ -105,4 +105,4 @@ def _print(place: str, message: str, remedy: str | None = None) -> None:
     text = Text.assemble((place, "bold"), ": ", ("error:", "bold red"), f" {message}")
     if remedy:
         text.append(f"\n  remedy: {remedy}")
-    console.stderr().print(text, soft_wrap=True)
+    console.tell(text)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -110,9 +110,11 @@ def write_text(path: Path, text: str) -> None:
         raise
 
 
-def read_by(design: Design, source: Path) -> list[Path]:
-    """Every file that an import of `source` read, as seen from here."""
-    return [source.parent / name for name in design.assembly.files]
+def read_by(design: Design, sources: Sequence[Path]) -> list[Path]:
+    """Every file that an import of these sources read, as seen from here."""
+    if sources[0].suffix.lower() in MESHES:
+        return sorted(sources)
+    return [sources[0].parent / name for name in design.assembly.files]
 
 
 def make_rule(target: Path, sources: Iterable[Path]) -> str:

@@ -1,98 +1,33 @@
-"""The command line itself: which commands there are, `--version`, and the exit code of everything."""
+"""The entry of the command: whatever happens, it ends with the exit code that is due.
+
+Imports nothing but the standard library before it is ready to catch what goes wrong: a broken
+installation must not end with 1, which would read as findings.
+"""
 
 from __future__ import annotations
 
 import os
 import sys
+import traceback
 from collections.abc import Sequence
-from typing import Annotated, NoReturn
+from typing import NoReturn
 
-import typer
+__all__ = ["entry", "main"]
 
-from kinform_cli import console, errors
-from kinform_cli.commands import (
-    check,
-    contacts,
-    explain,
-    import_,
-    init,
-    joints,
-    mass,
-    query,
-    run,
-    schema,
-    show,
-    simulate,
-)
-from kinform_cli.options import Command, Debug, Group, examples
-
-__all__ = ["app", "entry", "main"]
-
-_WHOLE, _STAGES, _LOOK, _BEGIN = "The whole way", "Stage by stage", "Look", "Begin, and look up"
-
-_COMMANDS = (
-    ("run", run.run, run.EXAMPLES, _WHOLE),
-    ("import", import_.import_, import_.EXAMPLES, _STAGES),
-    ("contacts", contacts.contacts, contacts.EXAMPLES, _STAGES),
-    ("joints", joints.joints, joints.EXAMPLES, _STAGES),
-    ("mass", mass.mass, mass.EXAMPLES, _STAGES),
-    ("simulate", simulate.simulate, simulate.EXAMPLES, _STAGES),
-    ("check", check.check, check.EXAMPLES, _STAGES),
-    ("show", show.show, show.EXAMPLES, _LOOK),
-    ("query", query.query, query.EXAMPLES, _LOOK),
-    ("init", init.init, init.EXAMPLES, _BEGIN),
-    ("explain", explain.explain, explain.EXAMPLES, _BEGIN),
-    ("schema", schema.schema, schema.EXAMPLES, _BEGIN),
-)
-
-_EXAMPLES = examples(
-    "kinform init *.stl --units mm -o arm.toml   # a manifest to start from",
-    "kinform run arm.toml -o arm.h5              # everything; exit code 0, 1 or 2",
-    "kinform show arm.h5                         # what was derived",
-)
-
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from kinform._version import __version__
-
-        console.emit(f"kinform {__version__}")
-        raise typer.Exit
-
-
-def _root(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
-    ] = False,
-    debug: Debug = False,
-) -> None:
-    """Derive joints, mobility, mass and motion from meshes, and check them against the intended
-    function.
-
-    Exit codes: 0 written, or verified. 1 findings (check, run). 2 not written, or not verified.
-    """
-
-
-def _build() -> typer.Typer:
-    built = typer.Typer(
-        name="kinform",
-        cls=Group,
-        context_settings={"help_option_names": ["--help", "-h"]},
-    )
-    built.callback(epilog=_EXAMPLES)(_root)
-    for name, function, lines, panel in _COMMANDS:
-        built.command(name, cls=Command, epilog=lines, rich_help_panel=panel)(function)
-    return built
-
-
-app = _build()
+_FAILED = 2
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run the command with these arguments; returns its exit code, whatever happens."""
+    """Run the command with these arguments; returns its exit code."""
+    from kinform_cli import console, errors
+
     console.settings.quiet = False
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
+        import typer
+
+        from kinform_cli.app import app
+
         command = typer.main.get_command(app)
         code = command.main(args=list(arguments) or ["--help"], prog_name="kinform", standalone_mode=False)
         console.flush()
@@ -105,7 +40,21 @@ def main(arguments: Sequence[str]) -> int:
 
 def entry() -> NoReturn:
     """The console script."""
-    console.tolerate_any_character()
-    code = main(sys.argv[1:])
-    console.give_up()
+    code = _FAILED
+    try:
+        from kinform_cli import console
+
+        console.tolerate_any_character()
+        code = main(sys.argv[1:])
+        console.give_up()
+    except BaseException:  # not even an error could be reported; or Ctrl-C again while it was
+        _last_words()
     sys.exit(code)
+
+
+def _last_words() -> None:
+    try:
+        traceback.print_exc()
+        sys.stderr.flush()
+    except BaseException:  # there is nobody to tell
+        os._exit(_FAILED)

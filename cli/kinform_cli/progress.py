@@ -1,7 +1,12 @@
-"""Progress on stderr: only on a terminal, only for work that takes over a second."""
+"""Progress on stderr: only on a terminal, only for work that takes over a second.
+
+A thread of its own draws, so that the clock goes on while a step takes long. Stages fork workers: the
+lock is held across a fork, so that no worker starts with a half-written line.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from types import TracebackType
@@ -16,83 +21,82 @@ __all__ = ["DELAY", "Working"]
 
 DELAY = 1.0
 """Seconds after which a bar appears."""
+_PERIOD = 0.1
+"""Seconds between two drawings."""
+
+_drawing = threading.RLock()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(before=_drawing.acquire, after_in_parent=_drawing.release, after_in_child=_drawing.release)
 
 
 class Working:
     """A context in which work is under way; call it with (done, total) as the work proceeds.
 
-    Without calls there is a spinner; `stage` changes the label when the next stage begins. The bar
+    Without calls there is a spinner; `stage` changes the label when another stage begins. The bar
     vanishes at the end.
     """
 
     def __init__(self, label: str):
         self._label = label
         self._done, self._total = 0, 0
-        self._bars: Bars | None = None
-        self._lock = threading.Lock()
-        self._timer: threading.Timer | None = None
+        self._over = threading.Event()
+        self._thread: threading.Thread | None = None
 
     def __enter__(self) -> Working:
         if sys.stderr.isatty() and not console.settings.quiet:
-            self._timer = threading.Timer(DELAY, self._appear)
-            self._timer.daemon = True
-            self._timer.start()
+            self._thread = threading.Thread(target=self._draw, daemon=True)
+            self._thread.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        with self._lock:
-            if self._timer is not None:
-                self._timer.cancel()
-                self._timer = None
-            if self._bars is not None:
-                self._bars.stop()
-                self._bars = None
+        self._over.set()
+        if self._thread is not None:
+            self._thread.join()
 
     def __call__(self, done: int, total: int) -> None:
         """So many of so many steps of the present stage are done; total 0 when nobody knows."""
-        with self._lock:
-            self._done, self._total = done, total
-            self._refresh()
+        self._done, self._total = done, total
 
     def stage(self, label: str) -> None:
-        """The next stage begins."""
-        with self._lock:
-            self._label, self._done, self._total = label, 0, 0
-            self._refresh()
+        """This stage is under way now."""
+        self._label = label
 
-    def _refresh(self) -> None:
-        if self._bars is not None:
-            self._bars.update(
-                self._bars.task_ids[0],
-                description=self._label,
-                completed=self._done,
-                total=self._total or None,
-            )
+    def _draw(self) -> None:
+        if self._over.wait(DELAY):
+            return
+        with _drawing:
+            bars = _bars()
+            task = bars.add_task(self._label, total=None)
+            bars.start()
+        while not self._over.wait(_PERIOD):
+            with _drawing:
+                bars.update(task, description=self._label, completed=self._done, total=self._total or None)
+                bars.refresh()
+        with _drawing:
+            bars.stop()
 
-    def _appear(self) -> None:
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            SpinnerColumn,
-            TextColumn,
-            TimeElapsedColumn,
-        )
 
-        with self._lock:
-            if self._timer is None:
-                return
-            self._bars = Progress(
-                SpinnerColumn(),
-                TextColumn("{task.description}", markup=False),
-                BarColumn(bar_width=30),
-                MofNCompleteColumn(),
-                TimeElapsedColumn(),
-                console=console.stderr(),
-                transient=True,
-            )
-            self._bars.add_task(self._label, total=None)
-            self._refresh()
-            self._bars.start()
+def _bars() -> Bars:
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
+
+    return Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=30),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=console.stderr(),
+        auto_refresh=False,
+        redirect_stdout=False,
+        redirect_stderr=False,
+        transient=True,
+    )

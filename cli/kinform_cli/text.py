@@ -1,4 +1,4 @@
-"""How numbers, names and tables are written for people, and values for machines."""
+"""How numbers and names are written for people, and values for machines."""
 
 from __future__ import annotations
 
@@ -8,33 +8,36 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
 
-__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "table", "vector"]
+__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "vector"]
 
 NONE = "–"
-"""What stands in a table where there is no value."""
+"""What stands where there is no value."""
 
-_NOTHING = 1e-9
-"""Lengths (m) below this are written as 0."""
+_FINE = 1e-5
+"""Places are written to this share of the largest part; the JSON has every digit."""
 
 
 def number(value: float | None) -> str:
-    """Six significant digits, no trailing zeros; a dash for what is unknown."""
+    """Four significant digits, no trailing zeros; a dash for what is unknown."""
     if value is None or math.isnan(value):
         return NONE
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    text = f"{value:.6g}"
+    return f"{value + 0.0:.4g}"
+
+
+def _rounded(value: float, decimals: int) -> str:
+    text = f"{value:.{max(decimals, 0)}f}"
+    text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text == "-0" else text
 
 
 def degrees(radians: float) -> str:
-    """An angle in degrees, with its sign."""
-    return f"{number(math.degrees(radians))}°"
+    """An angle in degrees, to four decimals."""
+    return f"{_rounded(math.degrees(radians), 4)}°" if math.isfinite(radians) else number(radians)
 
 
 def vector(direction: Iterable[float] | None) -> str:
@@ -55,42 +58,49 @@ def count(many: int, noun: str, plural: str | None = None) -> str:
 
 @dataclass(frozen=True)
 class Lengths:
-    """Lengths in the unit of the assembly."""
+    """Lengths in the unit of the assembly, without its name."""
 
     unit: str
     metres: float
+    decimals: int
+    """Of places."""
 
     @staticmethod
     def of(assembly: Assembly) -> Lengths:
-        """In the unit of that assembly's manifest."""
+        """In the unit of that assembly's manifest, as fine as its parts call for."""
         from kinform.form.units import metres_per
 
-        return Lengths(assembly.units, metres_per(assembly.units))
+        metres = metres_per(assembly.units)
+        largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
+        fine = _FINE * (largest or 1.0) / metres
+        return Lengths(assembly.units, metres, math.ceil(-math.log10(fine)))
 
     def length(self, metres: float | None) -> str:
-        """A length, without its unit."""
-        if metres is None:
-            return NONE
-        return number(0.0 if abs(metres) < _NOTHING else metres / self.metres)
+        """A gap, a depth, a pitch: to four digits, and nothing below a billionth of a metre."""
+        if metres is None or not math.isfinite(metres):
+            return number(metres)
+        return number(0.0 if abs(metres) < 1e-9 else metres / self.metres)
+
+    def place(self, metres: float) -> str:
+        """A coordinate, to as many decimals as the parts call for."""
+        return _rounded(metres / self.metres, self.decimals)
 
     def point(self, point: Iterable[float] | None) -> str:
-        """A place, without its unit."""
-        if point is None or any(math.isnan(x) for x in point):
+        """Three coordinates."""
+        if point is None:
             return NONE
-        return ", ".join(self.length(float(x)) for x in point)
+        coordinates = [float(x) for x in point]
+        if not all(map(math.isfinite, coordinates)):
+            return NONE
+        return ", ".join(map(self.place, coordinates))
 
     def area(self, square_metres: float) -> str:
-        """An area, without its unit."""
-        return f"{square_metres / self.metres**2:.4g}"
+        """An area."""
+        return number(square_metres / self.metres**2)
 
-
-def table(*columns: str, title: str | None = None, right: Iterable[str] = ()) -> Table:
-    """An empty table with these headings; cells wrap, and are never cut. `right`: numbers."""
-    grid = Table(box=None, title=title, title_justify="left", title_style="bold", header_style="bold cyan")
-    grid.pad_edge = False
-    for heading in columns:
-        grid.add_column(heading, justify="right" if heading in right else "left", overflow="fold")
-    return grid
+    def volume(self, cubic_metres: float) -> str:
+        """A volume."""
+        return number(cubic_metres / self.metres**3)
 
 
 def dumps(value: Any) -> str:

@@ -13,9 +13,11 @@ import typer
 from commands import Ran, environment
 
 from kinform import __version__
-from kinform_cli.main import _COMMANDS, app, entry, main
+from kinform_cli.app import COMMANDS as REGISTERED
+from kinform_cli.app import app
+from kinform_cli.main import entry, main
 
-COMMANDS = sorted(name for name, *_ in _COMMANDS)
+COMMANDS = sorted(name for name, *_ in REGISTERED)
 HEAVY = {"scipy", "trimesh", "numba", "h5py", "numpy", "manifold3d", "fcl", "pydantic", "matplotlib"}
 
 
@@ -64,7 +66,7 @@ def test_examples_use_options_that_exist() -> None:
         name: {flag for parameter in command.params for flag in parameter.opts}
         for name, command in group.commands.items()
     }
-    for name, _, text, _ in _COMMANDS:
+    for name, _, text, _ in REGISTERED:
         for line in text.splitlines():
             words = line.split("#")[0].split("|")[0].split()
             if words[:1] != ["kinform"]:

@@ -220,6 +220,19 @@ def test_queries_answer_for_the_pair_and_for_the_whole():
         query(design, "base", "crank", slide=np.zeros(3))
 
 
+def test_a_query_does_not_call_a_blocked_joint_free():
+    model = assembly(part("base"), part("door"), ground="base")
+    stray = between(plane((0.02, 0, 0), (0, 1, 0), (0.002, 0.002), area=2e-5), "base", "door")
+    touching = contacts(*hinge("base", "door", (0, 0, 0)), stray)
+    design = Design(model, contacts=touching, kinematics=derive(model, {}, touching))
+    assert design.kinematics.joints[0].status == "blocked"
+    turn = query(design, "base", "door", turn=(Z, np.zeros(3)))
+    assert (turn.free_in_pair, turn.free_in_assembly) == (False, False)
+    assert [touching.patches[b.patch].area for b in turn.blocked_by] == [2e-5]
+    assert "free but for 1 patch" in turn.text
+    assert len(query(design, "base", "door", slide=Z).blocked_by) > 1
+
+
 def test_the_order_of_parts_and_patches_changes_nothing():
     model, touching = four_bar()
     plain = derive(model, {}, touching)

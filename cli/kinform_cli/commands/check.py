@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from kinform_cli import console, files
+from kinform_cli import files
+from kinform_cli.gate import conclude
 from kinform_cli.options import Debug, FailOn, FindingsFormat, Quiet, Results, Severity, examples
 from kinform_cli.progress import Working
 
@@ -48,14 +49,11 @@ def check(
     """
     if output is not None:
         files.check_output(output)
-    from kinform import reports, results, stages
-    from kinform.consistency import verdict
+    from kinform import results, stages
 
     design = files.read(source)
     with files.needing(source), Working("check"):
         design = stages.check(design)
     if output is not None:
         results.write(design, output)
-    assert design.report is not None
-    console.emit(reports.render(design.report, design, format.value))
-    raise typer.Exit(verdict(design.report, fail_on.value))
+    conclude(design, format, fail_on)

@@ -28,9 +28,9 @@ def explain(
     if code is not None:
         console.emit(consistency.explain(code))
         return
-    from kinform_cli.text import table
+    from kinform_cli.tables import Rows
 
-    rows = table("code", "rule", "severity")
+    rows = Rows("code", "rule", "severity")
     for rule in consistency.RULES:
-        rows.add_row(rule.code, rule.name, rule.severity)
+        rows.add(rule.code, rule.name, rule.severity)
     console.out(rows)

@@ -41,9 +41,9 @@ def import_(
             design = stages.import_meshes(sources, units=units)
     results.write(design, output)
     if depfile is not None:
-        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources[0])))
+        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
     assembly = design.assembly
     parts, groups = count(len(assembly.parts), "part"), count(len(assembly.groups), "group")
     console.say(f"{output}: {assembly.name}, {parts}, {groups}")
     for note in assembly.notes:
-        console.warn(note)
+        console.say(f"note: {note}")

@@ -25,12 +25,15 @@ def joints(source: Results, output: Output, quiet: Quiet = False, debug: Debug =
     with files.needing(source), Working("joints"):
         design = stages.joints(design)
     results.write(design, output)
+    from kinform_cli.views.joints import ground_note
+
     found = design.kinematics
     assert found is not None
     console.say(
         f"{output}: {count(len(found.bodies), 'body', 'bodies')}, {count(len(found.joints), 'joint')}, "
         f"mobility {found.mobility.effective}"
     )
+    console.say(ground_note(design))
     for joint in found.joints:
         if joint.status in ("ambiguous", "blocked"):
             console.warn(f"{joint.name} is {joint.status}: {joint.reason}")

@@ -141,15 +141,16 @@ def _data(design: Design, motion: dict[str, Any], answer: QueryAnswer) -> dict[s
 def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
     from rich.console import Group
 
-    from kinform_cli.text import table
+    from kinform_cli.tables import Rows
 
     if not answer.blocked_by:
         return answer.text
     unit = lengths.unit
     numeric = ("patch", f"area {unit}²")
-    rows = table("part", "part", "patch", "surface", numeric[1], f"at {unit}", title="\nBlocked by", right=numeric)
+    headings = ("part", "part", "patch", "surface", numeric[1], f"at {unit}")
+    rows = Rows(*headings, title="\nBlocked by", right=numeric, keys=2)
     for blocker in answer.blocked_by:
-        rows.add_row(
+        rows.add(
             *blocker.parts,
             str(blocker.patch),
             blocker.kind,

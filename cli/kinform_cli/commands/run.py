@@ -9,6 +9,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
+from kinform_cli.gate import conclude
 from kinform_cli.inputs import Sources, is_manifest
 from kinform_cli.options import (
     AllowOutside,
@@ -74,8 +75,6 @@ def run(
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
         files.check_text_output(depfile, inputs=[*sources, output])
     import kinform
-    from kinform import reports
-    from kinform.consistency import verdict
 
     with Working("run") as working:
         outcome = kinform.run(
@@ -88,15 +87,17 @@ def run(
         )
     design = outcome.design
     if depfile is not None and output is not None:
-        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources[0])))
+        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
     for sentence in outcome.reused:
         console.say(f"reused: {sentence}")
     for sentence in outcome.recomputed:
         console.say(f"computed: {sentence}")
     for note in design.assembly.notes:
-        console.warn(note)
-    console.emit(reports.render(outcome.report, design, format.value))
-    raise typer.Exit(verdict(outcome.report, fail_on.value))
+        console.say(f"note: {note}")
+    from kinform_cli.views.joints import ground_note
+
+    console.say(ground_note(design))
+    conclude(design, format, fail_on)
 
 
 def _show(working: Working, stage: str, done: int, total: int) -> None:

@@ -6,7 +6,8 @@ from rich.console import Group, RenderableType
 
 from kinform.model.contacts import Contacts
 from kinform.model.design import Design
-from kinform_cli.text import Lengths, count, number, table
+from kinform_cli.tables import Rows
+from kinform_cli.text import Lengths, count
 
 __all__ = ["render"]
 
@@ -24,18 +25,19 @@ def render(design: Design) -> RenderableType:
     many = count(len(contacts.patches), "contact patch", "contact patches")
     title = f"{many} between {count(pairs, 'pair')} of parts"
     numeric = (f"area {unit}²", f"gap {unit}", "#")
-    rows = table("#", "part", "part", "surface", numeric[0], numeric[1], "fit", title=title, right=numeric)
+    rows = Rows("#", "part", "part", "surface", *numeric[:2], "fit", title=title, right=numeric, keys=3)
     for index, patch in enumerate(contacts.patches):
         kind = f"{patch.kind}, one side" if patch.one_sided else patch.kind
-        rows.add_row(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
+        rows.add(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
     items: list[RenderableType] = [rows]
     if contacts.interferences:
         sizes = (f"volume {unit}³", f"depth {unit}")
-        overlaps = table("part", "part", *sizes, f"at {unit}", "kind", title="\nOverlapping solids", right=sizes)
+        title = "\nOverlapping solids"
+        overlaps = Rows("part", "part", *sizes, f"at {unit}", "kind", title=title, right=sizes, keys=2)
         for overlap in contacts.interferences:
-            overlaps.add_row(
+            overlaps.add(
                 *overlap.parts,
-                number(overlap.volume / lengths.metres**3),
+                lengths.volume(overlap.volume),
                 lengths.length(overlap.depth),
                 lengths.point(overlap.place),
                 "press fit" if overlap.mated else "collision",

@@ -10,8 +10,13 @@ from kinform.model.design import Design
 
 __all__ = ["render"]
 
+_STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan", "not decided": "bold magenta"}
+
 
 def render(design: Design) -> RenderableType:
     """The findings in full."""
     assert design.report is not None
-    return Text(reports.render(design.report, design, "full").rstrip("\n"))
+    text = Text(reports.render(design.report, design, "full").rstrip("\n"))
+    for severity, style in _STYLES.items():
+        text.highlight_regex(rf"(?m)^{severity}:", style)
+    return text

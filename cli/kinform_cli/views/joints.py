@@ -7,9 +7,10 @@ from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics
-from kinform_cli.text import Lengths, count, number, table, vector
+from kinform_cli.tables import Rows
+from kinform_cli.text import Lengths, count, number, vector
 
-__all__ = ["render"]
+__all__ = ["ground_note", "render"]
 
 
 def _known(design: Design) -> Kinematics:
@@ -21,7 +22,7 @@ def render(design: Design) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
     kinematics, lengths = _known(design), Lengths.of(design.assembly)
     title = f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
-    rows = table(
+    rows = Rows(
         "name",
         "type",
         "axis",
@@ -33,7 +34,7 @@ def render(design: Design) -> RenderableType:
         right=["free"],
     )
     for joint in kinematics.joints:
-        rows.add_row(
+        rows.add(
             joint.name,
             joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.unit}/turn)",
             vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
@@ -47,7 +48,18 @@ def render(design: Design) -> RenderableType:
         if joint.status != "determined":
             items += _doubt(joint, lengths)
     items += _bodies(kinematics)
+    note = ground_note(design)
+    if note is not None:
+        items.append(note)
     return Group(*items)
+
+
+def ground_note(design: Design) -> str | None:
+    """Which body was taken as the ground, where the manifest does not say."""
+    if design.assembly.ground is not None:
+        return None
+    chosen = [body.name for body in _known(design).bodies if body.ground]
+    return f"note: no ground is stated: {', '.join(chosen)} is taken, as the heaviest (else the largest) body"
 
 
 def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:

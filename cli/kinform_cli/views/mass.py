@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.mass import MassProperties, MassReport
-from kinform_cli.text import NONE, Lengths, table
+from kinform_cli.tables import Rows
+from kinform_cli.text import NONE, Lengths, number
 
 __all__ = ["bodies", "render"]
 
@@ -41,16 +41,16 @@ def render(design: Design) -> RenderableType:
     return Group(*items)
 
 
-def _table(title: str, rows: Iterable[MassProperties], lengths: Lengths) -> Table:
-    grid = table(
+def _table(title: str, rows: Iterable[MassProperties], lengths: Lengths) -> Rows:
+    grid = Rows(
         "name", "mass kg", f"centre of mass {lengths.unit}", "principal moments kg·m²", "from", title=title,
         right=["mass kg"],
     )  # fmt: skip
     for row in rows:
         known = row.mass is not None
-        grid.add_row(
+        grid.add(
             row.name,
-            f"{row.mass:.4g}" if row.mass is not None else NONE,
+            number(row.mass),
             lengths.point(row.centre_of_mass),
             ", ".join(f"{moment:.3g}" for moment in row.principal_moments) if known else NONE,
             row.origin + (f" (±{100 * row.mass_bound:.2g} %)" if known and row.mass_bound > 0 else ""),

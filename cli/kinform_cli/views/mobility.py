@@ -6,17 +6,18 @@ from rich.console import Group, RenderableType
 
 from kinform.model.design import Design
 from kinform.reports.json_views import mobility_counts
-from kinform_cli.text import table
+from kinform_cli.tables import Rows
+from kinform_cli.text import NONE
 
 __all__ = ["render"]
 
 _MEANINGS = (
-    ("effective", "without idle freedoms: what the function's `mobility` is compared with"),
+    ("effective", "without idle freedoms: what `mobility` is compared with"),
     ("instantaneous", "velocities that the bilateral constraints leave"),
-    ("finite", "of these, motions that go on over a finite distance"),
-    ("idle", "freedoms that move one body within surfaces that slide on themselves"),
+    ("finite", "of these, motions that go on over a distance"),
+    ("idle", "of one body within surfaces that slide on themselves"),
     ("redundant", "constraints more than are needed"),
-    ("blocked_mobility", "instantaneous, counted with everything that blocks"),
+    ("blocked_mobility", "instantaneous, with everything that blocks"),
 )
 
 
@@ -24,11 +25,15 @@ def render(design: Design) -> RenderableType:
     """The counts with their meaning."""
     assert design.kinematics is not None
     mobility = design.kinematics.mobility
-    grid = table("count", "", "meaning", title="Mobility relative to ground", right=["count"])
+    grid = Rows("count", "", "meaning", title="Mobility relative to ground", right=["count"], keys=2)
     values = mobility_counts(mobility)
     for name, meaning in _MEANINGS:
         value = values[name]
-        grid.add_row("not computed" if value is None else str(value), name.replace("_", " "), meaning)
+        grid.add(
+            NONE if value is None else str(value),
+            name.replace("_", " "),
+            "not computed yet" if value is None else meaning,
+        )
     items: list[RenderableType] = [grid]
     if mobility.idle_bodies:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")

@@ -10,12 +10,13 @@ from rich.text import Text
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
-from kinform_cli.text import Lengths, count, degrees, number, table
+from kinform_cli.tables import Rows
+from kinform_cli.text import Lengths, count, degrees, number
 
 __all__ = ["headline", "render"]
 
-_ROTATIONAL = ("revolute", "spherical", "universal", "screw")
-"""Joints whose coordinates are all angles."""
+_KEPT = 1e-9
+"""Share of the largest energy below which the balance is as exact as numbers are."""
 
 
 def _known(design: Design) -> Simulation:
@@ -28,20 +29,14 @@ def render(design: Design) -> RenderableType:
     run, lengths = _known(design), Lengths.of(design.assembly)
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
-        rows = table("joint", "type", "start", "end", "lowest", "highest", "fastest", right=_NUMBERS)
-        for name, kind, column in coordinates(run):
+        rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS)
+        for name, kind, unit, column in coordinates(run):
             values = run.joint_position[:, column]
-            fastest = abs(run.joint_velocity[:, column]).max()
-            rows.add_row(
-                name,
-                kind,
-                *(_value(kind, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())),
-                _value(kind, float(fastest), lengths) + "/s",
-            )
+            shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
+            rows.add(name, kind, *shown, _rate(unit, float(abs(run.joint_velocity[:, column]).max()), lengths))
         items.append(rows)
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
-        balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
-        items.append(f"energy: balance within {number(float(abs(balance - balance[0]).max()))} J")
+        items.append(_energy(run))
     items += [f"assumed: {sentence}" for sentence in run.assumptions]
     items += [f"failed: {subject}: {message}" for subject, message in run.failures]
     return Group(*items)
@@ -60,9 +55,23 @@ def headline(run: Simulation) -> str:
     return f"Simulation {run.status}{level}, {extent}{why}"
 
 
-def _value(kind: str, value: float, lengths: Lengths) -> str:
-    if kind in _ROTATIONAL:
+def _energy(run: Simulation) -> str:
+    balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
+    lost = float(abs(balance - balance[0]).max())
+    exact = lost <= _KEPT * float(abs(run.energy).max())
+    return "energy: the balance holds to rounding" if exact else f"energy: the balance is off by up to {number(lost)} J"
+
+
+def _value(unit: str, value: float, lengths: Lengths) -> str:
+    if unit == "rad":
         return degrees(value)
-    if kind == "prismatic":
-        return f"{lengths.length(value)} {lengths.unit}"
-    return number(value)
+    return f"{lengths.place(value)} {lengths.unit}" if unit == "m" else _quaternion(value)
+
+
+def _rate(unit: str, value: float, lengths: Lengths) -> str:
+    """Of a quaternion's coordinates the rates are those of the rotation vector; the first has none."""
+    return f"{_value('rad' if unit == '1' else unit, value, lengths)}/s"
+
+
+def _quaternion(value: float) -> str:
+    return f"{value:.4f}"

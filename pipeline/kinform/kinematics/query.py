@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.screws import Frame, rotation, rows, scaled, span, translation
 from kinform.model.contacts import Patch
 from kinform.model.design import Design
+from kinform.model.kinematics import Joint
 
 __all__ = ["QueryAnswer", "QueryBlocker", "query"]
 
@@ -34,7 +35,7 @@ class QueryBlocker:
 @dataclass(frozen=True, eq=False)
 class QueryAnswer:
     """Is the motion of b relative to a free? `free_in_pair` is None where the two do not touch;
-    `free_in_assembly` is None where they are one body."""
+    `free_in_assembly` is None where they are one body. What blocks a joint makes both False."""
 
     bodies: tuple[str, str]
     free_in_pair: bool | None
@@ -74,11 +75,15 @@ def query(
     if joint is not None:
         residual = _outside(twist, joint.twists, frame)
         in_pair = residual < THERE
-    in_all = _in_assembly(design, first, second, twist, frame)
-    blockers = () if in_pair is not False else _blockers(patches, twist, frame)
+    outside = _in_assembly(design, first, second, twist, frame)
+    in_all = outside < THERE
+    left_out = {blocker.patch for blocker in joint.blockers} if joint is not None else set()
+    blockers = _blockers([(k, p) for k, p in patches if in_pair is False or k in left_out], twist, frame)
+    text = _sentence(a, b, what, in_pair, in_all and not blockers, blockers) + _doubt(design, joint)
+    if blockers:
+        in_pair = in_all = False
     return QueryAnswer(
-        (first, second), in_pair, in_all < THERE, residual if joint is not None else in_all, blockers,
-        _sentence(a, b, what, in_pair, in_all < THERE, blockers),
+        (first, second), in_pair, in_all, residual if joint is not None else outside, blockers, text
     )  # fmt: skip
 
 
@@ -129,6 +134,19 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
 
 
 def _sentence(a: str, b: str, what: str, in_pair: bool | None, in_all: bool, blockers: tuple[QueryBlocker, ...]) -> str:
-    pair = {None: f"{a} and {b} do not touch", True: f"their contact leaves the {what} free"}
-    head = pair.get(in_pair, f"their contact blocks the {what} at {len(blockers)} patches")
+    where = f"{len(blockers)} {'patch' if len(blockers) == 1 else 'patches'}"
+    head = {
+        None: f"{a} and {b} do not touch",
+        True: f"their contact leaves the {what} free" + (f" but for {where}, where it is blocked" if blockers else ""),
+        False: f"their contact blocks the {what} at {where}",
+    }[in_pair]
     return f"{head}; in the whole assembly it is {'free' if in_all else 'not free'}"
+
+
+def _doubt(design: Design, joint: Joint | None) -> str:
+    """What the answer counts on and is not certain, as an addition to the sentence."""
+    assert design.kinematics is not None
+    uncertain = design.kinematics.mobility.uncertain
+    if joint is not None:
+        return f"; their joint is ambiguous: {joint.reason}" if joint.status == "ambiguous" else ""
+    return f"; this counts on joints that are not certain: {', '.join(uncertain)}" if uncertain else ""

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from kinform.behaviour.joints import KINDS
 from kinform.errors import StageError
 from kinform.model.assembly import Assembly, Part
 from kinform.model.design import Design
@@ -74,12 +75,15 @@ def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
     }
 
 
-def coordinates(run: Simulation) -> Iterator[tuple[str, str, int]]:
-    """Name, type of joint, and column of each joint coordinate of a run."""
+def coordinates(run: Simulation) -> Iterator[tuple[str, str, str, int]]:
+    """Of each joint coordinate of a run its name ("joint", or of several "joint.angle"), the type of the
+    joint, the unit (rad, m, or 1 for the quaternion of a spherical joint, whose rates are rad/s), the column.
+    """
     for joint, (name, kind) in enumerate(zip(run.joint_names, run.joint_types, strict=True)):
-        first, end = int(run.joint_offset[joint]), int(run.joint_offset[joint + 1])
-        for column in range(first, end):
-            yield (name if end - first == 1 else f"{name}.{column - first}"), kind, column
+        labels = KINDS[kind].coordinates
+        for column, (label, rotational) in enumerate(labels, start=int(run.joint_offset[joint])):
+            unit = "1" if kind == "spherical" else "rad" if rotational else "m"
+            yield (name if len(labels) == 1 else f"{name}.{label}"), kind, unit, column
 
 
 def _fields(record: object, *names: str) -> dict[str, Any]:
@@ -210,11 +214,12 @@ def _simulation(design: Design) -> dict[str, Any]:
     }
 
 
-def _course(run: Simulation, name: str, kind: str, column: int) -> dict[str, Any]:
+def _course(run: Simulation, name: str, kind: str, unit: str, column: int) -> dict[str, Any]:
     values = run.joint_position[:, column]
     return {
         "name": name,
         "type": kind,
+        "unit": unit,
         "start": values[0],
         "end": values[-1],
         "lowest": values.min(),
