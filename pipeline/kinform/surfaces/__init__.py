@@ -4,5 +4,5 @@ from kinform.surfaces._recover import recover
 
 __all__ = ["CODE_VERSION", "recover"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when results change."""

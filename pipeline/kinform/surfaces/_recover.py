@@ -84,7 +84,7 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
         loosest = np.where(merged, scale.fit, loosest)
         out.extend(curved(kind, batch, params[heads], side[heads], loosest, scale))
     planes = coincident_planes(work, parts.planes, scale)
-    out.extend(flat(work, polygons, scale) for polygons in _groups(planes))
+    out.extend(flat(work, planes, scale))
     inner = np.flatnonzero(work.smooth)
     inner = inner[parts.freeform[work.a[inner]] == parts.freeform[work.b[inner]]]
     inner = inner[parts.freeform[work.a[inner]] >= 0]

@@ -30,30 +30,48 @@ SECOND = 0.4
 
 
 def basis(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors across each axis (N, 3)."""
-    helper = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
-    x = cross(axis, helper)
-    x /= np.maximum(np.linalg.norm(x, axis=1), 1e-300)[:, None]
-    return x, cross(axis, x)
+    """Two unit vectors across each axis (N, 3), without branches (Duff and others 2017)."""
+    ax, ay, az = axis[:, 0], axis[:, 1], axis[:, 2]
+    sign = np.where(az < 0, -1.0, 1.0)
+    a = -1.0 / (sign + az)
+    b = ax * ay * a
+    x, y = np.empty((len(axis), 3)), np.empty((len(axis), 3))
+    x[:, 0], x[:, 1], x[:, 2] = 1.0 + sign * ax * ax * a, sign * b, -sign * ax
+    y[:, 0], y[:, 1], y[:, 2] = b, sign + ay * ay * a, -ay
+    return x, y
 
 
 def _split(params: Params, points: Array) -> tuple[Array, Array, Array]:
-    """(t along the axis, ρ across it, unit radial direction) of each point."""
-    offset = points - params[:, 3:6]
-    t = np.einsum("ij,ij->i", offset, params[:, :3])
-    across = offset - t[:, None] * params[:, :3]
-    rho = np.linalg.norm(across, axis=1)
-    return t, rho, across / np.maximum(rho, 1e-300)[:, None]
+    """(t along the axis, ρ across it, unit radial direction) of each point.
+
+    Column by column: the hottest lines of the package, and broadcasting over rows of three costs twice that.
+    """
+    ax, ay, az = params[:, 0], params[:, 1], params[:, 2]
+    x, y, z = points[:, 0] - params[:, 3], points[:, 1] - params[:, 4], points[:, 2] - params[:, 5]
+    t = x * ax + y * ay + z * az
+    x -= t * ax
+    y -= t * ay
+    z -= t * az
+    rho = np.sqrt(x * x + y * y + z * z)
+    scale = 1.0 / np.maximum(rho, 1e-300)
+    radial = np.empty((len(t), 3))
+    np.multiply(x, scale, out=radial[:, 0])
+    np.multiply(y, scale, out=radial[:, 1])
+    np.multiply(z, scale, out=radial[:, 2])
+    return t, rho, radial
 
 
 def probe(params: Params, points: Array) -> Probe:
     """Holds points (N, 3) against cones and cylinders (N, 8)."""
     t, rho, radial = _split(params, points)
-    cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
+    radius, angle = params[:, 6], params[:, 7]
+    if not angle.any():
+        return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
+    cos, sin = np.cos(angle), np.sin(angle)
     return Probe(
-        distance=(rho - params[:, 6]) * cos - t * sin,
+        distance=(rho - radius) * cos - t * sin,
         normal=cos[:, None] * radial - sin[:, None] * params[:, :3],
-        curvature_radius=np.maximum(params[:, 6] * cos + t * sin, 0.0),
+        curvature_radius=np.maximum(radius * cos + t * sin, 0.0),
     )
 
 
@@ -169,10 +187,10 @@ def axis_of_edges(batch: Batch) -> tuple[Array, Array]:
 def widths(batch: Batch, params: Params) -> Array:
     """(pairs,) angle about the axis that each polygon subtends."""
     work = batch.patchwork
-    owner, vertex = work.corners.expand(batch.polygon)
+    owner, _ = batch.corners
     mine = params[batch.region]
     _, _, middle = _split(mine, work.centre[batch.polygon])
-    _, rho, radial = _split(mine[owner], work.vertices[vertex])
+    _, rho, radial = _split(mine[owner], batch.points)
     cos = np.einsum("ij,ij->i", radial, middle[owner])
     side = cross(mine[:, :3], middle)
     sin = np.einsum("ij,ij->i", radial, side[owner])

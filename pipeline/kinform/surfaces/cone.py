@@ -17,6 +17,7 @@ class Cone:
 
     name = "cone"
     least = 4
+    bends = (0.0, 0.6)
     handicap = 1.2
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:
@@ -78,11 +79,10 @@ class Cone:
 
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
         """At least five generators, a sagitta above the tolerance, and a taper that no cylinder has."""
-        work = batch.patchwork
         lines = _revolved.lines(batch, params, np.full(batch.count, scale.fit))
         sweep = np.minimum(np.bincount(batch.region, _revolved.widths(batch, params), batch.count), np.pi)
-        region, vertex = batch.corners
-        t = np.einsum("ij,ij->i", work.vertices[vertex] - params[region, 3:6], params[region, :3])
+        region = batch.region[batch.corners[0]]
+        t = np.einsum("ij,ij->i", batch.points - params[region, 3:6], params[region, :3])
         high, low = np.full(batch.count, -np.inf), np.full(batch.count, np.inf)
         np.maximum.at(high, region, t)
         np.minimum.at(low, region, t)

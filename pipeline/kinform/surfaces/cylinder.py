@@ -20,6 +20,7 @@ class Cylinder:
 
     name = "cylinder"
     least = 3
+    bends = (0.0, 0.45)
     handicap = 1.0
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:

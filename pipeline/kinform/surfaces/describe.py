@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.surfaces import plane
-from kinform.surfaces._batch import Array, Ints
+from kinform.surfaces._batch import Array, Ints, group_sum
 from kinform.surfaces._revolved import basis
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.topology import Patchwork, Scale
@@ -44,30 +44,45 @@ class Description:
     samples: int = 0
 
 
-def flat(work: Patchwork, polygons: Ints, scale: Scale) -> Description:
-    """A plane through all vertices of these polygons."""
-    _, vertex = work.corners.expand(polygons)
-    points = work.vertices[np.unique(vertex)]
-    outward = work.normal[polygons].T @ work.area[polygons]
-    size = np.linalg.norm(outward)
-    outward = outward / size if size > 0 else work.normal[polygons[0]]
-    normal, centre, variances = plane.fit(points, outward)
-    distance = (points - centre) @ normal
-    squares, count = float(distance @ distance), len(points)
-    scatter = max(np.sqrt(squares / max(count - 3, 1)), 0.6 * scale.rounding)
-    spread = max(np.sqrt(variances[1] * count), 1e-12)
-    return Description(
-        kind="plane",
-        polygons=polygons,
-        axis=normal,
-        point=centre,
-        residual=float(np.abs(distance).max()),
-        axis_uncertainty=min(float(COVERAGE * scatter / spread), np.pi / 2),
-        point_uncertainty=max(float(COVERAGE * scatter / np.sqrt(count)), scale.rounding),
-        chord=float(np.abs(distance).max()),
-        squares=squares,
-        samples=count,
-    )
+def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
+    """The planes that polygons (P,) with equal numbers make, -1 for none, each through all its vertices."""
+    member = np.flatnonzero(number >= 0)
+    member = member[np.argsort(number[member], kind="stable")]
+    _, group = np.unique(number[member], return_inverse=True)
+    count = int(group[-1]) + 1 if len(group) else 0
+    owner, vertex = work.corners.expand(member)
+    total = np.int64(max(len(work.vertices), 1))
+    key = np.unique(group[owner] * total + vertex)
+    region, points = key // total, work.vertices[key % total]
+    outward = group_sum(group, work.normal[member] * work.area[member][:, None], count)
+    size = np.linalg.norm(outward, axis=1)
+    first = np.searchsorted(group, np.arange(count + 1))
+    outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], work.normal[member[first[:-1]]])
+    normal, centre, variances = plane.fit(region, points, outward)
+    distance = np.einsum("ij,ij->i", points - centre[region], normal[region])
+    squares = np.bincount(region, distance * distance, count)
+    samples = np.bincount(region, minlength=count)
+    deepest = np.zeros(count)
+    np.maximum.at(deepest, region, np.abs(distance))
+    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), 0.6 * scale.rounding)
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), 1e-12)
+    angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
+    linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
+    return [
+        Description(
+            kind="plane",
+            polygons=member[first[k] : first[k + 1]],
+            axis=normal[k],
+            point=centre[k],
+            residual=float(deepest[k]),
+            axis_uncertainty=float(angular[k]),
+            point_uncertainty=float(linear[k]),
+            chord=float(deepest[k]),
+            squares=float(squares[k]),
+            samples=int(samples[k]),
+        )
+        for k in range(count)
+    ]
 
 
 def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
@@ -82,8 +97,8 @@ def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Arra
     """Every region of one kind, with its final fit."""
     work = batch.patchwork
     params = kind.refine(batch, params, tolerance, 6)
-    region, vertex = batch.corners
-    t = np.einsum("ij,ij->i", work.vertices[vertex] - params[region, 3:6], params[region, :3])
+    region = batch.region[batch.corners[0]]
+    t = np.einsum("ij,ij->i", batch.points - params[region, 3:6], params[region, :3])
     low, high = np.full(batch.count, np.inf), np.full(batch.count, -np.inf)
     np.minimum.at(low, region, t)
     np.maximum.at(high, region, t)

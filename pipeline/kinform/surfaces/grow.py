@@ -14,9 +14,11 @@ from kinform.surfaces._batch import Array, Ints, Mask, Ragged, components, quant
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.topology import Patchwork, Scale
 
-__all__ = ["Found", "Ground", "conforms", "pursue"]
+__all__ = ["Found", "Ground", "absorb", "conforms", "pursue", "whole"]
 
 FIRST_LAYERS = 2
+MAJORITY = 0.6
+"""Share of a piece that must conform at the first look."""
 WIDER = 1.6
 """A polygon this much wider than the next narrower one of a region is a flat on it, not a facet of it."""
 
@@ -56,12 +58,13 @@ def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array,
     """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
     work = batch.patchwork
     region, polygon = batch.region, batch.polygon
-    owner, vertex = work.corners.expand(polygon)
-    held = kind.probe(params[region[owner]], work.vertices[vertex])
+    owner, _ = batch.corners
+    group = region[owner]
+    held = kind.probe(params[group], batch.points)
     chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
-    allowed = held.curvature_radius * chord[region[owner]]
-    within = (held.distance < tolerance[region[owner]]) & (held.distance > -allowed - tolerance[region[owner]])
-    bad = np.bincount(owner, ~within, len(polygon)) > 0
+    allowed, limit = held.curvature_radius * chord[group], tolerance[group]
+    bad = np.zeros(len(polygon), bool)
+    bad[owner[(held.distance >= limit) | (held.distance <= -allowed - limit)]] = True
     normal = kind.probe(params[region], work.centre[polygon]).normal
     cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]
     widest = np.minimum(0.5 * reach[region] + 5e-3 + work.slack[polygon], 1.2)
@@ -167,6 +170,60 @@ def _thin_out(batch: Batch) -> Batch:
     return batch.select(keep[batch.region])
 
 
+def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Found:
+    """Regions of pieces that are one surface for the greatest part, without growth; the others come back empty.
+
+    Four fits out of five end at the first look, so that comes before anything that costs more.
+    """
+    scale, count = ground.scale, batch.count
+    params, usable = kind.propose(batch)
+    pieces = batch.select(usable[batch.region])
+    loose, tight = np.full(count, 2.5 * scale.fit), np.full(count, scale.fit)
+    params = kind.refine(pieces, params, loose, 2)
+    reach = _reach(kind, pieces, params)
+    fits = conforms(kind, pieces, params, side, reach, loose)
+    share = np.bincount(pieces.region, fits, count) / np.maximum(batch.size, 1)
+    pieces, number = _compact(pieces.select(fits & (share >= MAJORITY)[pieces.region]))
+    own, sides = params[number], side[number]
+    own = kind.refine(pieces, own, tight[number], 2)
+    tolerance = _scatter(kind, pieces, own, scale)
+    pieces = _settled(ground, kind, pieces, own, sides, tolerance)
+    own = kind.refine(pieces, own, tolerance, 1)
+    pieces = pieces.select(kind.credible(pieces, own, scale)[pieces.region])
+    params[number], tight[number] = own, tolerance
+    return Found(kind, Batch(ground.patchwork, number[pieces.region], pieces.polygon, count), params, side, tight)
+
+
+def absorb(ground: Ground, found: Found) -> Found:
+    """Regions with what conforms beside them, and their fits over it. Only what gained is fitted again."""
+    kind, params, tolerance = found.kind, found.params.copy(), found.tolerance.copy()
+    batch, number = _compact(found.batch)
+    sides = found.side[number]
+    finished: list[tuple[Ints, Ints]] = []
+    for _ in range(6):
+        if not len(batch.region):
+            break
+        own, held = params[number], tolerance[number]
+        before = batch.size
+        larger = _spread(ground, kind, batch, own, sides, _reach(kind, batch, own), held, 64)
+        gained = larger.size > before
+        same = ~gained[batch.region]
+        finished.append((number[batch.region[same]], batch.polygon[same]))
+        batch, kept = _compact(larger.select(gained[larger.region]))
+        sides, number, held = sides[kept], number[kept], held[kept]
+        own = kind.refine(batch, params[number], held, 1)
+        params[number] = own
+        batch = _settled(ground, kind, batch, own, sides, held)
+        finished_empty = batch.size == 0
+        if finished_empty.all():
+            break
+    finished.append((number[batch.region], batch.polygon))
+    region, polygon = (np.concatenate(column) for column in zip(*finished, strict=True))
+    order = np.lexsort((polygon, region))
+    grown = Batch(ground.patchwork, region[order], polygon[order], found.batch.count)
+    return Found(kind, grown, params, found.side, tolerance)
+
+
 def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float = 0.0) -> Found:
     """Fits, grows, fits again until nothing changes; regions that fail come back empty.
 
@@ -183,10 +240,10 @@ def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints, majority: float
     batch, params = _grown(ground, kind, batch, params, side)
     batch, number = _compact(batch)
     own, sides, tight = params[number], side[number], tight[number]
-    own = kind.refine(batch, own, tight, 3)
+    own = kind.refine(batch, own, tight, 2)
     tolerance = _scatter(kind, batch, own, scale)
     batch = _settled(ground, kind, batch, own, sides, tolerance)
-    own = kind.refine(batch, own, tolerance, 4)
+    own = kind.refine(batch, own, tolerance, 2)
     keep = kind.credible(batch, own, scale)
     batch = batch.select(keep[batch.region])
     params[number], tight = own, np.full(count, scale.fit)
@@ -207,7 +264,7 @@ def _grown(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Ints)
             break
         tight = np.full(batch.count, scale.fit)
         before = batch.size
-        own = kind.refine(batch, own, 2.5 * tight if stage == 0 else tight, 3)
+        own = kind.refine(batch, own, 2.5 * tight if stage == 0 else tight, 2)
         batch = _thin_out(_settled(ground, kind, batch, own, sides, tight))
         reach = _reach(kind, batch, own)
         batch = _spread(ground, kind, batch, own, sides, reach, tight, layers)

@@ -46,14 +46,21 @@ class Batch:
         self.size = np.diff(starts_of(region, count))
         self._edges: tuple[Ints, Ints, Mask] | None = None
         self._corners: tuple[Ints, Ints] | None = None
+        self._points: Array | None = None
 
     @property
     def corners(self) -> tuple[Ints, Ints]:
-        """(region, vertex) of every polygon's vertices; a vertex once for each of its polygons."""
+        """(pair, vertex) of every polygon's vertices; a vertex once for each of its polygons."""
         if self._corners is None:
-            owner, vertex = self.patchwork.corners.expand(self.polygon)
-            self._corners = self.region[owner], vertex
+            self._corners = self.patchwork.corners.expand(self.polygon)
         return self._corners
+
+    @property
+    def points(self) -> Array:
+        """Coordinates of those vertices."""
+        if self._points is None:
+            self._points = self.patchwork.vertices[self.corners[1]]
+        return self._points
 
     @property
     def edges(self) -> tuple[Ints, Ints, Mask]:
@@ -67,9 +74,9 @@ class Batch:
 
     def inner_vertices(self, least: int = 3) -> tuple[Ints, Ints]:
         """(region, vertex) of vertices that at least so many of the region's polygons share."""
-        region, vertex = self.corners
+        owner, vertex = self.corners
         total = np.int64(max(len(self.patchwork.vertices), 1))
-        key, times = np.unique(region * total + vertex, return_counts=True)
+        key, times = np.unique(self.region[owner] * total + vertex, return_counts=True)
         key = key[times >= least]
         return key // total, key % total
 
@@ -84,6 +91,8 @@ class Kind(Protocol):
     name: str
     least: int
     """Polygons that a region of this kind has at least."""
+    bends: tuple[float, float]
+    """Range of the ratio of the two curvatures in the middle of a piece for which the kind is tried."""
     handicap: float
     """A more complex kind must explain this many times more polygons than a simpler one."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinform.surfaces._batch import Array, Ints, Mask
+from kinform.surfaces._batch import Array, Ints, Mask, components
 from kinform.surfaces.grow import conforms
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.topology import Patchwork, Scale
@@ -79,8 +79,30 @@ def coincident_regions(
     smaller = pairs.sum(axis=1) - larger
     close = _touching(work, kind, batch, params, larger, smaller, scale)
     larger, smaller = larger[close], smaller[close]
-    same = _one_fit(work, kind, polygons, params, side, larger, smaller, scale)
-    return _roots(larger[same], smaller[same], size)
+    root = np.arange(count)
+    # first all that lie together as one surface, then, where that fails, pair by pair
+    cluster = components(larger, smaller, count)
+    members = [m for m in _groups_of(cluster) if len(m) > 2]
+    heads = np.array([m[np.lexsort((m, -size[m]))[0]] for m in members], dtype=np.int64)
+    whole = _one_fit(work, kind, [[polygons[i] for i in m] for m in members], params[heads], side[heads], scale)
+    for number in np.flatnonzero(whole):
+        root[members[number]] = heads[number]
+    open_ = root[larger] == larger
+    open_ &= root[smaller] == smaller
+    done = np.zeros(count, bool)
+    done[heads[whole]] = True
+    open_ &= ~(done[larger] | done[smaller])
+    larger, smaller = larger[open_], smaller[open_]
+    couples = [[polygons[i], polygons[j]] for i, j in zip(larger, smaller, strict=True)]
+    same = _one_fit(work, kind, couples, params[larger], side[larger], scale)
+    paired = _roots(larger[same], smaller[same], size)
+    return np.where(paired != np.arange(count), paired, root)
+
+
+def _groups_of(label: Ints) -> list[Ints]:
+    """Members of each label, ascending."""
+    order = np.argsort(label, kind="stable")
+    return list(np.split(order, np.flatnonzero(np.diff(label[order])) + 1))
 
 
 def _batch(work: Patchwork, polygons: list[Ints]) -> Batch:
@@ -97,28 +119,28 @@ def _touching(
     region, vertex = region[order], vertex[order]
     starts = np.searchsorted(region, np.arange(batch.count + 1))
     size = np.diff(starts)
-    worst = np.zeros(len(larger))
+    alive = np.arange(len(larger))
     for k in range(SAMPLES):
-        at = starts[smaller] + (k * np.maximum(size[smaller] - 1, 0)) // (SAMPLES - 1)
+        at = starts[smaller[alive]] + (k * np.maximum(size[smaller[alive]] - 1, 0)) // (SAMPLES - 1)
         point = work.vertices[vertex[np.minimum(at, len(vertex) - 1)]]
-        worst = np.maximum(worst, np.abs(kind.probe(params[larger], point).distance))
-    return worst < 20 * scale.fit
+        alive = alive[np.abs(kind.probe(params[larger[alive]], point).distance) < 20 * scale.fit]
+    near = np.zeros(len(larger), bool)
+    near[alive] = True
+    return near
 
 
 def _one_fit(
-    work: Patchwork, kind: Kind, polygons: list[Ints], params: Params, side: Ints, larger: Ints, smaller: Ints,
-    scale: Scale,
+    work: Patchwork, kind: Kind, families: list[list[Ints]], params: Params, side: Ints, scale: Scale
 ) -> Mask:  # fmt: skip
-    """Whether one surface, fitted to both of a pair, explains all polygons of both."""
-    if not len(larger):
+    """Whether one surface, fitted to all regions of a family, explains all their polygons."""
+    if not families:
         return np.zeros(0, bool)
-    joint = [np.concatenate([polygons[i], polygons[j]]) for i, j in zip(larger, smaller, strict=True)]
-    batch = _batch(work, joint)
+    batch = _batch(work, [np.concatenate(family) for family in families])
     tolerance = np.full(batch.count, scale.fit)
-    fitted = kind.refine(batch, params[larger], 20 * tolerance, 2)
+    fitted = kind.refine(batch, params, 20 * tolerance, 2)
     fitted = kind.refine(batch, fitted, tolerance, 3)
     width = kind.widths(batch, fitted)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, width)
-    good = conforms(kind, batch, fitted, side[larger], 1.05 * reach + 1e-3, tolerance)
+    good = conforms(kind, batch, fitted, side, 1.05 * reach + 1e-3, tolerance)
     return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components
+from kinform.surfaces._batch import Array, Ints, Mask, components, quantile
 from kinform.surfaces.cone import Cone
+from kinform.surfaces.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.cylinder import Cylinder
-from kinform.surfaces.grow import Found, Ground, pursue
+from kinform.surfaces.grow import Found, Ground, absorb, pursue, whole
 from kinform.surfaces.kind import Batch, Kind
 from kinform.surfaces.sphere import Sphere
 from kinform.surfaces.topology import Patchwork, Scale
@@ -23,8 +24,13 @@ __all__ = ["CURVED", "Partition", "Region", "partition"]
 CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere())
 """The curved kinds, simplest first. A new kind is one more entry."""
 
-ALIKE = 3.0
-"""Ratio of widths up to which neighbours look like facets of one surface."""
+ROUNDS = 8
+WORTH = 5e-4
+"""Share of the mesh's area that a round of searching must explain for another one to follow."""
+
+GRAIN = 1e-5
+"""Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
+own stays freeform."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,34 +58,30 @@ class Partition:
     """(P,) number of the freeform patch of each polygon, or -1."""
 
 
-def _pieces(work: Patchwork, free: Mask) -> tuple[Ints, Ints, Ints, int]:
-    """(region, polygon, side of each region, number) of smooth pieces of like-sized polygons."""
-    edges = np.flatnonzero(work.smooth)
-    edges = edges[free[work.a[edges]] & free[work.b[edges]]]
-    a, b = work.a[edges], work.b[edges]
-    pair = np.minimum(a, b) * np.int64(work.count) + np.maximum(a, b)
-    _, inverse = np.unique(pair, return_inverse=True)
-    shared = np.bincount(inverse, work.length[edges])[inverse]
-    wide = np.maximum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
-    narrow = np.minimum(work.area[a], work.area[b]) / np.maximum(shared, 1e-300)
-    alike = wide < ALIKE * narrow
+def _pieces(work: Patchwork, link: Links, joined: Mask, free: Mask) -> tuple[Batch, Ints]:
+    """Pieces of polygons that convex, and that concave, links among `joined` hold together, with their sides."""
     regions, polygons, sides = [], [], []
     count: int = 0
+    sign = work.sign[link.edge]
+    inside = joined & free[link.a] & free[link.b]
     for side in (1, -1):
-        use = alike & (work.sign[edges] * side >= 0)
-        label = components(a[use], b[use], work.count)
+        use = inside & (sign * side >= 0)
+        label = components(link.a[use], link.b[use], work.count)
         turning = np.zeros(work.count, bool)
-        mark = use & (work.sign[edges] == side)
-        turning[a[mark]] = turning[b[mark]] = True
+        mark = use & (sign == side)
+        turning[link.a[mark]] = turning[link.b[mark]] = True
         present = np.flatnonzero(free & (np.bincount(label, turning, work.count)[label] >= 3))
         names, number = np.unique(label[present], return_inverse=True)
         regions.append(number + count)
         polygons.append(present)
         sides.append(np.full(len(names), side))
         count += len(names)
-    region, polygon = np.concatenate(regions), np.concatenate(polygons)
+    return _sorted(work, np.concatenate(regions), np.concatenate(polygons), count), np.concatenate(sides)
+
+
+def _sorted(work: Patchwork, region: Ints, polygon: Ints, count: int) -> Batch:
     order = np.lexsort((polygon, region))
-    return region[order], polygon[order], np.concatenate(sides), count
+    return Batch(work, region[order], polygon[order], count)
 
 
 def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
@@ -112,8 +114,8 @@ def _choose(found: list[Found], work: Patchwork, free: Mask) -> list[Region]:
     return chosen
 
 
-def _seeds(ground: Ground, tried: Ints, side: int) -> tuple[Ints, Ints]:
-    """Smooth edges to start from: the longest in their surroundings, not used before; and all usable ones."""
+def _seeds(ground: Ground, tried: Ints, side: int) -> Ints:
+    """Smooth edges to start from: the longest in their surroundings, not used before."""
     work = ground.patchwork
     edges = np.flatnonzero(work.smooth)
     edges = edges[ground.free[work.a[edges]] & ground.free[work.b[edges]]]
@@ -122,19 +124,17 @@ def _seeds(ground: Ground, tried: Ints, side: int) -> tuple[Ints, Ints]:
     rank = np.full(len(work.a), -1)
     rank[start[np.argsort(work.length[start], kind="stable")]] = np.arange(len(start))
     best = np.full(work.count, -1)
-    for _ in range(2):
-        np.maximum.at(best, work.a[usable], rank[usable])
-        np.maximum.at(best, work.b[usable], rank[usable])
-        reach = np.maximum(best[work.a[usable]], best[work.b[usable]])
-        wider = best.copy()
-        np.maximum.at(wider, work.a[usable], reach)
-        np.maximum.at(wider, work.b[usable], reach)
-        best = wider
-    chosen = start[rank[start] >= np.minimum(best[work.a[start]], best[work.b[start]])]
-    return chosen, usable
+    np.maximum.at(best, work.a[usable], rank[usable])
+    np.maximum.at(best, work.b[usable], rank[usable])
+    reach = np.maximum(best[work.a[usable]], best[work.b[usable]])
+    wider = best.copy()
+    np.maximum.at(wider, work.a[usable], reach)
+    np.maximum.at(wider, work.b[usable], reach)
+    foremost: Ints = start[rank[start] >= np.minimum(wider[work.a[start]], wider[work.b[start]])]
+    return foremost
 
 
-def _around(ground: Ground, seeds: Ints, side: int, straightness: float) -> Batch:
+def _around(ground: Ground, seeds: Ints, side: Ints, straightness: float) -> Batch:
     """Both polygons of each seed and their neighbours across edges along the seed (all, when 0)."""
     work = ground.patchwork
     numbers = np.arange(len(seeds))
@@ -145,27 +145,34 @@ def _around(ground: Ground, seeds: Ints, side: int, straightness: float) -> Batc
     direction = work.vertices[work.ends[:, 1]] - work.vertices[work.ends[:, 0]]
     cosine = np.abs(np.einsum("ij,ij->i", direction[edge], direction[seeds[region[owner]]]))
     near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
-    keep = near & ground.free[target] & (work.sign[edge] * side >= 0)
+    keep = near & ground.free[target] & (work.sign[edge] * side[region[owner]] >= 0)
     key = np.unique(np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]])
     return Batch(work, key // work.count, key % work.count, len(seeds))
 
 
 STRAIGHT = {"cylinder": 0.985, "cone": 0.85, "sphere": 0.0}
+SLACK = 0.2
+"""What the ratio of curvatures at a seed may be beyond the range of a kind."""
 
 
-def _search(ground: Ground, tried: Ints) -> list[Found]:
+def _search(ground: Ground, tried: Ints, bent: Curvature) -> list[Found]:
     """One round of hypotheses from seeds, of all kinds and both sides."""
-    found = []
-    for side in (1, -1):
-        seeds, _ = _seeds(ground, tried, side)
-        if not len(seeds):
-            continue
-        tried[seeds] = 1
-        for kind in CURVED:
-            batch = _around(ground, seeds, side, STRAIGHT[kind.name])
-            batch = batch.select((batch.size >= kind.least)[batch.region])
-            if len(batch.region):
-                found.append(pursue(ground, kind, batch, np.full(len(seeds), side)))
+    found: list[Found] = []
+    work = ground.patchwork
+    both = [_seeds(ground, tried, side) for side in (1, -1)]
+    seeds = np.concatenate(both)
+    if not len(seeds):
+        return found
+    side = np.repeat(np.array([1, -1]), [len(s) for s in both])
+    tried[seeds] = 1
+    ratio = np.minimum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
+    other = np.maximum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
+    for kind in CURVED:
+        suits = np.flatnonzero((ratio <= kind.bends[1] + SLACK) & (other >= kind.bends[0] - SLACK))
+        batch = _around(ground, seeds[suits], side[suits], STRAIGHT[kind.name])
+        batch = batch.select((batch.size >= kind.least)[batch.region])
+        if len(batch.region):
+            found.append(pursue(ground, kind, batch, side[suits]))
     return found
 
 
@@ -174,29 +181,41 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     regions: list[Region] = []
     free = np.ones(work.count, bool)
     ground = Ground.of(work, scale, free)
-    region, polygon, side, count = _pieces(work, free)
-    batch = Batch(work, region, polygon, count)
-    if count:
-        found = []
-        for kind in CURVED:
-            found.append(pursue(ground, kind, batch, side, majority=0.6))
-            # a piece that a simpler kind explains whole is not tried as a more complex one
-            explained = found[-1].batch.size >= 0.98 * batch.size
-            batch = batch.select(~explained[batch.region])
+    link = links(work, free)
+    bent = curvature(work, link)
+    for joined in (link.alike, link.alike & continues(work, bent, link)):
+        batch, side = _pieces(work, link, joined, free)
+        found = [absorb(ground, item) for item in _explained(ground, batch, side, bent)]
         _take(regions, _choose(found, work, free), free)
     tried = np.zeros(len(work.a), np.int64)
-    barren = 0
-    for _ in range(40):
-        chosen = _choose(_search(ground, tried), work, free)
+    total = work.area.sum()
+    inner = work.b >= 0
+    tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < GRAIN * total
+    for _ in range(ROUNDS):
+        chosen = _choose(_search(ground, tried, bent), work, free)
         _take(regions, chosen, free)
-        barren = 0 if chosen else barren + 1
-        if barren == 4:
+        if sum(work.area[item.polygons].sum() for item in chosen) < WORTH * total:
             break
     owner = np.full(work.count, -1)
     for number, item in enumerate(regions):
         owner[item.polygons] = number
     planes, freeform = _remainder(work, owner < 0)
     return Partition(tuple(regions), owner, planes, freeform)
+
+
+def _explained(ground: Ground, batch: Batch, side: Ints, bent: Curvature) -> list[Found]:
+    """Each kind on the pieces that bend as it does; what one kind explains whole, the later are not tried on."""
+    found = []
+    middle = quantile(batch.region, bent.ratio[batch.polygon], batch.count, 0.5)
+    for kind in CURVED:
+        if not len(batch.region):
+            break
+        low, high = kind.bends
+        suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
+        found.append(whole(ground, kind, batch.select(suits[batch.region]), side))
+        explained = found[-1].batch.size >= 0.98 * batch.size
+        batch = batch.select(~explained[batch.region])
+    return found
 
 
 def _take(regions: list[Region], chosen: list[Region], free: Mask) -> None:

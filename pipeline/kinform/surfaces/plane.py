@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array
+from kinform.surfaces._batch import Array, Ints, group_sum
 
 __all__ = ["fit"]
 
 
-def fit(points: Array, outward: Array) -> tuple[Array, Array, Array]:
-    """(normal, point, variances along the three principal directions) of points (N, 3), N at least 3.
+def fit(group: Ints, points: Array, outward: Array) -> tuple[Array, Array, Array]:
+    """(normal, point, variances along the three principal directions) of groups of points (N, 3).
 
-    The normal has the sense of `outward`, which is returned instead where the points determine none.
+    Every group has three points at least. Each normal has the sense of `outward` (count, 3), which is
+    returned instead where the points determine none.
     """
-    centre = points.mean(axis=0)
-    values, vectors = np.linalg.eigh(np.cov((points - centre).T, bias=True))
-    normal = vectors[:, 0] * np.sign(vectors[:, 0] @ outward)
-    if abs(normal @ outward) < 0.99:
-        normal = outward
+    count = len(outward)
+    size = np.maximum(np.bincount(group, minlength=count), 1)
+    centre = group_sum(group, points, count) / size[:, None]
+    offset = points - centre[group]
+    covariance = group_sum(group, offset[:, :, None] * offset[:, None, :], count) / size[:, None, None]
+    values, vectors = np.linalg.eigh(covariance)
+    normal = vectors[:, :, 0] * np.sign(np.einsum("ij,ij->i", vectors[:, :, 0], outward))[:, None]
+    vague = np.abs(np.einsum("ij,ij->i", normal, outward)) < 0.99
+    normal = np.where(vague[:, None], outward, normal)
     return normal, centre, np.maximum(values, 0.0)

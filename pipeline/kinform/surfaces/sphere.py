@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, group_sum, normal_equations, solve_normal
+from kinform.surfaces._batch import Array, Ints, Mask, cross, group_sum, normal_equations, solve_normal
 from kinform.surfaces.kind import Batch, Params, Probe
 from kinform.surfaces.topology import Scale
 
@@ -16,6 +16,7 @@ class Sphere:
 
     name = "sphere"
     least = 8
+    bends = (0.4, 1.0)
     handicap = 1.2
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:
@@ -63,11 +64,11 @@ class Sphere:
     def widths(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between a polygon's middle and a vertex of it."""
         work = batch.patchwork
-        owner, vertex = work.corners.expand(batch.polygon)
+        owner, _ = batch.corners
         mine = params[batch.region]
         middle = self.probe(mine, work.centre[batch.polygon]).normal
-        corner = self.probe(mine[owner], work.vertices[vertex]).normal
-        sine = np.linalg.norm(np.cross(corner, middle[owner]), axis=1)
+        corner = self.probe(mine[owner], batch.points).normal
+        sine = np.linalg.norm(cross(corner, middle[owner]), axis=1)
         angle = np.arctan2(sine, np.einsum("ij,ij->i", corner, middle[owner]))
         out = np.zeros(len(batch.polygon))
         np.maximum.at(out, owner, angle)
