@@ -13,6 +13,7 @@ from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces._batch import Array, Ints
 from kinform.surfaces.describe import Description, curved, flat, freeform
+from kinform.surfaces.fabric import fabric, scatter
 from kinform.surfaces.kind import Batch
 from kinform.surfaces.merge import coincident_planes, coincident_regions
 from kinform.surfaces.partition import CURVED, Partition, partition
@@ -33,18 +34,22 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
     if not len(mesh.faces) or diagonal <= 0 or not np.isfinite(mesh.vertices).all():
         return MeshSurfaces(mesh.digest, (), np.zeros(0, np.int64), 0.0)
     largest = float(np.abs(mesh.vertices).max())
-    scale = _scale(diagonal, largest, tolerances)
     centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
     vertices, faces, order = _canonical_order((mesh.vertices - centre) / diagonal, mesh.faces)
-    work = build(vertices, faces, scale, tolerances)
+    woven = fabric(vertices, faces)
+    scale = _scale(EPS32 * largest / diagonal, scatter(woven, tolerances.smooth_edge), tolerances)
+    work = build(woven, scale, tolerances)
     descriptions = _describe(work, partition(work, scale), scale)
     return _assemble(mesh, work, descriptions, order, centre, diagonal)
 
 
-def _scale(diagonal: float, largest: float, tolerances: Tolerances) -> Scale:
-    rounding = EPS32 * largest / diagonal
+def _scale(rounding: float, scattered: float, tolerances: Tolerances) -> Scale:
+    """Vertices that scatter more than they were stored with widen everything to four standard deviations."""
     noise = max(tolerances.fit / 10, 4 * rounding)
-    return Scale(rounding=rounding, noise=noise, fit=max(tolerances.fit, 10 * noise))
+    fit = max(tolerances.fit, 10 * noise)
+    if 2 * scattered > noise:
+        return Scale(max(rounding, scattered), scattered, noise=4 * scattered, fit=max(fit, 5 * scattered))
+    return Scale(rounding, 0.0, noise=noise, fit=fit)
 
 
 def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:

@@ -80,7 +80,8 @@ class Cone:
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
         """At least five generators, a sagitta above the tolerance, and a taper that no cylinder has."""
         lines = _revolved.lines(batch, params, np.full(batch.count, scale.fit))
-        sweep = np.minimum(np.bincount(batch.region, _revolved.widths(batch, params), batch.count), np.pi)
+        widths = _revolved.widths(batch, params)
+        sweep = np.minimum(np.bincount(batch.region, widths, batch.count), np.pi)
         region = batch.region[batch.corners[0]]
         t = np.einsum("ij,ij->i", batch.points - params[region, 3:6], params[region, :3])
         high, low = np.full(batch.count, -np.inf), np.full(batch.count, np.inf)
@@ -93,4 +94,5 @@ class Cone:
         largest = np.maximum(params[:, 6] + high * np.tan(params[:, 7]), params[:, 6] + low * np.tan(params[:, 7]))
         sagitta = largest * (1 - np.cos(sweep / 2)) * cos
         taper = height * np.abs(np.sin(params[:, 7]))
-        return np.asarray((lines >= 5) & (sagitta > 4 * scale.fit) & (taper > 2 * scale.fit))
+        even = _revolved.even(batch, widths)
+        return np.asarray((lines >= 5) & even & (sagitta > 4 * scale.fit) & (taper > 2 * scale.fit))

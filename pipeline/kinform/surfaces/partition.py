@@ -229,13 +229,12 @@ def _remainder(work: Patchwork, left: Mask) -> tuple[Ints, Ints]:
     edges = np.flatnonzero(work.smooth)
     edges = edges[left[work.a[edges]] & left[work.b[edges]]]
     a, b = work.a[edges], work.b[edges]
-    bent = work.sign[edges] != 0
-    neighbours = np.bincount(np.r_[a[bent], b[bent]], minlength=work.count)
-    nearby = np.bincount(np.r_[a[bent], b[bent]], np.r_[work.area[b[bent]], work.area[a[bent]]], work.count)
+    neighbours = np.bincount(np.r_[a, b], minlength=work.count)
+    nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
     dominant = work.area > 3 * nearby / np.maximum(neighbours, 1)
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
-    loose = left & (size >= 4) & (neighbours >= 2) & ~dominant
+    loose = left & (size >= 4) & (neighbours >= 1) & ~dominant
     planes = np.full(work.count, -1)
     planes[left & ~loose] = np.arange(int((left & ~loose).sum()))
     inside = loose[a] & loose[b]
