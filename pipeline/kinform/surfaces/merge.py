@@ -15,6 +15,8 @@ from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["coincident_planes", "coincident_regions"]
 
+PARTNERS = 2
+"""Larger surfaces, the nearest ones, that each is tried to be a piece of."""
 SAMPLES = 24
 """Vertices of the smaller surface that are held against the larger before all of them are."""
 
@@ -77,7 +79,10 @@ def coincident_regions(
         return np.arange(count)
     larger = np.where(size[pairs[:, 0]] >= size[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
     smaller = pairs.sum(axis=1) - larger
-    close = _touching(work, kind, batch, params, larger, smaller, scale)
+    distance = _touching(work, kind, batch, params, larger, smaller, scale)
+    order = np.lexsort((larger, distance, smaller))
+    place = np.arange(len(order)) - np.searchsorted(smaller[order], smaller[order])
+    close = order[(place < PARTNERS) & np.isfinite(distance[order])]
     larger, smaller = larger[close], smaller[close]
     root = np.arange(count)
     # first all that lie together as one surface, then, where that fails, pair by pair
@@ -112,21 +117,21 @@ def _batch(work: Patchwork, polygons: list[Ints]) -> Batch:
 
 def _touching(
     work: Patchwork, kind: Kind, batch: Batch, params: Params, larger: Ints, smaller: Ints, scale: Scale
-) -> Mask:  # fmt: skip
-    """Whether a few vertices of each smaller surface lie near each larger one (by pairs)."""
+) -> Array:  # fmt: skip
+    """Distance of a few vertices of each smaller surface from each larger one (by pairs); inf where not near."""
     region, vertex = kind.defining(batch, params, np.full(batch.count, scale.fit))
     order = np.argsort(region, kind="stable")
     region, vertex = region[order], vertex[order]
     starts = np.searchsorted(region, np.arange(batch.count + 1))
     size = np.diff(starts)
     alive = np.arange(len(larger))
+    worst = np.zeros(len(larger))
     for k in range(SAMPLES):
         at = starts[smaller[alive]] + (k * np.maximum(size[smaller[alive]] - 1, 0)) // (SAMPLES - 1)
         point = work.vertices[vertex[np.minimum(at, len(vertex) - 1)]]
-        alive = alive[np.abs(kind.probe(params[larger[alive]], point).distance) < 20 * scale.fit]
-    near = np.zeros(len(larger), bool)
-    near[alive] = True
-    return near
+        worst[alive] = np.maximum(worst[alive], np.abs(kind.probe(params[larger[alive]], point).distance))
+        alive = alive[worst[alive] < 20 * scale.fit]
+    return np.where(worst < 20 * scale.fit, worst, np.inf)
 
 
 def _one_fit(
