@@ -45,7 +45,7 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
 
 def _scale(rounding: float, scattered: float, tolerances: Tolerances) -> Scale:
     """Vertices that scatter more than they were stored with widen everything to four standard deviations."""
-    noise = max(tolerances.fit / 10, 4 * rounding)
+    noise = max(tolerances.fit / 10, 1.5 * rounding)
     fit = max(tolerances.fit, 10 * noise)
     if 2 * scattered > noise:
         return Scale(max(rounding, scattered), scattered, noise=4 * scattered, fit=max(fit, 5 * scattered))

@@ -132,10 +132,9 @@ def cluster(of: Fabric, scale: Scale, tolerances: Tolerances) -> Ints:
     solid = ~(thin[f0] | thin[f1])
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
     flat = strict | (solid & (height < scale.noise) & (angle < 0.06))
-    if scale.scatter > 0:
-        turned = 0.06 + 4 * scale.scatter * (1 / of.altitude[f0] + 1 / of.altitude[f1])
-        off = np.abs(departures(of, inner))
-        flat |= solid & (off < 3 * scale.scatter) & (angle < np.minimum(turned, 0.5))
+    lost = max(3 * scale.scatter, 0.75 * scale.rounding)
+    turned = 0.06 + 4 * lost / 3 * (1 / np.maximum(of.altitude[f0], 1e-300) + 1 / np.maximum(of.altitude[f1], 1e-300))
+    flat |= solid & (np.abs(departures(of, inner)) < lost) & (angle < np.minimum(turned, 0.5))
     links, limits = flat, (2 * scale.noise, scale.fit)
     label = components(f0[links], f1[links], count)
     if scale.scatter > 0:
