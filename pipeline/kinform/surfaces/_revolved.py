@@ -22,8 +22,12 @@ __all__ = [
     "jacobian",
     "lines",
     "probe",
+    "regular",
     "widths",
 ]  # fmt: skip
+
+CONVERGED = 1e-13
+"""Change of the parameters (rad, diagonals) at which a fit stands still."""
 
 SECOND = 0.4
 """A strip counts as like the widest when it subtends at least this share of its angle."""
@@ -142,6 +146,8 @@ def gauss_newton(
         matrix, right = normal_equations(region, columns, residual, count)
         change = -solve_normal(matrix, right, 1e-11)
         params = _moved(params, change, cone)
+        if np.abs(change).max(initial=0.0) < CONVERGED:
+            break
     return params
 
 
@@ -211,6 +217,25 @@ def even(batch: Batch, width: Array) -> Mask:
     first = start[:-1][several]
     out[several] = ordered[first + 1] >= SECOND * ordered[first]
     return out
+
+
+def regular(batch: Batch, params: Params) -> Mask:
+    """Whether the strips between ridges are two at least, and subtend the same angle, as do the turns at the
+    ridges: three ridges fit a circle anyway, but not with equal steps."""
+    work, count = batch.patchwork, batch.count
+    region, edge, inner, _ = generators(batch, params)
+    region, edge = region[inner], edge[inner]
+    total = np.int64(work.count)
+    sides = np.r_[region * total + work.a[edge], region * total + work.b[edge]]
+    key, times = np.unique(sides, return_counts=True)
+    whole = np.isin(batch.region * total + batch.polygon, key[times >= 2])
+    width = widths(batch, params)
+    group = np.r_[batch.region[whole], region]
+    angle = np.r_[width[whole], work.angle[edge]]
+    low, high = np.full(count, np.inf), np.zeros(count)
+    np.minimum.at(low, group, angle)
+    np.maximum.at(high, group, angle)
+    return np.asarray((np.bincount(batch.region[whole], minlength=count) >= 2) & (high < 1.02 * low))
 
 
 def lines(batch: Batch, params: Params, tolerance: Array) -> Ints:

@@ -80,10 +80,12 @@ class Cylinder:
         return _revolved.jacobian(params, points, cone=False)
 
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
-        """At least four generators, two strips of like width, and a sagitta well above the tolerance."""
+        """At least four generators, or three at equal steps; two strips of like width; and a sagitta well above the
+        tolerance."""
         lines = _revolved.lines(batch, params, np.full(batch.count, scale.fit))
         widths = _revolved.widths(batch, params)
         sweep = np.minimum(np.bincount(batch.region, widths, batch.count), np.pi)
         sagitta = params[:, 6] * (1 - np.cos(sweep / 2))
         even = _revolved.even(batch, widths)
-        return np.asarray((lines >= 4) & even & (sagitta > 4 * scale.fit) & (params[:, 6] < LARGEST))
+        known = (lines >= 4) | ((lines == 3) & _revolved.regular(batch, params))
+        return np.asarray(known & even & (sagitta > 4 * scale.fit) & (params[:, 6] < LARGEST))

@@ -185,6 +185,8 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     bent = curvature(work, link)
     for joined in (link.alike, link.alike & continues(work, bent, link)):
         batch, side = _pieces(work, link, joined, free)
+        if not len(batch.region):
+            continue
         found = [absorb(ground, item) for item in _explained(ground, batch, side, bent)]
         _take(regions, _choose(found, work, free), free)
     tried = np.zeros(len(work.a), np.int64)

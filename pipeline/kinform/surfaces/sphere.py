@@ -20,9 +20,15 @@ class Sphere:
     handicap = 1.2
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:
-        """|q|² = 2 q·c + k over the vertices that several polygons share."""
+        """|q|² = 2 q·c + k over the vertices that three polygons share, or two, where those are too few: after
+        a boolean, vertices that two share may lie on chords."""
         work, count = batch.patchwork, batch.count
         region, vertex = batch.inner_vertices(2)
+        surrounded, _ = inner = batch.inner_vertices(3)
+        enough = np.bincount(surrounded, minlength=count) >= 6
+        total = np.int64(max(len(work.vertices), 1))
+        use = ~enough[region] | np.isin(region * total + vertex, inner[0] * total + inner[1])
+        region, vertex = region[use], vertex[use]
         points = work.vertices[vertex]
         size = np.bincount(region, minlength=count)
         middle = group_sum(region, points, count) / np.maximum(size, 1)[:, None]
