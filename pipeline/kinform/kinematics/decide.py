@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.hypotheses import Motion, motions
 from kinform.kinematics.screws import span
-from kinform.kinematics.subspace import JointForm, name_space
+from kinform.kinematics.subspace import JointForm, name_space, nearest_pair
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["Decision", "decide"]
@@ -26,6 +26,10 @@ Array = NDArray[np.float64]
 
 INDEPENDENT = 0.03
 """A motion adds a freedom when this much of its unit twist lies outside those already found."""
+CLEARLY = 0.5
+"""Above this share a further motion is not a variant of those already found."""
+RESIDUAL = 2.0
+"""What is left of a further motion may be off by this many times the tolerances: it is a difference."""
 MOST_LEFT_OUT = 0.25
 """Largest share of the contact area that consensus may leave out."""
 
@@ -54,7 +58,7 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     candidates = motions(evidence, tolerances.alignment)
     twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
     speeds = evidence.rows @ twists
-    fits = _fits(evidence, candidates, twists, speeds)
+    fits = _fits(evidence, twists, speeds)
     everything = np.ones(len(evidence.items), dtype=bool)
     strict, values = _freedoms(evidence, twists, fits, everything, tolerances)
     chosen = _consensus(evidence, candidates, fits, speeds, strict)
@@ -77,8 +81,8 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     return Decision(name_space(basis, evidence.frame), basis, strict, "blocked", reason, kept, out, values)
 
 
-def _fits(evidence: Evidence, candidates: tuple[Motion, ...], twists: Array, speeds: Array) -> NDArray[np.bool_]:
-    """(items, motions): does the patch slide on itself, within its tolerances?"""
+def _fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> NDArray[np.bool_]:
+    """(items, motions): does the patch slide on itself, within `slack` times its tolerances?"""
     length = evidence.frame.length
     velocity = twists[3:].T[None] + np.cross(twists[:3].T[None], evidence.arms[:, None])
     speed = np.linalg.norm(velocity, axis=2)
@@ -88,13 +92,13 @@ def _fits(evidence: Evidence, candidates: tuple[Motion, ...], twists: Array, spe
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
             own = slice(evidence.start[k], evidence.start[k + 1])
-            slides = turning == 0.0
+            slides = turning < 1e-9
             allowed[own, slides] = (3.0 * item.patch.uncertainty[0] + 1e-6) * speed[own, slides]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]
     found = np.add.reduceat(weight * speeds**2, first, axis=0)
     limit = np.add.reduceat(weight * allowed**2, first, axis=0)
-    fits: NDArray[np.bool_] = found <= limit + 1e-24
+    fits: NDArray[np.bool_] = found <= slack**2 * limit + 1e-24
     return fits
 
 
@@ -105,21 +109,39 @@ def _freedoms(
     keep: NDArray[np.bool_],
     tolerances: Tolerances,
 ) -> tuple[Array, Array]:
-    """Basis (6, k) of what the kept patches leave free, and the singular values that say so."""
+    """Basis (6, k) of what the kept patches leave free, and the singular values that say so.
+
+    A motion that differs from those already found by less than the patches can tell adds nothing.
+    """
     basis = np.zeros((6, 0))
     for twist in twists[:, fits[keep].all(axis=0)].T:
         rest = twist - basis @ (basis.T @ twist)
         size = float(np.linalg.norm(rest))
-        if size > INDEPENDENT:
+        if size > INDEPENDENT and (size > CLEARLY or _preserved(evidence, (rest / size)[:, None], keep, RESIDUAL)):
             basis = np.column_stack([basis, rest / size])
     chosen = np.repeat(keep, np.diff(evidence.start))
     rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
+    basis, values = _completed(rows, basis, tolerances)
+    if name_space(basis, evidence.frame).type == "general":
+        rounded = nearest_pair(basis, evidence.frame)
+        if rounded is not None and _preserved(evidence, rounded, keep):
+            return _completed(rows, rounded, tolerances)
+    return basis, values
+
+
+def _completed(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array, Array]:
+    """The basis with whatever else the rows leave free, and the singular values (6,) ascending."""
     rows = rows - (rows @ basis) @ basis.T
     triangle = np.linalg.qr(rows, mode="r") if len(rows) >= 6 else rows
     _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
     values = values[:6][::-1]
     null = right[:6][::-1][values < tolerances.free].T
     return span(null), values
+
+
+def _preserved(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], slack: float = 1.0) -> bool:
+    """Does every kept patch slide on itself under each of the twists (6, n), within its tolerances?"""
+    return bool(_fits(evidence, twists, evidence.rows @ twists, slack)[keep].all())
 
 
 def _certainty(values: Array, freedoms: int, tolerances: Tolerances) -> tuple[str, str]:

@@ -12,14 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.screws import Frame, canonical
+from kinform.kinematics.screws import Frame, canonical, perpendicular, rotation, translation
 
-__all__ = ["JointForm", "name_space"]
+__all__ = ["JointForm", "name_space", "nearest_pair"]
 
 Array = NDArray[np.float64]
 
 EXACT = 1e-6
 """Twist spaces come out of snapped rows: what is zero is zero to rounding."""
+
+NEAR = 0.02
+"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +51,42 @@ def name_space(basis: Array, frame: Frame) -> JointForm:
     if turns == 3 and freedoms == 3:
         return _three_turns(basis, frame)
     return JointForm("general")
+
+
+def nearest_pair(basis: Array, frame: Frame) -> Array | None:
+    """Orthonormal basis (6, k) of the lower pair that the space (6, k) nearly is; None if there is none.
+
+    Motions found patch by patch do not quite form a group: their directions differ by what the patches
+    tolerate. Whether the patches preserve the lower pair is for the caller to test.
+    """
+    freedoms = basis.shape[1]
+    if freedoms == 0:
+        return None
+    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+    turns = int(np.count_nonzero(values > NEAR))
+    mixed = basis @ right.T
+    if freedoms == 3 and turns == 3:
+        centre = _centre(basis, frame, NEAR)
+        return None if centre is None else _orthonormal([rotation(e, centre, frame) for e in np.eye(3)])
+    slides = mixed[3:, turns:]
+    if turns == 0 or turns > 1:
+        return None
+    axis, point, lead = _axis_of(mixed[:, 0], frame)
+    if freedoms == 1:
+        return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR * frame.length else None
+    if freedoms == 2 and np.linalg.norm(np.cross(axis, slides[:, 0])) < NEAR:
+        return _orthonormal([rotation(axis, point, frame), translation(axis)])
+    if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR:
+        normal = np.cross(slides[:, 0], slides[:, 1])
+        normal /= np.linalg.norm(normal)
+        u, v = perpendicular(normal)
+        return _orthonormal([rotation(normal, frame.centre, frame), translation(u), translation(v)])
+    return None
+
+
+def _orthonormal(twists: list[Array]) -> Array:
+    basis: Array = np.linalg.qr(np.array(twists).T)[0]
+    return basis
 
 
 def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
@@ -80,12 +119,19 @@ def _one_turn(turn: Array, slides: Array, frame: Frame) -> JointForm:
 
 def _three_turns(basis: Array, frame: Frame) -> JointForm:
     """Spherical when one point rests under all three turns: v = ω × (c − o) for a single o."""
+    centre = _centre(basis, frame, 10.0 * EXACT)
+    return JointForm("general") if centre is None else JointForm("spherical", None, centre)
+
+
+def _centre(basis: Array, frame: Frame, tolerance: float) -> Array | None:
+    """The point (m) that rests under all three turns, or None if they miss it by more than `tolerance`."""
     matrix = np.vstack([_cross_matrix(basis[:3, k]) for k in range(3)])
     right = np.concatenate([basis[3:, k] for k in range(3)])
     offset, *_ = np.linalg.lstsq(matrix, right, rcond=None)
-    if float(np.abs(matrix @ offset - right).max()) > 10.0 * EXACT:
-        return JointForm("general")
-    return JointForm("spherical", None, frame.centre - frame.length * offset)
+    if float(np.abs(matrix @ offset - right).max()) > tolerance:
+        return None
+    centre: Array = frame.centre - frame.length * offset
+    return centre
 
 
 def _cross_matrix(w: Array) -> Array:

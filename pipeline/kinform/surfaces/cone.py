@@ -18,6 +18,7 @@ class Cone:
     name = "cone"
     least = 4
     bends = (0.0, 0.6)
+    saddle = False
     handicap = 1.2
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:

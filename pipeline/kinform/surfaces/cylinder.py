@@ -21,6 +21,7 @@ class Cylinder:
     name = "cylinder"
     least = 3
     bends = (0.0, 0.45)
+    saddle = False
     handicap = 1.0
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:

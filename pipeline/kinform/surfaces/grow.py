@@ -112,7 +112,7 @@ def _spread(
     front_region, front_polygon = batch.region, batch.polygon
     recent = seen
     for _ in range(layers):
-        region, polygon = _neighbours(ground, front_region, front_polygon, side)
+        region, polygon = _neighbours(ground, front_region, front_polygon, _turn(kind, side))
         key = region * total + polygon
         fresh = ~_within(key, seen) & ~_within(key, recent)
         trial = Batch(work, region[fresh], polygon[fresh], batch.count)
@@ -127,6 +127,11 @@ def _spread(
         recent = np.sort(np.concatenate(gained[-2:]))
     key = np.sort(np.concatenate(gained))
     return Batch(work, key // total, key % total, batch.count)
+
+
+def _turn(kind: Kind, side: Ints) -> Ints:
+    """The sense in which edges inside a region bend, 0 where both do."""
+    return np.zeros_like(side) if kind.saddle else side
 
 
 def _within(keys: Ints, ordered: Ints) -> Mask:
@@ -293,7 +298,7 @@ def _settled(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Int
     """The batch without polygons that do not conform, and without regions that became too small."""
     reach = _reach(kind, batch, params)
     batch = batch.select(conforms(kind, batch, params, side, reach, tolerance))
-    batch = _connected(ground, batch, side)
+    batch = _connected(ground, batch, _turn(kind, side))
     return batch.select((batch.size >= kind.least)[batch.region])
 
 

@@ -93,6 +93,8 @@ class Kind(Protocol):
     """Polygons that a region of this kind has at least."""
     bends: tuple[float, float]
     """Range of the ratio of the two curvatures in the middle of a piece for which the kind is tried."""
+    saddle: bool
+    """Whether edges within one surface may bend both ways."""
     handicap: float
     """A more complex kind must explain this many times more polygons than a simpler one."""
 

@@ -25,6 +25,9 @@ CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere())
 """The curved kinds, simplest first. A new kind is one more entry."""
 
 ROUNDS = 8
+LEAST_BLEND = 8
+"""Polygons of a piece that may bend both ways."""
+
 WORTH = 5e-4
 """Share of the mesh's area that a round of searching must explain for another one to follow."""
 
@@ -77,6 +80,17 @@ def _pieces(work: Patchwork, link: Links, joined: Mask, free: Mask) -> tuple[Bat
         sides.append(np.full(len(names), side))
         count += len(names)
     return _sorted(work, np.concatenate(regions), np.concatenate(polygons), count), np.concatenate(sides)
+
+
+def _blends(work: Patchwork, link: Links, joined: Mask, bent: Curvature, free: Mask) -> tuple[Batch, Ints]:
+    """Pieces whose links may bend either way, with the side to which the stronger curvature bends."""
+    use = joined & free[link.a] & free[link.b]
+    label = components(link.a[use], link.b[use], work.count)
+    size = np.bincount(label[free], minlength=work.count)
+    present = np.flatnonzero(free & (size[label] >= LEAST_BLEND))
+    names, number = np.unique(label[present], return_inverse=True)
+    lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), len(names))
+    return _sorted(work, number, present, len(names)), np.where(lean >= 0, 1, -1).astype(np.int64)
 
 
 def _sorted(work: Patchwork, region: Ints, polygon: Ints, count: int) -> Batch:
@@ -183,11 +197,14 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     ground = Ground.of(work, scale, free)
     link = links(work, free)
     bent = curvature(work, link)
-    for joined in (link.alike, link.alike & continues(work, bent, link)):
-        batch, side = _pieces(work, link, joined, free)
-        if not len(batch.region):
+    like = link.alike & continues(work, bent, link)
+    blended = tuple(kind for kind in CURVED if kind.saddle)
+    simple = tuple(kind for kind in CURVED if not kind.saddle)
+    for kinds, joined in ((blended, like), (simple, link.alike), (simple, like)):
+        if not kinds:
             continue
-        found = [absorb(ground, item) for item in _explained(ground, batch, side, bent)]
+        pieces = _blends(work, link, joined, bent, free) if kinds is blended else _pieces(work, link, joined, free)
+        found = [absorb(ground, item) for item in _explained(ground, *pieces, bent, kinds)]
         _take(regions, _choose(found, work, free), free)
     tried = np.zeros(len(work.a), np.int64)
     total = work.area.sum()
@@ -205,11 +222,13 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     return Partition(tuple(regions), owner, planes, freeform)
 
 
-def _explained(ground: Ground, batch: Batch, side: Ints, bent: Curvature) -> list[Found]:
+def _explained(
+    ground: Ground, batch: Batch, side: Ints, bent: Curvature, kinds: tuple[Kind, ...]
+) -> list[Found]:  # fmt: skip
     """Each kind on the pieces that bend as it does; what one kind explains whole, the later are not tried on."""
     found = []
     middle = quantile(batch.region, bent.ratio[batch.polygon], batch.count, 0.5)
-    for kind in CURVED:
+    for kind in kinds:
         if not len(batch.region):
             break
         low, high = kind.bends

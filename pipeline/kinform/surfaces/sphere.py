@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, cross, group_sum, normal_equations, solve_normal
+from kinform.surfaces._batch import Array, Ints, Mask, group_sum, normal_equations, solve_normal
 from kinform.surfaces.kind import Batch, Params, Probe
 from kinform.surfaces.topology import Scale
 
@@ -17,6 +17,7 @@ class Sphere:
     name = "sphere"
     least = 8
     bends = (0.4, 1.0)
+    saddle = False
     handicap = 1.2
 
     def propose(self, batch: Batch) -> tuple[Params, Mask]:
@@ -64,7 +65,7 @@ class Sphere:
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius."""
         offset = points - params[:, 3:6]
-        rho = np.linalg.norm(offset, axis=1)
+        rho = np.sqrt(np.einsum("ij,ij->i", offset, offset))
         return Probe(rho - params[:, 6], offset / np.maximum(rho, 1e-300)[:, None], params[:, 6])
 
     def widths(self, batch: Batch, params: Params) -> Array:
@@ -73,12 +74,10 @@ class Sphere:
         owner, _ = batch.corners
         mine = params[batch.region]
         middle = self.probe(mine, work.centre[batch.polygon]).normal
-        corner = self.probe(mine[owner], batch.points).normal
-        sine = np.linalg.norm(cross(corner, middle[owner]), axis=1)
-        angle = np.arctan2(sine, np.einsum("ij,ij->i", corner, middle[owner]))
-        out = np.zeros(len(batch.polygon))
-        np.maximum.at(out, owner, angle)
-        return 2 * out
+        apart = self.probe(mine[owner], batch.points).normal - middle[owner]
+        square = np.zeros(len(batch.polygon))
+        np.maximum.at(square, owner, np.einsum("ij,ij->i", apart, apart))
+        return np.asarray(4 * np.arcsin(np.minimum(np.sqrt(square) / 2, 1.0)))
 
     def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
         """Vertices that three of the region's polygons share, or two where they lie on the surface."""
