@@ -14,6 +14,7 @@ from kinform.surfaces import plane
 from kinform.surfaces._batch import Array, Ints, group_sum
 from kinform.surfaces._revolved import basis
 from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["Description", "curved", "flat", "freeform"]
@@ -108,7 +109,7 @@ def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Arra
     distance = kind.probe(params[region], points).distance
     columns = kind.jacobian(placed[region], points)
     chords = _chords(kind, batch, params)
-    widths = kind.widths(batch, params)
+    widths = widths_of(kind, batch, params)
     starts = np.searchsorted(batch.region, np.arange(batch.count + 1))
     order = np.argsort(region, kind="stable")
     distance, columns = distance[order], columns[order]

@@ -19,6 +19,9 @@ __all__ = ["Fabric", "angles", "departures", "fabric", "normalised", "scatter"]
 SHARE = 0.25
 """Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
 than the rest."""
+RUN = 1 << 16
+"""Edges that are worked on at a time, to keep memory small."""
+
 PER_SIGMA = 1.2
 """What is read there, in standard deviations of one coordinate (tried on noisy copies of robots' parts)."""
 
@@ -114,21 +117,28 @@ def departures(of: Fabric, edges: Ints) -> Array:
     It is their one linear combination that vanishes on planes, of length one: vertices that scatter by σ
     scatter it by σ, whatever the shape of the two facets.
     """
-    off, _ = _departures(of, edges)
-    return off
+    out = np.empty(len(edges))
+    for start in range(0, len(edges), RUN):
+        out[start : start + RUN] = _departures(of.vertices[_corners(of, edges[start : start + RUN])])
+    return out
 
 
-def _departures(of: Fabric, edges: Ints) -> tuple[Array, Ints]:
-    f0, f1, ends = of.f0[edges], of.f1[edges], of.ends[edges]
+def _corners(of: Fabric, edges: Ints) -> Ints:
+    """(4, n) both ends of each edge, and the third vertices of its facets."""
+    ends = of.ends[edges]
     shared = ends.sum(axis=1)
-    corners = np.stack([ends[:, 0], ends[:, 1], of.faces[f0].sum(axis=1) - shared, of.faces[f1].sum(axis=1) - shared])
-    a, b, c, d = of.vertices[corners]
+    opposite = [of.faces[f[edges]].sum(axis=1) - shared for f in (of.f0, of.f1)]
+    return np.stack([ends[:, 0], ends[:, 1], *opposite])
+
+
+def _departures(points: Array) -> Array:
+    a, b, c, d = points
     u, v, w = b - a, c - a, d - a
     uv, uw, vw, opposite = cross(u, v), cross(u, w), cross(v, w), cross(c - b, d - b)
-    squares = np.zeros(len(edges))
+    squares = np.zeros(len(a))
     for x in (uv, uw, vw, opposite):
         squares += np.einsum("ij,ij->i", x, x)
-    return -np.einsum("ij,ij->i", uv, w) / np.sqrt(np.maximum(squares, 1e-300)), corners
+    return np.asarray(-np.einsum("ij,ij->i", uv, w) / np.sqrt(np.maximum(squares, 1e-300)))
 
 
 def scatter(of: Fabric, smooth_edge: float) -> float:
@@ -137,10 +147,9 @@ def scatter(of: Fabric, smooth_edge: float) -> float:
     near = np.einsum("ij,ij->i", of.normal[of.f0[inner]], of.normal[of.f1[inner]]) > np.cos(smooth_edge)
     if not near.any():
         return 0.0
-    off, corners = _departures(of, inner[near])
-    count = len(of.vertices)
+    off, count = departures(of, inner[near]), len(of.vertices)
     above, below, seen = np.zeros(count), np.zeros(count), np.zeros(count, np.int64)
-    for row in corners:
+    for row in _corners(of, inner[near]):
         np.maximum.at(above, row, off)
         np.maximum.at(below, row, -off)
         seen += np.bincount(row, minlength=count)

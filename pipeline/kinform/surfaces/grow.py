@@ -12,6 +12,7 @@ import numpy as np
 
 from kinform.surfaces._batch import Array, Ints, Mask, Ragged, components, quantile, starts_of
 from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["Found", "Ground", "absorb", "conforms", "pursue", "whole"]
@@ -56,6 +57,11 @@ class Found:
 
 def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array) -> Mask:
     """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
+    fits = [_conforms(kind, part, params, side, reach, tolerance) for part in batch.parts()]
+    return np.concatenate(fits)
+
+
+def _conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array, tolerance: Array) -> Mask:
     work = batch.patchwork
     region, polygon = batch.region, batch.polygon
     owner, _ = batch.corners
@@ -74,7 +80,7 @@ def conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array,
 
 def _reach(kind: Kind, batch: Batch, params: Params) -> Array:
     """Greatest angle that a facet of each region may subtend, judged by the facets it has."""
-    width = kind.widths(batch, params)
+    width = widths_of(kind, batch, params)
     typical = quantile(batch.region, width, batch.count, 0.75)
     order = np.lexsort((width, batch.region))
     region, sorted_width = batch.region[order], width[order]

@@ -14,10 +14,13 @@ import numpy as np
 from kinform.surfaces._batch import Array, Ints, Mask, starts_of
 from kinform.surfaces.topology import Patchwork, Scale
 
-__all__ = ["Batch", "Kind", "Params", "Probe"]
+__all__ = ["Batch", "Kind", "Params", "Probe", "widths"]
 
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""
+
+RUN = 1 << 15
+"""Pairs of one run."""
 
 ALONG = float(np.cos(np.radians(10.0)))
 """Edges within this of a generator are generators."""
@@ -47,6 +50,15 @@ class Batch:
         self._edges: tuple[Ints, Ints, Mask] | None = None
         self._corners: tuple[Ints, Ints] | None = None
         self._points: Array | None = None
+
+    def parts(self) -> list[Batch]:
+        """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
+        if len(self.region) <= RUN:
+            return [self]
+        cuts = range(0, len(self.region), RUN)
+        return [
+            Batch(self.patchwork, self.region[k : k + RUN], self.polygon[k : k + RUN], self.count) for k in cuts
+        ]
 
     @property
     def corners(self) -> tuple[Ints, Ints]:
@@ -125,3 +137,8 @@ class Kind(Protocol):
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Mask:
         """Whether there is evidence enough for this kind, not only agreement with it."""
         ...
+
+
+def widths(kind: Kind, batch: Batch, params: Params) -> Array:
+    """(pairs,) `kind.widths`, run by run."""
+    return np.concatenate([kind.widths(part, params) for part in batch.parts()])

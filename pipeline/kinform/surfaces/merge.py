@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from kinform.surfaces._batch import Array, Ints, Mask, components
 from kinform.surfaces.grow import conforms
 from kinform.surfaces.kind import Batch, Kind, Params
+from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["coincident_planes", "coincident_regions"]
@@ -144,7 +145,7 @@ def _one_fit(
     tolerance = np.full(batch.count, scale.fit)
     fitted = kind.refine(batch, params, 20 * tolerance, 2)
     fitted = kind.refine(batch, fitted, tolerance, 3)
-    width = kind.widths(batch, fitted)
+    width = widths_of(kind, batch, fitted)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, width)
     good = conforms(kind, batch, fitted, side, 1.05 * reach + 1e-3, tolerance)
