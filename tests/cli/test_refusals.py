@@ -122,7 +122,7 @@ def test_what_is_no_results_file_is_neither_read_nor_overwritten(folder, kinform
     assert (folder / "text.h5").read_text() == "precious"
     with h5py.File(folder / "newer.h5", "w") as file:
         file.attrs["schema"] = "kinform/results/9"
-    refused(kinform("show", "newer.h5"), "kinform/results/9", "kinform/results/1")
+    refused(kinform("show", "newer.h5"), "kinform/results/9", "kinform/results/2")
 
 
 def test_a_place_where_nothing_can_be_written(folder, kinform):

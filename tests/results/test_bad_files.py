@@ -46,7 +46,7 @@ def test_hdf5_of_another_program(tmp_path: Path) -> None:
     _refused(tmp_path / "r.h5", "another program")
 
 
-@pytest.mark.parametrize("schema", ["kinform/results/2", "kinform/results/0"])
+@pytest.mark.parametrize("schema", ["kinform/results/3", "kinform/results/0"])
 def test_another_schema_names_both_schemas_and_the_version_that_wrote_it(
     schema: str, good: bytes, tmp_path: Path
 ) -> None:
@@ -56,7 +56,7 @@ def test_another_schema_names_both_schemas_and_the_version_that_wrote_it(
         file.attrs["schema"] = schema
         file.attrs["kinform"] = "7.8.9"
     before = path.read_bytes()
-    for words in (schema, "kinform/results/1", "7.8.9"):
+    for words in (schema, "kinform/results/2", "7.8.9"):
         _refused(path, words)
     with pytest.raises(ResultsError, match="not overwritten"):
         results.check_output(path)

@@ -22,7 +22,8 @@ class Surface:
 
     plane: `axis` is the outward normal, `point` on it. cylinder: `axis`, `point` on the axis,
     `radius`. cone: `axis` from the apex into the nappe, `point` the apex, `half_angle`.
-    sphere: `point` the centre, `radius`, `axis` zero. freeform: all zero.
+    sphere: `point` the centre, `radius`, `axis` zero. torus: `axis`, `point` the centre, `radius` of the
+    middle circle, `minor_radius` of the tube, `side` that of the tube. freeform: all zero.
     """
 
     kind: str
@@ -50,6 +51,8 @@ class Surface:
     """m: greatest distance of a facet from the surface (sagitta)."""
     faces: NDArray[np.int64]
     """Facet indices, ascending."""
+    minor_radius: float = 0.0
+    """m: of the tube of a torus, whose `radius` is that of the circle in the tube's middle."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,10 @@ def _write_samples(group: h5py.Group, patches: tuple[Patch, ...]) -> None:
 def _read_samples(group: h5py.Group) -> list[dict[str, np.ndarray]]:
     table = read_columns(group, "samples")
     numbers = np.column_stack([table[label] for label in _SAMPLES])
-    ends = np.cumsum(np.bincount(table["patch"], minlength=len(group["patches"])))
+    owner, count = table["patch"], len(group["patches"])
+    if len(owner) and not 0 <= owner.min() <= owner.max() < count:
+        raise ValueError(f"samples of patches {owner.min()} to {owner.max()}, of {count}")
+    ends = np.cumsum(np.bincount(owner, minlength=count))
     samples = []
     for part in np.split(numbers, ends[:-1]) if len(ends) else []:
         fields = {"points": part[:, :3], "normals": part[:, 3:6], "gaps": part[:, 6], "weights": part[:, 7]}

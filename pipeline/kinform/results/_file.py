@@ -35,7 +35,7 @@ from kinform.results import (
 
 __all__ = ["SCHEMA", "check_output", "read", "to_bytes", "write"]
 
-SCHEMA = "kinform/results/1"
+SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _DAMAGE = (

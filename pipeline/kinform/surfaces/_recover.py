@@ -145,6 +145,7 @@ def _surface(item: Description, area: float, faces: Ints, centre: Array, diagona
         point=point,
         radius=item.radius * diagonal,
         half_angle=item.half_angle,
+        minor_radius=item.minor_radius * diagonal,
         side=item.side,
         area=area * diagonal**2,
         extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),

@@ -13,6 +13,7 @@ from kinform.surfaces._batch import Array, Ints, Mask, cross, group_sum, normal_
 from kinform.surfaces.kind import ALONG, Batch, Params, Probe
 
 __all__ = [
+    "CONVERGED",
     "axis_of_edges",
     "basis",
     "defining",
@@ -23,6 +24,7 @@ __all__ = [
     "lines",
     "probe",
     "regular",
+    "split",
     "widths",
 ]  # fmt: skip
 
@@ -45,7 +47,7 @@ def basis(axis: Array) -> tuple[Array, Array]:
     return x, y
 
 
-def _split(params: Params, points: Array) -> tuple[Array, Array, Array]:
+def split(params: Params, points: Array) -> tuple[Array, Array, Array]:
     """(t along the axis, ρ across it, unit radial direction) of each point.
 
     Column by column: the hottest lines of the package, and broadcasting over rows of three costs twice that.
@@ -67,7 +69,7 @@ def _split(params: Params, points: Array) -> tuple[Array, Array, Array]:
 
 def probe(params: Params, points: Array) -> Probe:
     """Holds points (N, 3) against cones and cylinders (N, 8)."""
-    t, rho, radial = _split(params, points)
+    t, rho, radial = split(params, points)
     radius, angle = params[:, 6], params[:, 7]
     if not angle.any():
         return Probe(distance=rho - radius, normal=radial, curvature_radius=radius)
@@ -81,7 +83,7 @@ def probe(params: Params, points: Array) -> Probe:
 
 def jacobian(params: Params, points: Array, cone: bool) -> Array:
     """(N, 5 or 6): by offset across the axis (2), tilt (2), radius, and half-angle for cones."""
-    t, rho, radial = _split(params, points)
+    t, rho, radial = split(params, points)
     cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
     x, y = basis(params[:, :3])
     rx, ry = np.einsum("ij,ij->i", radial, x), np.einsum("ij,ij->i", radial, y)
@@ -98,7 +100,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Mask, Mask]:
     work = batch.patchwork
     start, end = work.vertices[work.ends[edge, 0]], work.vertices[work.ends[edge, 1]]
     mine = params[region]
-    _, _, radial = _split(mine, (start + end) / 2)
+    _, _, radial = split(mine, (start + end) / 2)
     direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
     along = np.abs(np.einsum("ij,ij->i", end - start, direction)) > ALONG * work.length[edge]
     use = along & (work.length[edge] > 0)
@@ -153,7 +155,7 @@ def gauss_newton(
 
 def _recentred(params: Params, region: Ints, points: Array, count: int) -> Params:
     """Moves each reference point along its axis beside the mean of the points."""
-    t, _, _ = _split(params[region], points)
+    t, _, _ = split(params[region], points)
     size = np.maximum(np.bincount(region, minlength=count), 1)
     middle = np.bincount(region, t, count) / size
     out = params.copy()
@@ -195,8 +197,8 @@ def widths(batch: Batch, params: Params) -> Array:
     work = batch.patchwork
     owner, _ = batch.corners
     mine = params[batch.region]
-    _, _, middle = _split(mine, work.centre[batch.polygon])
-    _, rho, radial = _split(mine[owner], batch.points)
+    _, _, middle = split(mine, work.centre[batch.polygon])
+    _, rho, radial = split(mine[owner], batch.points)
     cos = np.einsum("ij,ij->i", radial, middle[owner])
     side = cross(mine[:, :3], middle)
     sin = np.einsum("ij,ij->i", radial, side[owner])
@@ -246,7 +248,7 @@ def lines(batch: Batch, params: Params, tolerance: Array) -> Ints:
         return np.zeros(batch.count, np.int64)
     mine = params[region]
     x, y = basis(mine[:, :3])
-    _, _, radial = _split(mine, work.vertices[vertex])
+    _, _, radial = split(mine, work.vertices[vertex])
     angle = np.arctan2(np.einsum("ij,ij->i", radial, y), np.einsum("ij,ij->i", radial, x))
     order = np.lexsort((angle, region))
     region, angle = region[order], angle[order]

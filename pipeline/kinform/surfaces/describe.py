@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces import plane
-from kinform.surfaces._batch import Array, Ints, group_sum
+from kinform.surfaces import _revolved, plane
+from kinform.surfaces._batch import Array, Ints, group_sum, normal_equations
 from kinform.surfaces._revolved import basis
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
@@ -33,6 +33,7 @@ class Description:
     point: Array
     radius: float = 0.0
     half_angle: float = 0.0
+    minor_radius: float = 0.0
     side: int = 1
     extent: tuple[float, float] = (0.0, 0.0)
     sweep: float = 0.0
@@ -109,38 +110,36 @@ def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Arra
     distance = kind.probe(params[region], points).distance
     columns = kind.jacobian(placed[region], points)
     chords = _chords(kind, batch, params)
-    widths = widths_of(kind, batch, params)
+    widths = _revolved.widths(batch, placed) if kind.name == "torus" else widths_of(kind, batch, params)
     starts = np.searchsorted(batch.region, np.arange(batch.count + 1))
-    order = np.argsort(region, kind="stable")
-    distance, columns = distance[order], columns[order]
-    rows = np.searchsorted(region[order], np.arange(batch.count + 1))
+    squares = np.bincount(region, distance * distance, batch.count)
+    samples = np.bincount(region, minlength=batch.count)
+    deepest = np.zeros(batch.count)
+    np.maximum.at(deepest, region, np.abs(distance))
+    has_axis = kind.name != "sphere"
+    angular, linear = _uncertainties(region, columns, squares, samples, scale, has_axis)
+    sweeps = _sweeps(placed, batch.region, work.centre[batch.polygon], widths) if has_axis else np.zeros(batch.count)
     out = []
     for k in range(batch.count):
-        mine, own = slice(starts[k], starts[k + 1]), slice(rows[k], rows[k + 1])
-        polygons = batch.polygon[mine]
-        squares, count = float(distance[own] @ distance[own]), rows[k + 1] - rows[k]
-        angular, linear = _uncertainty(columns[own], squares, scale, has_axis=kind.name != "sphere")
         axis, point, radius, half_angle, extent = _oriented(kind.name, placed[k], params[k], low[k], high[k])
-        sweep = 0.0
-        if kind.name != "sphere":
-            sweep = _sweep(placed[k], work.centre[polygons], widths[mine])
         out.append(
             Description(
                 kind=kind.name,
-                polygons=polygons,
+                polygons=batch.polygon[starts[k] : starts[k + 1]],
                 axis=axis,
                 point=point,
                 radius=radius,
                 half_angle=half_angle,
+                minor_radius=float(params[k, 7]) if kind.name == "torus" else 0.0,
                 side=int(side[k]),
                 extent=extent,
-                sweep=sweep,
-                residual=float(np.abs(distance[own]).max()) if count else 0.0,
-                axis_uncertainty=angular,
-                point_uncertainty=linear,
+                sweep=float(sweeps[k]),
+                residual=float(deepest[k]),
+                axis_uncertainty=float(angular[k]),
+                point_uncertainty=float(linear[k]),
                 chord=float(chords[k]),
-                squares=squares,
-                samples=int(count),
+                squares=float(squares[k]),
+                samples=int(samples[k]),
             )
         )
     return out
@@ -165,6 +164,8 @@ def _oriented(
     if name == "sphere":
         return np.zeros(3), point, float(params[6]), 0.0, (0.0, 0.0)
     axis = params[:3].copy()
+    if name == "torus":
+        return axis * _canonical(axis), point, float(params[6]), 0.0, (float(low), float(high))
     if name == "cylinder":
         half = float(high - low) / 2
         return axis * _canonical(axis), point, float(params[6]), 0.0, (-half, half)
@@ -182,21 +183,31 @@ def _canonical(axis: Array) -> float:
     return 1.0 if axis[first] >= 0 else -1.0
 
 
-def _uncertainty(columns: Array, squares: float, scale: Scale, has_axis: bool) -> tuple[float, float]:
-    """(rad, unit lengths) from the least squares at the surface's point."""
-    count, free = columns.shape
-    if count <= free:
-        return np.pi / 2, 1.0
-    scatter = max(np.sqrt(squares / (count - free)), 0.3 * scale.rounding)
-    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    scaled = columns / size
-    inverse = np.linalg.pinv(scaled.T @ scaled, hermitian=True, rcond=1e-14) / np.outer(size, size)
-    spread = COVERAGE * scatter
+def _uncertainties(
+    region: Ints, columns: Array, squares: Array, samples: Ints, scale: Scale, has_axis: bool
+) -> tuple[Array, Array]:  # fmt: skip
+    """(rad, unit lengths) of each region, from the least squares at the surface's point."""
+    count, free = len(samples), columns.shape[1]
+    freedom = np.maximum(samples - free, 1)
+    scatter = np.maximum(np.sqrt(squares / freedom), 0.3 * scale.rounding)
+    matrix, _ = normal_equations(region, columns, np.zeros(len(columns)), count)
+    size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
+    outer = size[:, :, None] * size[:, None, :]
+    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=1e-14) / outer
+    largest = (
+        [_largest(inverse[:, :3, :3])] if not has_axis else [_largest(inverse[:, i : i + 2, i : i + 2]) for i in (0, 2)]
+    )
+    vague = samples <= free
+    linear = np.where(vague, 1.0, COVERAGE * scatter * largest[0])
     if not has_axis:
-        return 0.0, float(spread * np.sqrt(max(np.linalg.eigvalsh(inverse[:3, :3])[-1], 0.0)))
-    linear = spread * np.sqrt(max(np.linalg.eigvalsh(inverse[:2, :2])[-1], 0.0))
-    angular = spread * np.sqrt(max(np.linalg.eigvalsh(inverse[2:4, 2:4])[-1], 0.0))
-    return min(float(angular), np.pi / 2), max(float(linear), 0.3 * scale.rounding)
+        return np.where(vague, np.pi / 2, 0.0), linear
+    angular = np.where(vague, np.pi / 2, np.minimum(COVERAGE * scatter * largest[1], np.pi / 2))
+    return angular, np.maximum(linear, 0.3 * scale.rounding)
+
+
+def _largest(covariance: Array) -> Array:
+    """Root of the largest eigenvalue of each matrix."""
+    return np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[:, -1], 0.0))
 
 
 def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
@@ -211,17 +222,22 @@ def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
     return deepest
 
 
-def _sweep(params: Array, centres: Array, widths: Array) -> float:
-    """Length of the union of the angles that the polygons subtend about the axis."""
-    x, y = basis(params[None, :3])
-    offset = centres - params[3:6]
-    middle = np.arctan2(offset @ y[0], offset @ x[0])
-    low = np.mod(middle - widths / 2, 2 * np.pi)
+def _sweeps(params: Params, region: Ints, centres: Array, widths: Array) -> Array:
+    """Length of the union of the angles that each region's polygons, in order, subtend about its axis."""
+    count, turn = len(params), 2 * np.pi
+    x, y = basis(params[:, :3])
+    offset = centres - params[region, 3:6]
+    middle = np.arctan2(np.einsum("ij,ij->i", offset, y[region]), np.einsum("ij,ij->i", offset, x[region]))
+    low = np.mod(middle - widths / 2, turn)
     high = low + widths
-    order = np.argsort(low, kind="stable")
-    low, high = low[order], high[order]
-    wrapped = max(0.0, float(high.max()) - 2 * np.pi)
-    reach = np.maximum.accumulate(np.r_[wrapped, high])[:-1]
-    covered = float(np.maximum(np.minimum(high, 2 * np.pi) - np.maximum(low, reach), 0).sum()) + wrapped
-    covered = min(covered, 2 * np.pi)
-    return 2 * np.pi if covered > 2 * np.pi - 1e-6 else covered
+    order = np.lexsort((low, region))
+    region, low, high = region[order], low[order], high[order]
+    wrapped = np.zeros(count)
+    np.maximum.at(wrapped, region, high - turn)
+    apart = 10 * turn * region
+    first = np.r_[True, region[1:] != region[:-1]]
+    before = np.maximum.accumulate(high + apart)
+    reach = np.where(first, wrapped[region], np.r_[0.0, before[:-1]] - apart)
+    reach = np.maximum(reach, wrapped[region])
+    covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
+    return np.where(covered > turn - 1e-6, turn, covered)

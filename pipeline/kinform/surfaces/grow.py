@@ -189,6 +189,8 @@ def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Found:
     scale, count = ground.scale, batch.count
     params, usable = kind.propose(batch)
     pieces = batch.select(usable[batch.region])
+    if kind.saddle:
+        side = _facing(kind, pieces, params)
     loose, tight = np.full(count, 2.5 * scale.fit), np.full(count, scale.fit)
     params = kind.refine(pieces, params, loose, 2)
     reach = _reach(kind, pieces, params)
@@ -203,6 +205,14 @@ def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Found:
     pieces = pieces.select(kind.credible(pieces, own, scale)[pieces.region])
     params[number], tight[number] = own, tolerance
     return Found(kind, Batch(ground.patchwork, number[pieces.region], pieces.polygon, count), params, side, tight)
+
+
+def _facing(kind: Kind, batch: Batch, params: Params) -> Ints:
+    """+1 where the polygons face as the normals of the surfaces, -1 where they face against them."""
+    work = batch.patchwork
+    normal = kind.probe(params[batch.region], work.centre[batch.polygon]).normal
+    agreement = np.einsum("ij,ij->i", normal, work.normal[batch.polygon]) * work.area[batch.polygon]
+    return np.where(np.bincount(batch.region, agreement, batch.count) >= 0, 1, -1).astype(np.int64)
 
 
 def absorb(ground: Ground, found: Found) -> Found:

@@ -56,9 +56,7 @@ class Batch:
         if len(self.region) <= RUN:
             return [self]
         cuts = range(0, len(self.region), RUN)
-        return [
-            Batch(self.patchwork, self.region[k : k + RUN], self.polygon[k : k + RUN], self.count) for k in cuts
-        ]
+        return [Batch(self.patchwork, self.region[k : k + RUN], self.polygon[k : k + RUN], self.count) for k in cuts]
 
     @property
     def corners(self) -> tuple[Ints, Ints]:

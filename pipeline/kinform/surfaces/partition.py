@@ -18,20 +18,21 @@ from kinform.surfaces.grow import Found, Ground, absorb, pursue, whole
 from kinform.surfaces.kind import Batch, Kind
 from kinform.surfaces.sphere import Sphere
 from kinform.surfaces.topology import Patchwork, Scale
+from kinform.surfaces.torus import Torus
 
 __all__ = ["CURVED", "Partition", "Region", "partition"]
 
-CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere())
+CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere(), Torus())
 """The curved kinds, simplest first. A new kind is one more entry."""
 
 ROUNDS = 8
 LEAST_BLEND = 8
 """Polygons of a piece that may bend both ways."""
 
-WORTH = 5e-4
+WORTH = 2e-3
 """Share of the mesh's area that a round of searching must explain for another one to follow."""
 
-GRAIN = 1e-5
+GRAIN = 3e-5
 """Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
 own stays freeform."""
 
@@ -181,7 +182,7 @@ def _search(ground: Ground, tried: Ints, bent: Curvature) -> list[Found]:
     tried[seeds] = 1
     ratio = np.minimum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
     other = np.maximum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
-    for kind in CURVED:
+    for kind in (kind for kind in CURVED if not kind.saddle):
         suits = np.flatnonzero((ratio <= kind.bends[1] + SLACK) & (other >= kind.bends[0] - SLACK))
         batch = _around(ground, seeds[suits], side[suits], STRAIGHT[kind.name])
         batch = batch.select((batch.size >= kind.least)[batch.region])
