@@ -28,6 +28,10 @@ __all__ = [
     "widths",
 ]  # fmt: skip
 
+BOW = 1e-5
+"""Depth (diagonals) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
+but a cut between them does not."""
+
 CONVERGED = 1e-13
 """Change of the parameters (rad, diagonals) at which a fit stands still."""
 
@@ -102,28 +106,34 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Mask, Mask]:
     mine = params[region]
     _, _, radial = split(mine, (start + end) / 2)
     direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
-    along = np.abs(np.einsum("ij,ij->i", end - start, direction)) > ALONG * work.length[edge]
-    use = along & (work.length[edge] > 0)
+    length = work.length[edge]
+    forward = np.abs(np.einsum("ij,ij->i", end - start, direction))
+    aside = np.maximum(length * length - forward * forward, 0.0)
+    straight = aside < 8 * BOW * np.maximum(np.abs(mine[:, 6]), 1e-12)
+    use = (forward > ALONG * length) & straight & (length > 0)
     return region[use], edge[use], inner[use], work.smooth[edge[use]]
 
 
 def defining(batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
-    """(region, vertex): ends of inner ridges, and of outer generators that lie on the surface.
+    """(region, vertex): ends of inner ridges, of outer generators that lie on the surface, and vertices
+    with three polygons of the region.
 
     After a boolean, outer generators may lie on chords; smooth ones (tangent to the neighbour) do not.
     """
     work = batch.patchwork
-    region, edge, inner, _ = generators(batch, params)
-    if not len(region):
-        return region, edge
-    ends = work.ends[edge]
-    distance = np.maximum(
-        np.abs(probe(params[region], work.vertices[ends[:, 0]]).distance),
-        np.abs(probe(params[region], work.vertices[ends[:, 1]]).distance),
-    )
-    use = inner | (distance < tolerance[region])
     total = np.int64(len(work.vertices))
-    key = np.unique(np.repeat(region[use], 2) * total + ends[use].ravel())
+    region, edge, inner, _ = generators(batch, params)
+    surrounded, vertex = batch.inner_vertices(3)
+    keys = [surrounded * total + vertex]
+    if len(region):
+        ends = work.ends[edge]
+        distance = np.maximum(
+            np.abs(probe(params[region], work.vertices[ends[:, 0]]).distance),
+            np.abs(probe(params[region], work.vertices[ends[:, 1]]).distance),
+        )
+        use = inner | (distance < tolerance[region])
+        keys.append(np.repeat(region[use], 2) * total + ends[use].ravel())
+    key = np.unique(np.concatenate(keys))
     return key // total, key % total
 
 

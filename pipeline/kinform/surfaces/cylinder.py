@@ -34,17 +34,18 @@ class Cylinder:
         _, vectors = np.linalg.eigh(np.nan_to_num(matrix))
         axis = np.where((agreement > 0.98)[:, None], ridge, vectors[:, :, 0])
         params = np.zeros((batch.count, 8))
-        params[:, :3] = axis
+        params[:, :3], params[:, 6] = axis, np.inf
         region, edge, inner, smooth = _revolved.generators(batch, params)
         inner_count = np.bincount(region[inner], minlength=batch.count)
         use = inner | smooth | (inner_count[region] < 3)
-        return self._circle(batch, axis, region[use], edge[use])
+        surrounded, vertex = batch.inner_vertices(3)
+        ends = work.ends[edge[use]].ravel()
+        return self._circle(batch, axis, np.r_[np.repeat(region[use], 2), surrounded], np.r_[ends, vertex])
 
-    def _circle(self, batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params, Mask]:
+    def _circle(self, batch: Batch, axis: Array, group: Ints, vertex: Ints) -> tuple[Params, Mask]:
         work, count = batch.patchwork, batch.count
         x, y = _revolved.basis(axis)
-        group = np.repeat(region, 2)
-        points = work.vertices[work.ends[edge].ravel()]
+        points = work.vertices[vertex]
         size = np.maximum(np.bincount(group, minlength=count), 1)
         middle = group_sum(group, points, count) / size[:, None]
         offset = points - middle[group]

@@ -70,9 +70,12 @@ def _conforms(kind: Kind, batch: Batch, params: Params, side: Ints, reach: Array
     chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
     allowed, limit = held.curvature_radius * chord[group], tolerance[group]
     bad = np.zeros(len(polygon), bool)
-    bad[owner[(held.distance >= limit) | (held.distance <= -allowed - limit)]] = True
-    normal = kind.probe(params[region], work.centre[polygon]).normal
-    cosine = np.einsum("ij,ij->i", normal, work.normal[polygon]) * side[region]
+    deepest = limit if kind.saddle else allowed + limit
+    bad[owner[(held.distance >= limit) | (held.distance <= -deepest)]] = True
+    middle = kind.probe(params[region], work.centre[polygon])
+    # a flat has all its vertices on the surface, but is wider than the facets of it
+    bad |= middle.distance <= -middle.curvature_radius * chord[region] - tolerance[region]
+    cosine = np.einsum("ij,ij->i", middle.normal, work.normal[polygon]) * side[region]
     widest = np.minimum(0.5 * reach[region] + 5e-3 + work.slack[polygon], 1.2)
     fits: Mask = ~bad & (cosine > np.cos(widest))
     return fits
@@ -95,13 +98,13 @@ def _reach(kind: Kind, batch: Batch, params: Params) -> Array:
     return reach
 
 
-def _neighbours(ground: Ground, batch_region: Ints, polygon: Ints, side: Ints) -> tuple[Ints, Ints]:
+def _neighbours(ground: Ground, batch_region: Ints, polygon: Ints) -> tuple[Ints, Ints]:
     """(region, polygon) pairs one smooth link away, free, each once."""
     work = ground.patchwork
     owner, edge = ground.links.expand(polygon)
     region = batch_region[owner]
     target = work.other(edge, polygon[owner])
-    open_ = ground.free[target] & (work.sign[edge] * side[region] >= 0)
+    open_ = ground.free[target]
     key = np.unique(region[open_] * np.int64(work.count) + target[open_])
     return key // work.count, key % work.count
 
@@ -118,7 +121,7 @@ def _spread(
     front_region, front_polygon = batch.region, batch.polygon
     recent = seen
     for _ in range(layers):
-        region, polygon = _neighbours(ground, front_region, front_polygon, _turn(kind, side))
+        region, polygon = _neighbours(ground, front_region, front_polygon)
         key = region * total + polygon
         fresh = ~_within(key, seen) & ~_within(key, recent)
         trial = Batch(work, region[fresh], polygon[fresh], batch.count)
@@ -135,11 +138,6 @@ def _spread(
     return Batch(work, key // total, key % total, batch.count)
 
 
-def _turn(kind: Kind, side: Ints) -> Ints:
-    """The sense in which edges inside a region bend, 0 where both do."""
-    return np.zeros_like(side) if kind.saddle else side
-
-
 def _within(keys: Ints, ordered: Ints) -> Mask:
     if not len(ordered):
         return np.zeros(len(keys), bool)
@@ -147,7 +145,7 @@ def _within(keys: Ints, ordered: Ints) -> Mask:
     return np.asarray(ordered[at] == keys)
 
 
-def _connected(ground: Ground, batch: Batch, side: Ints) -> Batch:
+def _connected(ground: Ground, batch: Batch) -> Batch:
     """The largest connected piece of each region (ties: the piece of the lowest polygon)."""
     work = ground.patchwork
     if not len(batch.region):
@@ -157,7 +155,7 @@ def _connected(ground: Ground, batch: Batch, side: Ints) -> Batch:
     owner, edge = ground.links.expand(batch.polygon)
     region = batch.region[owner]
     target = region * total + work.other(edge, batch.polygon[owner])
-    ok = _within(target, key) & (work.sign[edge] * side[region] >= 0)
+    ok = _within(target, key)
     label = components(owner[ok], np.searchsorted(key, target[ok]), len(key))
     size = np.bincount(label)
     first = np.full(len(size), len(key))
@@ -314,7 +312,7 @@ def _settled(ground: Ground, kind: Kind, batch: Batch, params: Params, side: Int
     """The batch without polygons that do not conform, and without regions that became too small."""
     reach = _reach(kind, batch, params)
     batch = batch.select(conforms(kind, batch, params, side, reach, tolerance))
-    batch = _connected(ground, batch, _turn(kind, side))
+    batch = _connected(ground, batch)
     return batch.select((batch.size >= kind.least)[batch.region])
 
 

@@ -199,12 +199,9 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     link = links(work, free)
     bent = curvature(work, link)
     like = link.alike & continues(work, bent, link)
-    blended = tuple(kind for kind in CURVED if kind.saddle)
     simple = tuple(kind for kind in CURVED if not kind.saddle)
-    for kinds, joined in ((blended, like), (simple, link.alike), (simple, like)):
-        if not kinds:
-            continue
-        pieces = _blends(work, link, joined, bent, free) if kinds is blended else _pieces(work, link, joined, free)
+    for kinds, joined, both in ((CURVED, like, True), (simple, link.alike, False), (simple, like, False)):
+        pieces = _blends(work, link, joined, bent, free) if both else _pieces(work, link, joined, free)
         found = [absorb(ground, item) for item in _explained(ground, *pieces, bent, kinds)]
         _take(regions, _choose(found, work, free), free)
     tried = np.zeros(len(work.a), np.int64)

@@ -106,13 +106,13 @@ class Torus:
         return params
 
     def probe(self, params: Params, points: Array) -> Probe:
-        """Distance from the tube and its normal. Nothing is granted to chords: vertices lie on the surface."""
+        """Distance from the tube, its normal, and the larger radius: that about the axis."""
         t, rho, radial = _revolved.split(params, points)
         across = rho - params[:, 6]
         q = np.sqrt(across * across + t * t)
         scale = 1.0 / np.maximum(q, 1e-300)
         normal = (across * scale)[:, None] * radial + (t * scale)[:, None] * params[:, :3]
-        return Probe(q - params[:, 7], normal, np.zeros(len(q)))
+        return Probe(q - params[:, 7], normal, params[:, 6] + params[:, 7])
 
     def widths(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
