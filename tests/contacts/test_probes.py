@@ -18,7 +18,7 @@ def test_slivers_miss_no_sample_within_their_reach(gap):
     angles, radii = np.random.default_rng(1).random((2, 500)) * [[2 * math.pi], [49 * MM]]
     points = np.stack([radii * np.cos(angles), radii * np.sin(angles), np.full(500, gap * MM)], axis=1)
     down = np.tile([0.0, 0.0, -1.0], (500, 1))
-    hits = PLATE.cast(points, down, np.full(500, 0.5 * MM))
+    hits = PLATE.whole().cast(points, down, np.full(500, 0.5 * MM))
     assert set(hits.probe) == set(range(500))
     np.testing.assert_allclose(hits.along, gap * MM, atol=1e-12)
     np.testing.assert_allclose(hits.facing, -1.0)
@@ -26,14 +26,14 @@ def test_slivers_miss_no_sample_within_their_reach(gap):
 
 def test_slivers_do_not_hit_what_is_beyond_their_reach():
     points = np.array([[0.0, 0.0, 0.6 * MM], [0.0, 0.0, 0.4 * MM]])
-    hits = PLATE.cast(points, np.tile([0.0, 0.0, 1.0], (2, 1)), np.full(2, 0.5 * MM))
+    hits = PLATE.whole().cast(points, np.tile([0.0, 0.0, 1.0], (2, 1)), np.full(2, 0.5 * MM))
     assert set(hits.probe) == {1}
 
 
 def test_depths_are_distances_to_the_boundary_and_name_the_nearest_facet():
     box = MeshIndex(extrusion(box_loop(0, 0, 10 * MM, 20 * MM), z0=0.0, z1=30 * MM)[0])
     points = np.random.default_rng(2).uniform([0, 0, 0], [10 * MM, 20 * MM, 30 * MM], (50, 3))
-    depth, facet = box.depths(points)
+    depth, facet = box.whole().depths(points)
     walls = np.concatenate([points, np.array([10, 20, 30]) * MM - points], axis=1)
     np.testing.assert_allclose(depth, walls.min(axis=1), atol=1e-10)
     nearest = np.argmin(walls, axis=1)

@@ -13,11 +13,13 @@ from dataclasses import dataclass, field
 import fcl
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Hits", "MeshIndex", "MeshStore"]
+__all__ = ["Hits", "MeshIndex", "MeshStore", "Region", "cross"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,10 +27,17 @@ Flags = NDArray[np.bool_]
 
 _WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
-_NEEDLE = 1e-7
-"""Width of a ray relative to its length: it has to tell one facet from its neighbours."""
 _RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
 """Directions along which no designer lays an edge."""
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross products of rows (n, 3); numpy's own spends most of its time on moving axes about."""
+    out = np.empty_like(a)
+    out[:, 0] = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
+    out[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
+    out[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +68,15 @@ class MeshIndex:
     def __init__(self, mesh: Mesh):
         self.mesh = mesh
         corners = mesh.vertices[mesh.faces]
-        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        length = np.linalg.norm(cross, axis=1)
+        across = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.sqrt(np.einsum("ij,ij->i", across, across))
         self.areas: Array = 0.5 * length
         """(F,) m²."""
-        self.normals: Array = cross / np.where(length > 0.0, length, 1.0)[:, None]
+        self.normals: Array = across / np.where(length > 0.0, length, 1.0)[:, None]
         """(F, 3) unit, part frame."""
         self._bvh: fcl.BVHModel | None = None
         self._borders: Ints | None = None
+        self._shells: Ints | None = None
 
     @property
     def bvh(self) -> fcl.BVHModel:
@@ -75,18 +85,40 @@ class MeshIndex:
             self._bvh = _model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
 
+    def region(self, facets: Ints) -> Region:
+        """These facets (ascending) as something to cast probes against; all of them where they are most."""
+        if 2 * len(facets) >= len(self.mesh.faces):
+            return self.whole()
+        return Region(self, _model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None, facets)
+
+    def whole(self) -> Region:
+        """All facets."""
+        return Region(self, self.bvh, None)
+
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
         if self._borders is None:
-            faces = self.mesh.faces
-            edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-            labels = np.tile(surfaces.labels, 3)
-            order = np.lexsort((edges[:, 1], edges[:, 0]))
-            edges, labels = edges[order], labels[order]
-            shared = (edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1])
-            pairs = np.stack([labels[:-1][shared], labels[1:][shared]], axis=1)
+            faces, count = self.mesh.faces, np.int64(len(self.mesh.vertices))
+            first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
+            key = np.minimum(first, second) * count + np.maximum(first, second)
+            order = np.argsort(key, kind="stable")
+            key, labels = key[order], np.tile(surfaces.labels, 3)[order]
+            shared = (key[1:] == key[:-1]) & (labels[1:] != labels[:-1])
+            pairs = np.unique(labels[:-1][shared] * np.int64(len(surfaces.surfaces)) + labels[1:][shared])
+            pairs = np.stack(np.divmod(pairs, max(len(surfaces.surfaces), 1)), axis=1)
             self._borders = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
         return self._borders
+
+    @property
+    def shells(self) -> Ints:
+        """The lowest facet of each connected shell of the mesh."""
+        if self._shells is None:
+            faces, count = self.mesh.faces, len(self.mesh.vertices)
+            edges = np.concatenate([faces[:, :2], faces[:, 1:]])
+            links = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
+            _, shell = connected_components(links, directed=False)
+            self._shells = np.unique(shell[faces[:, 0]], return_index=True)[1]
+        return self._shells
 
     def rims(self, surfaces: MeshSurfaces) -> Array:
         """For each surface, the greatest chord error of the surfaces that share an edge with it (m).
@@ -99,17 +131,61 @@ class MeshIndex:
         np.maximum.at(rims, own, chords[other])
         return rims
 
+    def contains(self, points: Array) -> Flags:
+        """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.
+
+        Open and inside-out meshes have an inside as far as two of three rays agree on it.
+        """
+        crossings = np.stack([_crossings(self.mesh, points, ray) for ray in _RAYS])
+        return np.asarray(np.abs(np.median(crossings, axis=0)) > 0.5)
+
+
+def _crossings(mesh: Mesh, points: Array, ray: Array) -> Array:
+    """(n,) facets that a ray from each point leaves through, less those that it enters through."""
+    ray = ray / np.linalg.norm(ray)
+    across = np.eye(3)[np.argmin(np.abs(ray))]
+    u = np.cross(ray, across)
+    u /= np.linalg.norm(u)
+    frame = np.stack([u, np.cross(ray, u), ray])
+    x, y, z = frame @ mesh.vertices.T
+    corners = [(x[f], y[f], z[f]) for f in mesh.faces.T]
+    low = [np.minimum(np.minimum(a, b), c) for a, b, c in zip(*(corner[:2] for corner in corners), strict=True)]
+    high = [np.maximum(np.maximum(a, b), c) for a, b, c in zip(*(corner[:2] for corner in corners), strict=True)]
+    top = np.maximum(np.maximum(corners[0][2], corners[1][2]), corners[2][2])
+    out = np.zeros(len(points))
+    for k, (px, py, pz) in enumerate(points @ frame.T):
+        near = np.flatnonzero((low[0] <= px) & (high[0] >= px) & (low[1] <= py) & (high[1] >= py) & (top > pz))
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([column[near] for column in corner] for corner in corners)
+        a = (bx - px) * (cy - py) - (by - py) * (cx - px)
+        b = (cx - px) * (ay - py) - (cy - py) * (ax - px)
+        c = (ax - px) * (by - py) - (ay - py) * (bx - px)
+        total = a + b + c
+        inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
+        height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
+        out[k] = np.sign(total[inside & (height > pz)]).sum()
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Facets of a mesh that probes are cast against."""
+
+    index: MeshIndex
+    bvh: fcl.BVHModel | None
+    facets: Ints | None
+    """Facets of the BVH in the mesh; None: all of them in order."""
+
     def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
 
         `width` of the slivers, relative to their reach.
         """
-        count = len(points)
+        count, mesh = len(points), self.index.mesh
         empty = np.zeros(0)
-        if count == 0:
+        if count == 0 or self.bvh is None:
             return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
         least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
-        across = np.cross(directions, least)
+        across = cross(directions, least)
         across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
         tip = points + reach[:, None] * directions
         slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
@@ -121,16 +197,18 @@ class MeshIndex:
         pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
         pairs = np.unique(pairs, axis=0)
         probe, facet = pairs[:, 0], pairs[:, 1]
-        normal = self.normals[facet]
+        if self.facets is not None:
+            facet = self.facets[facet]
+        normal = self.index.normals[facet]
         facing = np.einsum("ij,ij->i", normal, directions[probe])
-        height = np.einsum("ij,ij->i", normal, self.mesh.vertices[self.mesh.faces[facet, 0]] - points[probe])
+        height = np.einsum("ij,ij->i", normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
         steep = np.abs(facing) > 1e-3
         along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
         return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
-        """Distance (n,) m of points (n, 3) of the part frame to the mesh, and the nearest facets (n,)."""
-        speck = 1e-9 * max(self.mesh.diagonal, 1e-300)
+        """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
+        speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
         corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         point = fcl.CollisionObject(_model(corners, np.array([[0, 1, 2]])))
         mesh, request = fcl.CollisionObject(self.bvh), fcl.DistanceRequest()
@@ -140,27 +218,15 @@ class MeshIndex:
             result = fcl.DistanceResult()
             distance[k] = max(fcl.distance(mesh, point, request, result), 0.0)
             facet[k] = result.b1
-        return distance, facet
+        return distance, facet if self.facets is None else self.facets[facet]
 
-    def crosses(self, other: MeshIndex, X_SO: Array) -> bool:
-        """Whether any facets of the two meshes intersect; `X_SO` (4, 4): pose of the other part here."""
+    def crosses(self, other: Region, X_SO: Array) -> bool:
+        """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
+        if self.bvh is None or other.bvh is None:
+            return False
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other.bvh, fcl.Transform(X_SO[:3, :3], X_SO[:3, 3]))
         return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
-
-    def contains(self, points: Array) -> Flags:
-        """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.
-
-        Open and inside-out meshes have an inside as far as two of three rays agree on it.
-        """
-        half = np.full(len(points), 0.5 * self.mesh.diagonal + 1e-300)
-        crossings = np.zeros((len(_RAYS), len(points)))
-        for count, ray in zip(crossings, _RAYS, strict=True):
-            direction = np.tile(ray / np.linalg.norm(ray), (len(points), 1))
-            hits = self.cast(points + half[:, None] * direction, direction, half, width=_NEEDLE)
-            ahead = hits.along > -half[hits.probe]
-            np.add.at(count, hits.probe[ahead], np.sign(hits.facing[ahead]))
-        return np.asarray(np.abs(np.median(crossings, axis=0)) > 0.5)
 
 
 @dataclass

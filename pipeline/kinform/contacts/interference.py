@@ -12,8 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from kinform.contacts.mates import EDGE
 from kinform.contacts.placed import PlacedPart
@@ -102,35 +100,28 @@ def _meet(a: PlacedPart, b: PlacedPart, tolerance: float) -> bool:
     Faces that coincide cross or do not as rounding has it, so the question is put once more with the
     second part moved by less than what counts as an overlap.
     """
-    low = np.maximum(a.vertices.min(axis=0), b.vertices.min(axis=0))
-    high = np.minimum(a.vertices.max(axis=0), b.vertices.max(axis=0))
+    low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
     if (high - low).min() < _EXACT * tolerance:
         return False
     shift = _EXACT * tolerance * np.array([0.61, 0.53, 0.59])
     for move in (np.zeros(3), shift, -shift):
         X_AB = b.X_FP.copy()
         X_AB[:3, 3] += move
-        if a.index.crosses(b.index, X_AB):
+        if a.region.crosses(b.region, X_AB):
             return True
     return _holds(a, b) or _holds(b, a)
 
 
 def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
     """Whether a whole shell of `inner` lies inside `outer`, given that no facets cross."""
-    faces, count = inner.faces, len(inner.vertices)
-    edges = np.concatenate([faces[:, :2], faces[:, 1:]])
-    links = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
-    _, shell = connected_components(links, directed=False)
-    _, first = np.unique(shell[faces[:, 0]], return_index=True)
-    middles = inner.vertices[faces[first]].mean(axis=1)
-    low, high = outer.vertices.min(axis=0), outer.vertices.max(axis=0)
-    middles = middles[((middles > low) & (middles < high)).all(axis=1)]
+    middles = inner.vertices[inner.faces[inner.index.shells]].mean(axis=1)
+    middles = middles[((middles > outer.low) & (middles < outer.high)).all(axis=1)]
     return bool(outer.index.contains(outer.to_part(middles)).any())
 
 
 def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
     """Depth of points on the owner's facets below the surface of the other part."""
-    depth, nearest = other.index.depths(other.to_part(points))
+    depth, nearest = other.depths(points)
     own, theirs = owner.surfaces.labels[facets], other.surfaces.labels[nearest]
     return _Samples(points, depth, np.stack([own, theirs] if first else [theirs, own], axis=1))
 
@@ -210,8 +201,7 @@ def _inside(owner: PlacedPart, other: PlacedPart) -> tuple[Array, Ints]:
     middle = corners.mean(axis=1)
     points = np.concatenate([middle, (0.98 * corners + 0.02 * middle[:, None]).reshape(-1, 3)])
     facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
-    low, high = other.vertices.min(axis=0), other.vertices.max(axis=0)
-    within = np.nonzero(((points > low) & (points < high)).all(axis=1))[0]
+    within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
     chosen = within[:: max(1, math.ceil(len(within) / _SAMPLES))]
     points, facets = points[chosen], facets[chosen]
     inside = other.index.contains(other.to_part(points))

@@ -60,7 +60,7 @@ def join(probes: list[Probes]) -> Probes:
 
 def _cast(part: PlacedPart, probes: Probes) -> Hits:
     points, normals = part.to_part(probes.points), part.turn_to_part(probes.normals)
-    return part.index.cast(points, normals, probes.reach)
+    return part.region.cast(points, normals, probes.reach)
 
 
 def _nearest(hits: Hits, wanted: Flags, expected: Array, count: int) -> Ints:

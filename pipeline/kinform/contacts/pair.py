@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from kinform.contacts.interference import find_interference
 from kinform.contacts.mates import EDGE, Mate, box_overlap
 from kinform.contacts.onesided import one_sided_mates, without_continuations
 from kinform.contacts.patches import mated_patches, placed_in_world
-from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place
+from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place, within
 from kinform.contacts.planes import plane_mates
 from kinform.contacts.solids import SolidStore
 from kinform.contacts.spheres import sphere_mates
@@ -54,10 +53,11 @@ def pair_contacts(
     a = place(first, store.index(first.mesh), surfaces[first.mesh.digest], np.eye(4))
     b = place(second, store.index(second.mesh), surfaces[second.mesh.digest], X_FB)
     reach = _reach(a, b, tolerance)
-    low = np.maximum(a.vertices.min(axis=0), b.vertices.min(axis=0)) - reach
-    high = np.minimum(a.vertices.max(axis=0), b.vertices.max(axis=0)) + reach
+    low, high = np.maximum(a.low, b.low) - reach, np.minimum(a.high, b.high) + reach
     if (low > high).any():
         return PairContacts((), None)
+    margin = max(s.chord + s.residual for part in (a, b) for s in part.surfaces.surfaces)
+    a, b = (within(part, low - margin, high + margin) for part in (a, b))
     near = (near_surfaces(a, low, high), near_surfaces(b, low, high))
     mates = _mates(near, reach, tolerance, tolerances)
     overlap = box_overlap(*near, EDGE * tolerance)
@@ -70,7 +70,7 @@ def pair_contacts(
     found = find_interference(a, b, patches, solids, tolerance)
     if found is not None:
         at = first.X_WP[:3, :3] @ found.place + first.X_WP[:3, 3]
-        found = dataclasses.replace(found, place=np.asarray(freeze(at)))
+        found = replace(found, place=np.asarray(freeze(at)))
     return PairContacts(tuple(placed_in_world(patch, first.X_WP) for patch in patches), found)
 
 

@@ -5,16 +5,16 @@ The frame of a pair is the part frame of its first part, so that moving a whole 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.bvh import MeshIndex
+from kinform.contacts.bvh import MeshIndex, Region
 from kinform.model.assembly import Part
 from kinform.model.surfaces import KINDS, MeshSurfaces
 
-__all__ = ["NearSurfaces", "PlacedPart", "near_surfaces", "place"]
+__all__ = ["NearSurfaces", "PlacedPart", "near_facets", "near_surfaces", "place", "within"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,11 +35,33 @@ class PlacedPart:
     """(F, 3) outward."""
     rims: Array
     """For each surface of the mesh, the greatest chord error of its neighbours (m)."""
+    low: Array
+    high: Array
+    """(3,) bounding box."""
+    region: Region
+    """The facets that probes of the pair can meet."""
+    bounds: tuple[Array, Array]
+    """The box (3,), (3,) within which these are all the facets there are."""
 
     @property
     def faces(self) -> Ints:
         """(F, 3)."""
         return self.index.mesh.faces
+
+    def depths(self, points: Array) -> tuple[Array, Ints]:
+        """Distance (n,) m of points (n, 3) of the frame of the pair to the mesh, and the nearest facets (n,).
+
+        Facets outside the region are asked only about points that they may be nearest to.
+        """
+        if self.region.bvh is None:
+            return self.index.whole().depths(self.to_part(points))
+        distance, facet = self.region.depths(self.to_part(points))
+        if self.region.facets is not None:
+            low, high = self.bounds
+            far = distance > np.minimum(points - low, high - points).min(axis=1)
+            if far.any():
+                distance[far], facet[far] = self.index.whole().depths(self.to_part(points[far]))
+        return distance, facet
 
     def to_part(self, points: Array) -> Array:
         """Points (n, 3) of the frame of the pair in the part frame."""
@@ -55,7 +77,34 @@ def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array) -> 
     R_FP = X_FP[:3, :3]
     vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
     normals = index.normals @ R_FP.T
-    return PlacedPart(part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces))
+    columns = np.ascontiguousarray(vertices.T)
+    low, high = columns.min(axis=1), columns.max(axis=1)
+    region = Region(index, None, np.zeros(0, np.int64))
+    return PlacedPart(
+        part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces), low, high, region, (low, high)
+    )
+
+
+def within(placed: PlacedPart, low: Array, high: Array) -> PlacedPart:
+    """The part with the facets in the box from `low` to `high` (3,) as those that probes can meet."""
+    facets, _, _ = near_facets(placed, low, high)
+    return replace(placed, region=placed.index.region(facets), bounds=(low, high))
+
+
+def near_facets(placed: PlacedPart, low: Array, high: Array) -> tuple[Ints, Array, Array]:
+    """Facets whose boxes meet the box from `low` to `high` (3,), ascending, and their boxes (n, 3)."""
+    vertices, faces = placed.vertices, placed.faces
+    beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
+    a, b, c = faces.T
+    some = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
+    first, second, third = (vertices[faces[some, k]] for k in range(3))
+    low_f = np.minimum(np.minimum(first, second), third)
+    high_f = np.maximum(np.maximum(first, second), third)
+    return some, low_f, high_f
+
+
+_BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
+"""One for each side of a box that a vertex can lie beyond."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,12 +147,10 @@ class NearSurfaces:
 
 def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
     """Surfaces of the part that have facets whose boxes meet the box from `low` to `high` (3,)."""
-    corners = placed.vertices[placed.faces]
-    low_f, high_f = corners.min(axis=1), corners.max(axis=1)
-    near = np.nonzero(((low_f <= high) & (high_f >= low)).all(axis=1))[0]
+    near, low_f, high_f = near_facets(placed, low, high)
     labels = placed.surfaces.labels[near]
     order = np.argsort(labels, kind="stable")
-    near, labels = near[order], labels[order]
+    near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
     ids, starts = np.unique(labels, return_index=True)
     chosen = [placed.surfaces.surfaces[i] for i in ids]
     R_FP, p_FP = placed.X_FP[:3, :3], placed.X_FP[:3, 3]
@@ -130,7 +177,7 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         rims=placed.rims[ids],
         extents=stacked([np.array(s.extent) for s in chosen], 2),
         areas=column([s.area for s in chosen]),
-        lows=np.minimum.reduceat(low_f[near], starts) if len(ids) else empty,
-        highs=np.maximum.reduceat(high_f[near], starts) if len(ids) else empty,
+        lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
+        highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
     )

@@ -6,6 +6,7 @@ Arrays are float64 and read-only. `X_WP` is the pose of the part frame P in the 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -84,10 +85,19 @@ class Mesh:
     digest: str
     """SHA-256 (hex) of the welded geometry: vertices, faces. Equal digests: the same shape."""
 
+    @cached_property
+    def box(self) -> tuple[Array, Array]:
+        """Lowest and highest corner (3,) m of the bounding box in the part frame; zeros without vertices."""
+        if not len(self.vertices):
+            return np.zeros(3), np.zeros(3)
+        columns = np.ascontiguousarray(self.vertices.T)
+        return columns.min(axis=1), columns.max(axis=1)
+
     @property
     def diagonal(self) -> float:
         """Length of the diagonal of the bounding box (m)."""
-        return float(np.linalg.norm(np.ptp(self.vertices, axis=0))) if len(self.vertices) else 0.0
+        low, high = self.box
+        return float(np.linalg.norm(high - low))
 
 
 @dataclass(frozen=True, eq=False)
