@@ -15,7 +15,7 @@ from kinform.contacts.interference import find_interference
 from kinform.contacts.mates import EDGE, Mate, box_overlap
 from kinform.contacts.onesided import one_sided_mates, without_continuations
 from kinform.contacts.patches import mated_patches, placed_in_world
-from kinform.contacts.placed import NearSurfaces, PlacedPart, near_surfaces, place, within
+from kinform.contacts.placed import NearSurfaces, PlacedPart, facing, near_surfaces, place
 from kinform.contacts.planes import plane_mates
 from kinform.contacts.solids import SolidStore
 from kinform.contacts.spheres import sphere_mates
@@ -57,7 +57,7 @@ def pair_contacts(
     if (low > high).any():
         return PairContacts((), None)
     margin = max(s.chord + s.residual for part in (a, b) for s in part.surfaces.surfaces)
-    a, b = (within(part, low - margin, high + margin) for part in (a, b))
+    a, b = facing(a, b, low - margin, high + margin, reach + margin)
     near = (near_surfaces(a, low, high), near_surfaces(b, low, high))
     mates = _mates(near, reach, tolerance, tolerances)
     overlap = box_overlap(*near, EDGE * tolerance)

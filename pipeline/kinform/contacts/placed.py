@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.contacts.bvh import MeshIndex, Region
+from kinform.contacts.proximity import near_boxes
 from kinform.model.assembly import Part
 from kinform.model.surfaces import KINDS, MeshSurfaces
 
-__all__ = ["NearSurfaces", "PlacedPart", "near_facets", "near_surfaces", "place", "within"]
+__all__ = ["NearSurfaces", "PlacedPart", "facing", "near_facets", "near_surfaces", "place"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,8 +41,8 @@ class PlacedPart:
     """(3,) bounding box."""
     region: Region
     """The facets that probes of the pair can meet."""
-    bounds: tuple[Array, Array]
-    """The box (3,), (3,) within which these are all the facets there are."""
+    known: float
+    """m: no other facet is nearer than this to a facet of the other part."""
 
     @property
     def faces(self) -> Ints:
@@ -49,16 +50,15 @@ class PlacedPart:
         return self.index.mesh.faces
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
-        """Distance (n,) m of points (n, 3) of the frame of the pair to the mesh, and the nearest facets (n,).
+        """Distance (n,) m to the mesh of points (n, 3) on the other part, and the nearest facets (n,).
 
-        Facets outside the region are asked only about points that they may be nearest to.
+        Points are in the frame of the pair. Facets outside the region are asked only about points that they may be nearest to.
         """
         if self.region.bvh is None:
             return self.index.whole().depths(self.to_part(points))
         distance, facet = self.region.depths(self.to_part(points))
         if self.region.facets is not None:
-            low, high = self.bounds
-            far = distance > np.minimum(points - low, high - points).min(axis=1)
+            far = distance > self.known
             if far.any():
                 distance[far], facet[far] = self.index.whole().depths(self.to_part(points[far]))
         return distance, facet
@@ -80,15 +80,18 @@ def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array) -> 
     columns = np.ascontiguousarray(vertices.T)
     low, high = columns.min(axis=1), columns.max(axis=1)
     region = Region(index, None, np.zeros(0, np.int64))
-    return PlacedPart(
-        part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces), low, high, region, (low, high)
+    return PlacedPart(part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces), low, high, region, 0.0)
+
+
+def facing(a: PlacedPart, b: PlacedPart, low: Array, high: Array, margin: float) -> tuple[PlacedPart, PlacedPart]:
+    """Both parts, with the facets in the box from `low` to `high` (3,) that come within `margin` (m) of the other
+    as those that probes can meet."""
+    (own_a, low_a, high_a), (own_b, low_b, high_b) = near_facets(a, low, high), near_facets(b, low, high)
+    keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
+    return (
+        replace(a, region=a.index.region(own_a[keep_a]), known=margin),
+        replace(b, region=b.index.region(own_b[keep_b]), known=margin),
     )
-
-
-def within(placed: PlacedPart, low: Array, high: Array) -> PlacedPart:
-    """The part with the facets in the box from `low` to `high` (3,) as those that probes can meet."""
-    facets, _, _ = near_facets(placed, low, high)
-    return replace(placed, region=placed.index.region(facets), bounds=(low, high))
 
 
 def near_facets(placed: PlacedPart, low: Array, high: Array) -> tuple[Ints, Array, Array]:
