@@ -22,6 +22,7 @@ from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 from kinform.results import fingerprints, inputs
+from kinform.surfaces.congruent import Copy
 
 __all__ = ["contacts", "surfaces"]
 
@@ -39,8 +40,10 @@ def surfaces(
     for part in view.parts:
         if part.mesh is not None:
             meshes.setdefault(part.mesh.digest, part.mesh)
+    copies = surfaces_stage.congruent(meshes)
     marks = {
-        key: fingerprints.mark("surfaces", fingerprints.of_mesh(mesh, view.tolerances)) for key, mesh in meshes.items()
+        key: fingerprints.mark("surfaces", _inputs_of(mesh, view.tolerances, copies.get(key)))
+        for key, mesh in meshes.items()
     }
     before = ledger.previous
     found: dict[str, MeshSurfaces] = {}
@@ -53,8 +56,15 @@ def surfaces(
     if wanted:
         ledger.compute(f"surfaces of {_count(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger))
     recover = functools.partial(_recover, view.tolerances)
-    for key, recovered in zip(wanted, _mapped(recover, [meshes[k] for k in wanted], jobs, progress), strict=True):
+    # the largest first, so that no core is left with one of them at the end
+    shapes = sorted(
+        {copies[k].of if k in copies else k for k in wanted} - set(found), key=lambda k: (-len(meshes[k].faces), k)
+    )
+    for key, recovered in zip(shapes, _mapped(recover, [meshes[k] for k in shapes], jobs, progress), strict=True):
         found[key] = recovered
+    for key in wanted:
+        if key in copies:
+            found[key] = surfaces_stage.moved(found[copies[key].of], key, copies[key])
     return {key: found[key] for key in sorted(found)}, {key: marks[key] for key in sorted(marks)}
 
 
@@ -89,6 +99,12 @@ def contacts(
         what = f"contacts of {_count(len(wanted), 'pair', 'pairs')} of parts"
         ledger.compute(what, _why_pairs(view, parts, wanted, ledger))
     return found, {pair: mark_of(pair) for pair in found.candidates}
+
+
+def _inputs_of(mesh: Mesh, tolerances: Tolerances, copy: Copy | None) -> fingerprints.Inputs:
+    """A copy has its surfaces from the mesh that it is a copy of."""
+    own = fingerprints.of_mesh(mesh, tolerances)
+    return own if copy is None else {**own, "the shape that it is a copy of": copy.of}
 
 
 def _recover(tolerances: Tolerances, mesh: Mesh) -> MeshSurfaces:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from rich.console import Group, RenderableType
 
 from kinform.model.design import Design
 from kinform.reports.json_views import mobility_counts
 from kinform_cli.tables import Rows
-from kinform_cli.text import NONE
+from kinform_cli.text import NONE, Lengths
 
 __all__ = ["render"]
 
@@ -39,4 +41,17 @@ def render(design: Design) -> RenderableType:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
+    items.append(_misfit(design))
     return Group(*items)
+
+
+def _misfit(design: Design) -> str:
+    """What was moved to make axes agree that agree within their uncertainty."""
+    assert design.kinematics is not None
+    misfit, lengths = design.kinematics.misfit, Lengths.of(design.assembly)
+    moved = []
+    if lengths.length(misfit.distance) != lengths.length(0.0):
+        moved.append(f"{lengths.length(misfit.distance)} {lengths.unit} at {misfit.distance_at}")
+    if misfit.angle >= 1e-9:
+        moved.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
+    return f"misfit of axes that were made to agree: {', '.join(moved) or 'none'}"

@@ -12,6 +12,7 @@ from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
 from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
+from kinform.kinematics.extents import Extents
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import body_twists, close
@@ -37,8 +38,8 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function].
     """
     del surfaces  # the patches carry the analytic geometry already
-    merger = Merger(assembly)
-    decided = _decide_all(assembly, contacts, merger)
+    merger, extents = Merger(assembly), Extents(assembly)
+    decided = _decide_all(assembly, contacts, merger, extents)
     bodies = merger.bodies()
     of_part = {part: body.name for body in bodies for part in body.parts}
     stated = _stated(assembly, of_part)
@@ -57,8 +58,8 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
         angle, offset = misalignment(evidence, decision)
         if angle > 0.0 or offset > 0.0:
             misaligned.append((joint.name, angle, offset))
-    snapped, misfit = snap(joints, contacts.patches, _size(assembly))
-    return _finish(assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned))
+    snapped, misfit = snap(joints, contacts.patches, extents.assembly)
+    return _finish(assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly)
 
 
 def functional(assembly: Assembly) -> Kinematics:
@@ -76,7 +77,7 @@ def functional(assembly: Assembly) -> Kinematics:
         if pair is not None:
             stated[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     joints = tuple(stated[pair] for pair in sorted(stated))
-    return _finish(assembly, bodies, joints, (), Misfit(), {}, ())
+    return _finish(assembly, bodies, joints, (), Misfit(), {}, (), Extents(assembly).assembly)
 
 
 def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
@@ -93,7 +94,9 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     return close(len(bodies), edges, [j.twists for j in joints], ground, kinematics.matrix.length).mobility
 
 
-def _decide_all(assembly: Assembly, contacts: Contacts, merger: Merger) -> dict[Pair, tuple[Evidence, Decision]]:
+def _decide_all(
+    assembly: Assembly, contacts: Contacts, merger: Merger, extents: Extents
+) -> dict[Pair, tuple[Evidence, Decision]]:
     """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
     known: dict[tuple[int, ...], tuple[Evidence, Decision] | None] = {}
     names = {part.name: part.name for part in assembly.parts}
@@ -113,7 +116,8 @@ def _decide_all(assembly: Assembly, contacts: Contacts, merger: Merger) -> dict[
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
                 contact = max(contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members)
-                evidence = gather(members, assembly.tolerances, contact)
+                size = min(extents.diagonal(body.parts) for body in bodies if body.name in pair)
+                evidence = gather(members, assembly.tolerances, contact, size)
                 known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
             found = known[key]
             if found is None:
@@ -182,18 +186,6 @@ def _assumed(pair: Pair, assumption: Assumption) -> Joint:
     )  # fmt: skip
 
 
-def _size(assembly: Assembly) -> float:
-    """Diagonal of the assembly's box (m); 1 without meshes."""
-    corners = [
-        part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3] for part in assembly.parts if part.mesh is not None
-    ]
-    if not corners:
-        return 1.0
-    low = np.min([c.min(axis=0) for c in corners], axis=0)
-    high = np.max([c.max(axis=0) for c in corners], axis=0)
-    return float(np.linalg.norm(high - low))
-
-
 def _finish(
     assembly: Assembly,
     bodies: tuple[Body, ...],
@@ -202,16 +194,16 @@ def _finish(
     misfit: Misfit,
     strict: Mapping[JointName, Array],
     misaligned: tuple[tuple[str, float, float], ...],
+    size: float,
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     ground = next(k for k, body in enumerate(bodies) if body.ground)
     spaces = [joint.twists for joint in joints]
-    size = _size(assembly)
     closure = close(len(bodies), edges, spaces, ground, size)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = close(len(bodies), edges, hard, ground, size).mobility if strict else closure.mobility
-    idle = _idle(assembly, bodies, joints, patches)
+    idle = _idle(assembly, bodies, joints, patches, size)
     count = closure.mobility
     mobility = Mobility(
         instantaneous=count,
@@ -237,10 +229,9 @@ def _orthonormal(twists: Array) -> Array:
 
 
 def _idle(
-    assembly: Assembly, bodies: tuple[Body, ...], joints: tuple[Joint, ...], patches: tuple[Patch, ...]
+    assembly: Assembly, bodies: tuple[Body, ...], joints: tuple[Joint, ...], patches: tuple[Patch, ...], size: float
 ) -> dict[BodyName, int]:
     """Idle freedoms of each body."""
-    size = _size(assembly)
     of_part = {part: body.name for body in bodies for part in body.parts}
     intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
     for wanted in assembly.function.joints:

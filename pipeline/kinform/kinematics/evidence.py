@@ -17,13 +17,15 @@ from kinform.kinematics.screws import Frame, rows
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["COAXIAL", "Evidence", "Item", "gather"]
+__all__ = ["COAXIAL", "FAR", "Evidence", "Item", "gather"]
 
 Array = NDArray[np.float64]
 
 COAXIAL = ("cylinder", "cone")
 GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
 """(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
+FAR = GAP_BANDS[1][0]
+"""Gaps beyond this share of the contact tolerance have the least weight."""
 
 
 STRAY = 0.02
@@ -69,6 +71,10 @@ class Evidence:
     """(n,) m, of the patch."""
     arms: Array
     """(n, 3) samples from the centre, over the length."""
+    contact: float
+    """m: the contact tolerance of the pair."""
+    size: float = 0.0
+    """m: diagonal of the smaller body; 0: not known."""
 
     @property
     def areas(self) -> Array:
@@ -76,10 +82,13 @@ class Evidence:
         return np.array([item.area for item in self.items])
 
 
-def gather(patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float) -> Evidence | None:
+def gather(
+    patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float, size: float = 0.0
+) -> Evidence | None:
     """Evidence of patches given as (index, patch, turned): turned when part a belongs to the second body.
 
-    `contact` is the contact tolerance (m). None when no patch has an area.
+    `contact` is the contact tolerance (m), `size` the diagonal of the smaller body (m). None when no patch has
+    an area.
     """
     items = [
         _item(index, patch, turned, tolerances, contact)
@@ -105,6 +114,8 @@ def gather(patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, c
         angle=np.repeat([item.angle for item in items], counts),
         position=np.repeat([item.position for item in items], counts),
         arms=(points - frame.centre) / frame.length,
+        contact=contact,
+        size=size,
     )
 
 
@@ -122,6 +133,8 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
     weights = np.maximum(patch.weights, 1e-30) * band
     coaxial = patch.kind in (*COAXIAL, "sphere")
     clearance = max(patch.gap, 0.0) if coaxial else 0.0
+    # facets of no known surface have no axis of their own: how uneven the gap is says how far off it may be
+    offset = 0.5 * float(np.ptp(patch.gaps)) if patch.one_sided else 0.5 * patch.offset
     direction, position = patch.uncertainty
     loose = patch.one_sided and patch.kind not in ("plane", "sphere", *COAXIAL)
     return Item(
@@ -132,6 +145,6 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
         weights=weights,
         area=float(weights.sum()),
         angle=0.2 if loose else tolerances.alignment + 3.0 * direction + 0.5 * patch.misalignment,
-        position=3.0 * position + clearance + 0.5 * patch.offset if coaxial else 0.0,
+        position=3.0 * position + clearance + offset if coaxial else 0.0,
         interferes=patch.gap < -(patch.chord + 3.0 * position),
     )

@@ -177,6 +177,10 @@ def _mobility(design: Design) -> dict[str, Any]:
         **_fields(mobility, "idle_bodies", "uncertain"),
         "bodies": [body.name for body in kinematics.bodies],
         "freedoms": mobility.freedoms,
+        "misfit": asdict(kinematics.misfit),
+        "misaligned": [
+            {"joint": joint, "angle": angle, "offset": offset} for joint, angle, offset in kinematics.misaligned
+        ],
     }
 
 

@@ -1,8 +1,9 @@
 """Facets → analytic surfaces: planes, cylinders, cones, spheres with the uncertainty of each fit."""
 
 from kinform.surfaces._recover import recover
+from kinform.surfaces.congruent import congruent, moved
 
-__all__ = ["CODE_VERSION", "recover"]
+__all__ = ["CODE_VERSION", "congruent", "moved", "recover"]
 
 CODE_VERSION: int = 2
 """Bumped when results change."""

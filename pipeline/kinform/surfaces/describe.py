@@ -17,7 +17,7 @@ from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale
 
-__all__ = ["Description", "curved", "flat", "freeform"]
+__all__ = ["Description", "canonical", "curved", "flat", "freeform"]
 
 COVERAGE = 3.0
 """Stated uncertainties are this many standard deviations."""
@@ -112,8 +112,8 @@ def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Arra
     chords = _chords(kind, batch, params)
     widths = _revolved.widths(batch, placed) if kind.name == "torus" else widths_of(kind, batch, params)
     starts = np.searchsorted(batch.region, np.arange(batch.count + 1))
-    squares = np.bincount(region, distance * distance, batch.count)
-    samples = np.bincount(region, minlength=batch.count)
+    squares: Array = np.bincount(region, distance * distance, batch.count).astype(float)
+    samples: Ints = np.bincount(region, minlength=batch.count).astype(np.int64)
     deepest = np.zeros(batch.count)
     np.maximum.at(deepest, region, np.abs(distance))
     has_axis = kind.name != "sphere"
@@ -165,10 +165,10 @@ def _oriented(
         return np.zeros(3), point, float(params[6]), 0.0, (0.0, 0.0)
     axis = params[:3].copy()
     if name == "torus":
-        return axis * _canonical(axis), point, float(params[6]), 0.0, (float(low), float(high))
+        return axis * canonical(axis), point, float(params[6]), 0.0, (float(low), float(high))
     if name == "cylinder":
         half = float(high - low) / 2
-        return axis * _canonical(axis), point, float(params[6]), 0.0, (-half, half)
+        return axis * canonical(axis), point, float(params[6]), 0.0, (-half, half)
     along = float((params[3:6] - point) @ axis)
     bounds = sorted((float(low) + along, float(high) + along))
     if params[7] < 0:
@@ -176,7 +176,7 @@ def _oriented(
     return axis, point, 0.0, abs(float(params[7])), (bounds[0], bounds[1])
 
 
-def _canonical(axis: Array) -> float:
+def canonical(axis: Array) -> float:
     """The sign that makes the largest component positive (ties within 1e-3: x, y, z)."""
     size = np.abs(axis)
     first = int(np.flatnonzero(size > size.max() - 1e-3)[0])
@@ -207,7 +207,7 @@ def _uncertainties(
 
 def _largest(covariance: Array) -> Array:
     """Root of the largest eigenvalue of each matrix."""
-    return np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[:, -1], 0.0))
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[:, -1], 0.0)))
 
 
 def _chords(kind: Kind, batch: Batch, params: Params) -> Array:

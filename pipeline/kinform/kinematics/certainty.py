@@ -1,0 +1,106 @@
+"""How sure the answer of a decision is: what in the evidence makes it doubtful, in words.
+
+A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a singular value between free
+and held; facets of no known surface, lines and points that alone hold something (where they touch next is
+not known); axes that nearly agree, which a designer means as one; and touches too small or too far apart
+to be meant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.evidence import COAXIAL, FAR, Evidence
+from kinform.kinematics.freedoms import fits, freedoms
+from kinform.kinematics.subspace import name_space
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["certainty"]
+
+Array = NDArray[np.float64]
+
+TOUCHING = ("point", "line")
+"""Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
+HIGHER = (*TOUCHING, "freeform", "other")
+"""Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
+MISSED = 0.5
+"""Axes that miss each other by less than this share of the contact tolerance are meant to be one."""
+TILTED = 4.0
+"""So are axes within this many times the alignment."""
+APART = 2e-3
+"""Gaps below this share of the size of the smaller body are as good as none."""
+STRAY = (2e-3, 2e-2)
+"""Share of the squared size of the smaller body below which a one-directional contact may be a stray: where
+it touches, and where it does not."""
+
+
+def certainty(
+    evidence: Evidence, twists: Array, basis: Array, values: Array, tolerances: Tolerances
+) -> tuple[str, str]:
+    """Status and reason of the freedoms `basis` (6, k) with singular values (6,), found among `twists` (6, n)."""
+    count = basis.shape[1]
+    if count < 6 and values[count] < tolerances.held:
+        return "ambiguous", (
+            f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
+            f"and held (> {tolerances.held:g})"
+        )
+    touching = name_space(basis, evidence.frame).type == "general" and all(
+        item.patch.kind in TOUCHING for item in evidence.items
+    )
+    doubt = "" if touching else _loose(evidence, twists, count, tolerances) or _stray(evidence)
+    doubt = doubt or _nearly_one(evidence, twists, count, tolerances)
+    if doubt:
+        return "ambiguous", doubt
+    weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
+    return "determined", f"the contact leaves {count} freedom{'' if count == 1 else 's'}{weakest}"
+
+
+def _count(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], tolerances: Tolerances) -> int:
+    preserved = fits(evidence, twists, evidence.rows @ twists)
+    return int(freedoms(evidence, twists, preserved, keep, tolerances)[0].shape[1])
+
+
+def _loose(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+    """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
+    only by surfaces that are known on both sides."""
+    firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
+    if count == 0:
+        firm &= [not item.patch.one_sided for item in evidence.items]
+    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
+        return ""
+    kinds = sorted({item.patch.kind for item, good in zip(evidence.items, firm, strict=True) if not good})
+    return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
+
+
+def _nearly_one(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+    """Are bodies fixed only by axes or centres that miss each other by a little?"""
+    if count:
+        return ""
+    curved = [item.patch.kind in (*COAXIAL, "sphere") and not item.patch.one_sided for item in evidence.items]
+    wide = np.repeat(curved, np.diff(evidence.start))
+    widened = replace(
+        evidence,
+        angle=np.where(wide, np.maximum(evidence.angle, TILTED * tolerances.alignment), evidence.angle),
+        position=evidence.position + np.where(wide, MISSED * evidence.contact, 0.0),
+    )
+    found = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
+    if found == 0:
+        return ""
+    return f"axes that miss each other by little hold the bodies: as one axis they would leave {found} of 6 freedoms"
+
+
+def _stray(evidence: Evidence) -> str:
+    """Is all of the contact on one side, and so small, or so far apart, that it may not be meant?"""
+    normals = evidence.rows[:, 3:]
+    if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():
+        return ""
+    area = sum(item.patch.area for item in evidence.items)
+    least = max(FAR * evidence.contact, APART * evidence.size)
+    apart = all(item.patch.gap > least for item in evidence.items)
+    if area >= STRAY[apart] * evidence.size**2:
+        return ""
+    what = "they pass each other without touching" if apart else "they touch"
+    return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

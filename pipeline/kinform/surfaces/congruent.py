@@ -1,0 +1,132 @@
+"""Meshes that are one shape in several poses: what is recovered for one holds for all.
+
+Copies of a part keep the order of its facets, also where the pose is baked into the file. So vertices in the
+order in which facets first name them correspond, and a rigid fit (Kabsch 1976) confirms or refutes it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.assembly import Mesh, freeze
+from kinform.model.surfaces import MeshSurfaces, Surface
+from kinform.surfaces.describe import canonical
+
+__all__ = ["Copy", "congruent", "moved"]
+
+Array = NDArray[np.float64]
+
+EPS32 = float(np.finfo(np.float32).eps)
+TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")
+"""Kinds whose axis has no sense of its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Copy:
+    """One mesh as a copy of another."""
+
+    of: str
+    """Digest of the mesh that it is a copy of."""
+    X_CO: Array
+    """(4, 4) from the frame of that mesh to that of the copy."""
+    turn_uncertainty: float
+    """rad."""
+    shift_uncertainty: float
+    """m."""
+
+
+def congruent(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
+    """The copies among meshes by digest; of each shape the mesh of the lowest digest is no copy."""
+    by_size: dict[tuple[int, int], list[str]] = {}
+    for digest in sorted(meshes):
+        mesh = meshes[digest]
+        by_size.setdefault((len(mesh.vertices), len(mesh.faces)), []).append(digest)
+    copies: dict[str, Copy] = {}
+    for group in by_size.values():
+        if len(group) > 1 and len(meshes[group[0]].faces):
+            copies |= _copies(meshes, group)
+    return copies
+
+
+def _copies(meshes: Mapping[str, Mesh], group: list[str]) -> dict[str, Copy]:
+    out: dict[str, Copy] = {}
+    shapes: dict[str, list[tuple[str, Array]]] = {}
+    for digest in group:
+        order, form = _first_named(meshes[digest])
+        points = meshes[digest].vertices[order]
+        known = shapes.setdefault(form, [])
+        for other, reference in known:
+            copy = _fitted(other, reference, points)
+            if copy is not None:
+                out[digest] = copy
+                break
+        else:
+            known.append((digest, points))
+    return out
+
+
+def _first_named(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
+    """Vertices in the order in which facets first name them, and a digest of the facets under those numbers."""
+    named, first, inverse = np.unique(mesh.faces.ravel(), return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    number = np.empty(len(order), np.int64)
+    number[order] = np.arange(len(order))
+    return named[order], hashlib.sha256(np.ascontiguousarray(number[inverse]).tobytes()).hexdigest()
+
+
+def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
+    """The rigid motion from `reference` to `points`, if it explains them to within their rounding."""
+    allowed = 2 * EPS32 * max(float(np.abs(reference).max()), float(np.abs(points).max()))
+    from_, to = reference.mean(axis=0), points.mean(axis=0)
+    a, b = reference - from_, points - to
+    size = np.sqrt((a**2).sum() / len(a))
+    if abs(np.sqrt((b**2).sum() / len(b)) - size) > allowed:
+        return None
+    u, spread, vt = np.linalg.svd(a.T @ b)
+    sense = np.sign(np.linalg.det(u @ vt))
+    if sense < 0 and spread[2] > 1e-9 * spread[0]:
+        return None
+    R_CO = (u * np.array([1.0, 1.0, sense])) @ vt
+    R_CO = R_CO.T
+    off = b - a @ R_CO.T
+    if np.abs(off).max() > allowed:
+        return None
+    X_CO = np.eye(4)
+    X_CO[:3, :3], X_CO[:3, 3] = R_CO, to - R_CO @ from_
+    scatter = 3 * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
+    freeze(X_CO)
+    return Copy(other, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
+
+
+def moved(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:
+    """The surfaces of a mesh as those of its copy, which has this digest."""
+    return MeshSurfaces(
+        digest, tuple(_moved(surface, copy) for surface in surfaces.surfaces), surfaces.labels, surfaces.noise
+    )
+
+
+def _moved(surface: Surface, copy: Copy) -> Surface:
+    if not surface.axis.any() and not surface.point.any() and surface.kind == "freeform":
+        return surface
+    R_CO = copy.X_CO[:3, :3]
+    axis, point = R_CO @ surface.axis, R_CO @ surface.point + copy.X_CO[:3, 3]
+    extent = surface.extent
+    if surface.kind in TURNS and canonical(axis) < 0:
+        axis, extent = -axis, (-extent[1], -extent[0])
+    axis, point = axis + 0.0, point + 0.0
+    for array in (axis, point):
+        freeze(array)
+    has_axis = bool(surface.axis.any())
+    return replace(
+        surface,
+        axis=axis,
+        point=point,
+        extent=extent,
+        axis_uncertainty=min(surface.axis_uncertainty + copy.turn_uncertainty * has_axis, np.pi / 2),
+        point_uncertainty=surface.point_uncertainty + copy.shift_uncertainty,
+    )
