@@ -133,3 +133,12 @@ def test_a_pressed_key_on_a_loose_shaft_is_no_stray():
     key, way = keyed(0.04, -0.02)
     found, _ = derived(random_pose(rng), 1e-3, block=block - way, shaft=loose + key)
     assert [b.parts for b in found.bodies] == [("block", "shaft")]
+
+
+@pytest.mark.parametrize("wide", [10.0, 40.0])
+def test_a_closed_gripper_keeps_its_hinge(wide):
+    lugs = box(-8, 8, -8, 8, -16, -6) + box(-8, 8, -8, 8, 6, 16) + box(-8, 8, 8, 14, -16, 16)
+    fixed = lugs - rod(4.05, -17, 17, 36) + box(-2, 4, -10 - wide, -8.5, -5, 5) + box(-2, 4, -10, -7, -8, 8)
+    jaw = rod(7, -5.95, 5.95, 48) + rod(4, -15, 15, 44) + box(-6, -2, -60, -5, -4, 4)
+    found, _ = derived(fixed=fixed - rod(7.2, -6.2, 6.2, 60), jaw=jaw)
+    assert [(j.type, j.status) for j in found.joints] == [("revolute", "blocked")]

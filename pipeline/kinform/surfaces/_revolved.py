@@ -35,6 +35,9 @@ but a cut between them does not."""
 CONVERGED = 1e-13
 """Change of the parameters (rad, diagonals) at which a fit stands still."""
 
+APEX = 0.05
+"""Distance from the axis, in radii, within which a vertex of a cone is its apex."""
+
 SECOND = 0.4
 """A strip counts as like the widest when it subtends at least this share of its angle."""
 
@@ -155,12 +158,41 @@ def gauss_newton(
         mine = params[region]
         columns = jacobian(mine, points, cone)
         residual = probe(mine, points).distance
-        matrix, right = normal_equations(region, columns, residual, count)
+        group = region
+        if cone:
+            group, columns, residual = _with_apices(mine, points, region, columns, residual)
+        matrix, right = normal_equations(group, columns, residual, count)
         change = -solve_normal(matrix, right, 1e-11)
         params = _moved(params, change, cone)
         if np.abs(change).max(initial=0.0) < CONVERGED:
             break
     return params
+
+
+def _with_apices(
+    params: Params, points: Array, region: Ints, columns: Array, residual: Array
+) -> tuple[Ints, Array, Array]:  # fmt: skip
+    """The equations, with vertices at an apex put on the axis: their distance has no gradient there, and
+    without them a cone of one ring and a point may tilt as it likes."""
+    t, rho, _ = split(params, points)
+    at = np.flatnonzero(rho < APEX * params[:, 6])
+    if not len(at):
+        return region, columns, residual
+    columns = columns.copy()
+    columns[at, :4] = 0.0
+    mine = params[at]
+    across = points[at] - mine[:, 3:6] - t[at, None] * mine[:, :3]
+    extra, off = [], []
+    for number, direction in enumerate(basis(mine[:, :3])):
+        row = np.zeros((len(at), columns.shape[1]))
+        row[:, number], row[:, 2 + number] = -1.0, -t[at]
+        extra.append(row)
+        off.append(np.einsum("ij,ij->i", across, direction))
+    return (
+        np.concatenate([region, region[at], region[at]]),
+        np.concatenate([columns, *extra]),
+        np.concatenate([residual, *off]),
+    )
 
 
 def _recentred(params: Params, region: Ints, points: Array, count: int) -> Params:

@@ -49,14 +49,16 @@ class Cone:
         matrix, right = normal_equations(group, columns, u * u + v * v, count)
         solution = solve_normal(matrix, right)
         centre = solution[:, :2] / 2
-        square = solution[:, 2] + (centre**2).sum(axis=1)
-        radius = np.sqrt(np.maximum(square, 1e-18))
+        # two rings leave the size of the ring open above, but not its middle; the rest is a line
+        rho = np.hypot(u - centre[group, 0], v - centre[group, 1])
+        matrix, right = normal_equations(group, np.stack([np.ones_like(t), t], axis=1), rho, count)
+        line = solve_normal(matrix, right)
         params = np.zeros((count, 8))
         params[:, :3] = axis
         params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y
-        params[:, 6] = radius
-        params[:, 7] = np.arctan(solution[:, 3] / (2 * radius))
-        return params, (size >= 6) & (square > 0) & (radius < 10.0) & np.isfinite(params).all(axis=1)
+        params[:, 6] = np.maximum(line[:, 0], 1e-9)
+        params[:, 7] = np.arctan(line[:, 1])
+        return params, (size >= 6) & (line[:, 0] > 0) & (line[:, 0] < 10.0) & np.isfinite(params).all(axis=1)
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and half-angle."""
