@@ -14,6 +14,7 @@ from kinform.surfaces.kind import ALONG, Batch, Params, Probe
 
 __all__ = [
     "CONVERGED",
+    "apices",
     "axis_of_edges",
     "basis",
     "defining",
@@ -26,6 +27,7 @@ __all__ = [
     "regular",
     "split",
     "widths",
+    "with_apices",
 ]  # fmt: skip
 
 BOW = 1e-5
@@ -160,7 +162,7 @@ def gauss_newton(
         residual = probe(mine, points).distance
         group = region
         if cone:
-            group, columns, residual = _with_apices(mine, points, region, columns, residual)
+            group, columns, residual = with_apices(mine, points, region, columns, residual, apices(mine, points))
         matrix, right = normal_equations(group, columns, residual, count)
         change = -solve_normal(matrix, right, 1e-11)
         params = _moved(params, change, cone)
@@ -169,23 +171,28 @@ def gauss_newton(
     return params
 
 
-def _with_apices(
-    params: Params, points: Array, region: Ints, columns: Array, residual: Array
+def apices(params: Params, points: Array) -> Ints:
+    """Which points lie at the apex of their cone."""
+    _, rho, _ = split(params, points)
+    return np.flatnonzero(rho < APEX * params[:, 6])
+
+
+def with_apices(
+    params: Params, points: Array, region: Ints, columns: Array, residual: Array, at: Ints
 ) -> tuple[Ints, Array, Array]:  # fmt: skip
     """The equations, with vertices at an apex put on the axis: their distance has no gradient there, and
     without them a cone of one ring and a point may tilt as it likes."""
-    t, rho, _ = split(params, points)
-    at = np.flatnonzero(rho < APEX * params[:, 6])
     if not len(at):
         return region, columns, residual
     columns = columns.copy()
     columns[at, :4] = 0.0
     mine = params[at]
-    across = points[at] - mine[:, 3:6] - t[at, None] * mine[:, :3]
+    t = np.einsum("ij,ij->i", points[at] - mine[:, 3:6], mine[:, :3])
+    across = points[at] - mine[:, 3:6] - t[:, None] * mine[:, :3]
     extra, off = [], []
     for number, direction in enumerate(basis(mine[:, :3])):
         row = np.zeros((len(at), columns.shape[1]))
-        row[:, number], row[:, 2 + number] = -1.0, -t[at]
+        row[:, number], row[:, 2 + number] = -1.0, -t
         extra.append(row)
         off.append(np.einsum("ij,ij->i", across, direction))
     return (

@@ -117,7 +117,11 @@ def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Arra
     deepest = np.zeros(batch.count)
     np.maximum.at(deepest, region, np.abs(distance))
     has_axis = kind.name != "sphere"
-    angular, linear = _uncertainties(region, columns, squares, samples, scale, has_axis)
+    group = region
+    if kind.name == "cone":
+        at = _revolved.apices(params[region], points)
+        group, columns, _ = _revolved.with_apices(placed[region], points, region, columns, distance, at)
+    angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
     sweeps = _sweeps(placed, batch.region, work.centre[batch.polygon], widths) if has_axis else np.zeros(batch.count)
     out = []
     for k in range(batch.count):
