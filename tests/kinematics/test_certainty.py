@@ -57,11 +57,17 @@ def test_a_dowel_beside_a_pilot_is_no_bearing_that_nearly_agrees():
 
 @pytest.mark.parametrize(
     ("side", "gap", "status"),
-    [(0.02, 0.0, "determined"), (0.02, 3e-4, "determined"), (0.002, 0.0, "ambiguous"), (0.004, 3e-4, "ambiguous")],
+    [(0.02, 0.0, "determined"), (0.02, 3e-4, "determined"), (0.001, 0.0, "ambiguous"), (0.004, 3e-4, "ambiguous")],
 )
 def test_a_small_touch_on_one_side_may_be_a_stray(side, gap, status):
     found = decision([plane(size=(side, side), gap=gap)], size=0.06)
     assert (found.form.type, found.status) == ("planar", status)
+
+
+def test_a_table_on_four_small_feet_is_no_stray():
+    feet = [plane((x, y, 0), Z, (0.001, 0.001)) for x in (-0.02, 0.02) for y in (-0.02, 0.02)]
+    found = decision(feet, size=0.08)
+    assert (found.form.type, found.status) == ("planar", "determined")
 
 
 def test_a_small_sandwich_is_no_stray():

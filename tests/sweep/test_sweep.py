@@ -34,7 +34,7 @@ def test_a_scene_of_each_kind_gives_its_truth(seed, family, kind, tmp_path):
     assert (verdict.outcome, verdict.why) == ("right", "")
 
 
-@pytest.mark.parametrize("seed", range(2000, 2012))
+@pytest.mark.parametrize("seed", range(2000, 2008))
 def test_a_chain_gives_its_truth(seed, tmp_path):
     made = case(seed, "chain")
     verdict = judge(made, derived(made, tmp_path))
@@ -48,17 +48,17 @@ def test_a_case_is_the_same_each_time(tmp_path):
 
 
 def test_sizes_run_from_a_millimetre_to_a_hundred_metres():
-    sizes = [case(seed).size for seed in range(100)]
+    sizes = [case(seed).size for seed in range(60)]
     assert 1e-3 <= min(sizes) < 5e-3
     assert 20.0 < max(sizes) <= 100.0
 
 
 def test_families_take_turns():
-    kinds = Counter(case(seed).kind.partition("/")[0] for seed in range(100))
+    kinds = Counter(case(seed).kind.partition("/")[0] for seed in range(40))
     assert {"cylindrical", "revolute", "prismatic", "spherical", "planar", "fixed", "several", "chain"} <= set(kinds)
 
 
-@pytest.mark.parametrize("seed", range(0, 40, 4))
+@pytest.mark.parametrize("seed", range(0, 40, 5))
 def test_the_judge_tells_a_false_truth(seed, tmp_path):
     """A truth of another kind or at another place is not taken for right."""
     made = case(seed)

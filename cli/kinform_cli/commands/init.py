@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, examples
+from kinform_cli.options import Debug, Quiet, cores, examples
+from kinform_cli.progress import Working
 from kinform_cli.text import count
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly
+    from kinform.model.names import PartName
 
 __all__ = ["EXAMPLES", "init"]
 
@@ -41,6 +46,12 @@ def init(
             help="Manifest to write; else it is printed.",
         ),
     ] = None,
+    suggest: Annotated[
+        bool,
+        typer.Option(
+            "--suggest/--no-suggest", help="Look for parts that are probably one body, and propose groups as comments."
+        ),
+    ] = True,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -53,9 +64,20 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
-    text = form.init_manifest(meshes, units=units, relative_to=folder)
+    text = form.init_manifest(meshes, units=units, relative_to=folder, fastened=_fastened if suggest else None)
     if output is None:
         console.emit(text)
         return
     files.write_text(output, text)
     console.say(f"{output}: {count(text.count('[[part]]'), 'part')}; complete it, then kinform run {output}")
+
+
+def _fastened(assembly: Assembly) -> list[tuple[list[PartName], str]]:
+    """Parts that their contacts suggest are one body."""
+    from kinform import stages
+    from kinform.fastening import fastened
+    from kinform.model.design import Design
+
+    with Working("contacts") as progress:
+        found = stages.contacts(Design(assembly), jobs=cores(None), progress=progress).contacts
+    return [] if found is None else fastened(found.suggestions)

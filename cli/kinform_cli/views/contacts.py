@@ -18,7 +18,7 @@ def _known(design: Design) -> Contacts:
 
 
 def render(design: Design) -> RenderableType:
-    """One row a patch, then one row an overlap."""
+    """One row a patch, then one row an overlap, then one row a suggestion."""
     contacts, lengths = _known(design), Lengths.of(design.assembly)
     unit = lengths.unit
     pairs = len({patch.parts for patch in contacts.patches})
@@ -43,4 +43,10 @@ def render(design: Design) -> RenderableType:
                 "press fit" if overlap.mated else "collision",
             )
         items.append(overlaps)
+    if contacts.suggestions:
+        applied = "applied" if design.assembly.infer_fasteners else "not applied; [fasteners] infer = true does"
+        hints = Rows("part", "part", "suggests", "evidence", title=f"\nSuggestions ({applied})", keys=2)
+        for hint in contacts.suggestions:
+            hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.evidence)
+        items.append(hints)
     return Group(*items)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import multiprocessing
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 from kinform.contacts.broad import Pair, candidate_pairs
 from kinform.contacts.bvh import MeshStore
 from kinform.contacts.pair import PairContacts, pair_contacts
 from kinform.contacts.solids import SolidStore
+from kinform.fastening import suggest
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -90,12 +92,13 @@ def find(
             progress(count, len(wanted))
     if reuse is not None:
         done |= {pair: _taken(reuse, pair) for pair in known}
-    return Contacts(
+    found = Contacts(
         patches=tuple(patch for pair in tolerance for patch in done[pair].patches),
         interferences=tuple(found for pair in tolerance if (found := done[pair].interference) is not None),
         candidates=tuple(tolerance),
         tolerance=tolerance,
     )
+    return replace(found, suggestions=suggest(assembly, surfaces, found))
 
 
 def _taken(reuse: Contacts, pair: Pair) -> PairContacts:

@@ -32,8 +32,10 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     counts = np.maximum(np.ceil(_CELLS * size / size.max()), 1).astype(np.int64)
     first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
     keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
+    keep_a &= ((low_a <= high) & (high_a >= low)).all(axis=1)
     first, last = _cells(low_a[keep_a] - margin, high_a[keep_a] + margin, low, size, counts)
     keep_b = _occupied(_grid(first, last, counts), *_cells(low_b, high_b, low, size, counts))
+    keep_b &= ((low_b <= high) & (high_b >= low)).all(axis=1)
     return keep_a, keep_b
 
 

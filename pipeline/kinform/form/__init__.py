@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +30,17 @@ def load_meshes(
 
 
 def init_manifest(
-    paths: Sequence[str | Path], *, units: str, name: str | None = None, relative_to: str | Path = "."
+    paths: Sequence[str | Path],
+    *,
+    units: str,
+    name: str | None = None,
+    relative_to: str | Path = ".",
+    fastened: Callable[[Assembly], Sequence[tuple[Sequence[str], str]]] | None = None,
 ) -> str:
     """Text of a manifest for these meshes; see `kinform.form.single.init_manifest`."""
     from kinform.form import single
 
-    return single.init_manifest(paths, units=units, name=name, relative_to=relative_to)
+    return single.init_manifest(paths, units=units, name=name, relative_to=relative_to, fastened=fastened)
 
 
 def schema() -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -69,11 +69,17 @@ def load_meshes(
 
 
 def init_manifest(
-    paths: Sequence[str | Path], *, units: str, name: str | None = None, relative_to: str | Path = "."
+    paths: Sequence[str | Path],
+    *,
+    units: str,
+    name: str | None = None,
+    relative_to: str | Path = ".",
+    fastened: Callable[[Assembly], Sequence[tuple[Sequence[str], str]]] | None = None,
 ) -> str:
     """Text of a manifest for these meshes, whose paths are written relative to the folder `relative_to`.
 
-    Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every problem.
+    `fastened` names parts that are probably one body, with the evidence; they are written as comments, ready to
+    be taken over. Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every problem.
     """
     assembly = load_meshes(paths, units=units, name=name)
     where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
@@ -86,9 +92,14 @@ def init_manifest(
         if part.mesh.body is not None:
             lines.append(f"body = {_text(part.mesh.body)}")
         lines.append('# material = "steel"   # or density = 7850.0 (kg/m³)')
+    lines += ["", "# Parts that are fastened by means that the geometry does not show:"]
+    hints = [] if fastened is None else fastened(assembly)
+    for parts, evidence in hints or [([part.name for part in assembly.parts[:2]], "")]:
+        lines += [
+            "# [[group]]" + (f"   # {evidence}" if evidence else ""), f"# name = {_text(parts[0] if hints else 'frame')}",
+            f"# parts = [{', '.join(_text(part) for part in parts)}]",
+        ]  # fmt: skip
     lines += [
-        "", "# Parts that are fastened by means that the geometry does not show:",
-        "# [[group]]", "# name = \"frame\"", f"# parts = [{', '.join(_text(p.name) for p in assembly.parts[:2])}]",
         "", "# What the device is for:", "# [function]", "# mobility = 1", "",
     ]  # fmt: skip
     return "\n".join(lines)

@@ -32,9 +32,11 @@ TILTED = 4.0
 """So are axes within this many times the alignment."""
 APART = 2e-3
 """Gaps below this share of the size of the smaller body are as good as none."""
-STRAY = (2e-3, 2e-2)
+STRAY = (5e-4, 2e-2)
 """Share of the squared size of the smaller body below which a one-directional contact may be a stray: where
 it touches, and where it does not."""
+SPREAD = 0.15
+"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims."""
 
 
 def certainty(
@@ -100,7 +102,7 @@ def _stray(evidence: Evidence) -> str:
     area = sum(item.patch.area for item in evidence.items)
     least = max(FAR * evidence.contact, APART * evidence.size)
     apart = all(item.patch.gap > least for item in evidence.items)
-    if area >= STRAY[apart] * evidence.size**2:
+    if area >= STRAY[apart] * evidence.size**2 or evidence.frame.length > SPREAD * evidence.size:
         return ""
     what = "they pass each other without touching" if apart else "they touch"
     return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

@@ -13,6 +13,7 @@ from kinform.kinematics.constraints import assemble
 from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
+from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import body_twists, close
@@ -39,6 +40,7 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     """
     del surfaces  # the patches carry the analytic geometry already
     merger, extents = Merger(assembly), Extents(assembly)
+    fasten(assembly, contacts, merger)
     decided = _decide_all(assembly, contacts, merger, extents)
     bodies = merger.bodies()
     of_part = {part: body.name for body in bodies for part in body.parts}
@@ -58,6 +60,7 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
         angle, offset = misalignment(evidence, decision)
         if angle > 0.0 or offset > 0.0:
             misaligned.append((joint.name, angle, offset))
+    joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
     snapped, misfit = snap(joints, contacts.patches, extents.assembly)
     return _finish(assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly)
 

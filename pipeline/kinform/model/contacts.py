@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kinform.model.names import PartName
 
-__all__ = ["Contacts", "Interference", "Patch"]
+__all__ = ["Contacts", "Interference", "Patch", "Suggestion"]
 
 Array = NDArray[np.float64]
 
@@ -76,6 +76,25 @@ class Interference:
 
 
 @dataclass(frozen=True, eq=False)
+class Suggestion:
+    """What the geometry hints at and does not prove: that two parts are one body, or turn about an axis."""
+
+    parts: tuple[PartName, PartName]
+    kind: str
+    """holes, pressed or pocket: one body. rim or bolt circle: an axis of a contact of planes alone."""
+    evidence: str
+    axis: Array
+    """(3,) of the holes, of the fit, out of the pocket, or of the joint."""
+    point: Array
+    """(3,) m."""
+
+    @property
+    def fastens(self) -> bool:
+        """Whether it says that the parts are one body."""
+        return self.kind in ("holes", "pressed", "pocket")
+
+
+@dataclass(frozen=True, eq=False)
 class Contacts:
     """All contacts of an assembly."""
 
@@ -86,3 +105,5 @@ class Contacts:
     """Pairs that the broad phase kept, sorted."""
     tolerance: dict[tuple[PartName, PartName], float]
     """Contact tolerance used for each candidate pair (m)."""
+    suggestions: tuple[Suggestion, ...] = ()
+    """Sorted by part names, then kind. Nothing follows from them unless `[fasteners] infer` is set."""

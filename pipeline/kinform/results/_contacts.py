@@ -1,4 +1,4 @@
-"""`/contacts`: candidate pairs, patches with their samples, and interferences, in the world frame."""
+"""`/contacts`: candidate pairs, patches with their samples, interferences and suggestions, in the world frame."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from kinform.model.assembly import freeze
-from kinform.model.contacts import Contacts, Interference, Patch
+from kinform.model.contacts import Contacts, Interference, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.results._table import (
     flag,
@@ -45,6 +45,7 @@ _SAMPLES = {
 _INTERFERENCES = (
     _PARTS, real("volume", "m³"), real("depth", "m"), vector("place", "m"), flag("mated"), text("method"),
 )  # fmt: skip
+_SUGGESTIONS = (_PARTS, text("kind"), text("evidence"), vector("axis", "1"), vector("point", "m"))
 
 
 def write(group: h5py.Group, contacts: Contacts, fingerprints: Mapping[Pair, str]) -> None:
@@ -63,6 +64,7 @@ def write(group: h5py.Group, contacts: Contacts, fingerprints: Mapping[Pair, str
     write_records(group, "patches", _PATCHES, contacts.patches)
     _write_samples(group, contacts.patches)
     write_records(group, "interferences", _INTERFERENCES, contacts.interferences)
+    write_records(group, "suggestions", _SUGGESTIONS, contacts.suggestions)
 
 
 def read(group: h5py.Group) -> tuple[Contacts, dict[Pair, str]]:
@@ -77,6 +79,7 @@ def read(group: h5py.Group) -> tuple[Contacts, dict[Pair, str]]:
         interferences=read_records(group, "interferences", _INTERFERENCES, Interference),
         candidates=tuple(row["parts"] for row in pairs if row["candidate"]),
         tolerance={row["parts"]: row["tolerance"] for row in pairs if row["tolerance"] is not None},
+        suggestions=read_records(group, "suggestions", _SUGGESTIONS, Suggestion),
     )
     return contacts, {row["parts"]: row["fingerprint"] for row in pairs if row["fingerprint"] is not None}
 

@@ -25,7 +25,7 @@ Inputs = Mapping[str, str]
 _CODE = {
     "assembly": ("form",),
     "surfaces": ("surfaces",),
-    "contacts": ("contacts",),
+    "contacts": ("contacts", "fastening"),
     "joints": ("kinematics",),
     "mass": ("mass", "kinematics"),
     "simulation": ("simulation", "behaviour", "function", "kinematics"),

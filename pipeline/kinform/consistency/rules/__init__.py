@@ -45,7 +45,7 @@ from kinform.consistency.rules import (
     kf903_coupling_not_checked,
     kf904_range_not_checked,
     kf905_load_not_checked,
-    kf906_fasteners_not_inferred,
+    kf906_fasteners_inferred,
 )
 
 __all__ = ["RULES"]
@@ -92,5 +92,5 @@ RULES: tuple[Rule, ...] = (
     kf903_coupling_not_checked.RULE,
     kf904_range_not_checked.RULE,
     kf905_load_not_checked.RULE,
-    kf906_fasteners_not_inferred.RULE,
+    kf906_fasteners_inferred.RULE,
 )

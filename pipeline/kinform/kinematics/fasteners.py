@@ -1,0 +1,73 @@
+"""`[fasteners] infer`: suggestions applied, and every joint that follows from one labelled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinform.kinematics.bodies import Merger
+from kinform.kinematics.joints import stated_joint
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Suggestion
+from kinform.model.kinematics import Body, Joint
+from kinform.model.names import BodyName, PartName
+
+__all__ = ["INFERRED", "about_axes", "fasten", "labelled"]
+
+INFERRED = "inferred: "
+"""How the reason begins for which a suggestion made parts one body."""
+
+
+def fasten(assembly: Assembly, contacts: Contacts, merger: Merger) -> None:
+    """Make one body of the parts that suggestions hold together, where the manifest asks for it."""
+    if not assembly.infer_fasteners:
+        return
+    for hint in contacts.suggestions:
+        if hint.fastens:
+            names = "~".join(hint.parts)
+            merger.fuse(hint.parts[0], hint.parts[1], f"{INFERRED}{names}: {hint.evidence}")
+
+
+def about_axes(assembly: Assembly, contacts: Contacts, joints: list[Joint], bodies: tuple[Body, ...]) -> list[Joint]:
+    """Planar joints turned into revolute ones about the axis that rims or bolt circles suggest."""
+    if not assembly.infer_fasteners:
+        return joints
+    of_part: dict[PartName, BodyName] = {part: body.name for body in bodies for part in body.parts}
+    hints: dict[tuple[BodyName, BodyName], list[Suggestion]] = {}
+    for hint in contacts.suggestions:
+        first, second = sorted(of_part[part] for part in hint.parts)
+        if not hint.fastens and first != second:
+            hints.setdefault((first, second), []).append(hint)
+    return [_about(joint, hints.get(joint.bodies, [])) for joint in joints]
+
+
+def _about(joint: Joint, hints: list[Suggestion]) -> Joint:
+    if joint.type != "planar" or joint.status != "determined" or joint.axis is None or len(hints) != 1:
+        return joint
+    hint = hints[0]
+    if abs(float(hint.axis @ joint.axis)) < np.cos(1e-3):
+        return joint
+    turned = stated_joint(
+        joint.bodies, "revolute", joint.axis, hint.point, None, None,
+        evidence=hint.kind, reason=f"planar by contact; {hint.evidence} suggest the axis",
+    )  # fmt: skip
+    return replace(
+        turned,
+        name=joint.name,
+        evidence=(*joint.evidence, hint.kind),
+        patches=joint.patches,
+        singular_values=joint.singular_values,
+    )
+
+
+def labelled(joints: list[Joint], bodies: tuple[Body, ...]) -> list[Joint]:
+    """Joints of bodies that a suggestion put together, as inferred, with the suggestion as evidence."""
+    guessed = {body.name for body in bodies if any(reason.startswith(INFERRED) for reason in body.merged)}
+    return [_label(joint) if guessed.intersection(joint.bodies) else joint for joint in joints]
+
+
+def _label(joint: Joint) -> Joint:
+    status = "inferred" if joint.status == "determined" else joint.status
+    reason = f"{joint.reason}; its bodies are put together from suggestions"
+    return replace(joint, status=status, evidence=(*joint.evidence, "fasteners"), reason=reason)

@@ -1,0 +1,33 @@
+"""Boxes that come near each other, against every pair looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kinform.contacts.proximity import near_boxes
+
+
+def boxes(rng, count, spread, size):
+    low = rng.uniform(-spread, spread, (count, 3))
+    return low, low + rng.exponential(size, (count, 3))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.01, 0.3]), st.sampled_from([0.01, 0.2, 2.0]))
+def test_none_that_is_near_is_missed(seed, margin, size):
+    rng = np.random.default_rng(seed)
+    low_a, high_a = boxes(rng, 60, 1.0, size)
+    low_b, high_b = boxes(rng, 40, 1.0, size)
+    apart = np.maximum(low_a[:, None] - high_b[None], low_b[None] - high_a[:, None]).max(axis=2)
+    keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
+    assert keep_a[(apart <= margin).any(axis=1)].all()
+    assert keep_b[(apart <= margin).any(axis=0)].all()
+
+
+def test_what_is_far_is_left_out():
+    low = np.column_stack([np.linspace(0, 1, 101)[:-1], np.zeros(100), np.zeros(100)])
+    keep_a, keep_b = near_boxes(low, low + 0.01, low[:10], low[:10] + 0.01, 0.0)
+    assert keep_a.sum() < 20
+    assert keep_b.all()

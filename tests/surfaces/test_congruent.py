@@ -1,0 +1,80 @@
+"""Copies of a mesh in other poses."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+
+import manifold3d as m3
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from shapes import block, of_manifold, solid_rod
+
+from kinform.model.tolerances import Tolerances
+from kinform.surfaces import congruent, moved, recover
+
+
+def bracket(**keys):
+    solid = (
+        block(0.05, 0.03, 0.01)
+        - solid_rod(0.006, 0.02, 40).translate((0.012, 0.004, 0))
+        + solid_rod(0.004, 0.03, 32).translate((-0.015, -0.005, 0.01))
+    )
+    return named(of_manifold(solid, **keys))
+
+
+def named(mesh):
+    return replace(mesh, digest=hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest())
+
+
+def pose(seed):
+    X = np.eye(4)
+    X[:3, :3] = Rotation.random(random_state=seed).as_matrix()
+    X[:3, 3] = np.random.default_rng(seed).normal(size=3)
+    return X
+
+
+def by_digest(*meshes):
+    return {mesh.digest: mesh for mesh in meshes}
+
+
+@pytest.mark.parametrize("rounding", [False, True])
+def test_what_is_moved_is_what_would_be_found(rounding):
+    first, second = bracket(rounding=rounding), bracket(pose=pose(4), rounding=rounding)
+    meshes = by_digest(first, second)
+    ((digest, copy),) = congruent(meshes).items()
+    assert copy.of == min(meshes) != digest
+    given = moved(recover(meshes[copy.of], Tolerances()), digest, copy)
+    found = recover(meshes[digest], Tolerances())
+    assert given.digest == digest
+    assert len(given.surfaces) == len(found.surfaces)
+    for one in given.surfaces:
+        (other,) = (s for s in found.surfaces if np.array_equal(s.faces, one.faces))
+        assert one.kind == other.kind
+        assert np.linalg.norm(one.axis - other.axis) <= one.axis_uncertainty + other.axis_uncertainty + 1e-9
+        assert one.extent == pytest.approx(other.extent, abs=1e-6)
+        assert one.radius == pytest.approx(other.radius, abs=1e-6)
+        assert (given.labels[one.faces] == given.labels[one.faces[0]]).all()
+
+
+def test_the_mirror_image_and_another_size_are_no_copies():
+    first = bracket()
+    mirror = named(replace(first, vertices=first.vertices * [-1.0, 1.0, 1.0]))
+    larger = named(replace(first, vertices=first.vertices * 1.001))
+    bent = first.vertices.copy()
+    bent[0] += 1e-5
+    assert congruent(by_digest(first, mirror, larger, named(replace(first, vertices=bent)))) == {}
+
+
+def test_all_copies_are_of_the_lowest_digest():
+    meshes = by_digest(*(bracket(pose=pose(seed)) for seed in range(5)))
+    copies = congruent(meshes)
+    assert len(copies) == 4
+    assert {copy.of for copy in copies.values()} == {min(meshes)}
+
+
+def test_symmetric_shapes_are_copies_too():
+    cube = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True)))
+    turned = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True), pose=pose(2)))
+    assert len(congruent(by_digest(cube, turned))) == 1
