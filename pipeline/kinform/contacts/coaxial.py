@@ -14,7 +14,7 @@ from kinform.contacts.mates import EDGE, Array, Axes, Flags, Mate, box_centre, m
 from kinform.contacts.placed import NearSurfaces
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["cone_mates", "cylinder_mates"]
+__all__ = ["aligned", "cone_mates", "cylinder_mates"]
 
 _TILT = math.radians(5.0)
 """No clearance excuses a greater angle between two mating axes."""
@@ -41,7 +41,7 @@ def _engaged(a: NearSurfaces, b: NearSurfaces, row: int, column: int) -> tuple[f
     return float(high - low), origin + 0.5 * (low + high) * axis
 
 
-def _aligned(axes: Axes, clearance: float, length: float, tolerance: float, tolerances: Tolerances) -> bool:
+def aligned(axes: Axes, clearance: float, length: float, tolerance: float, tolerances: Tolerances) -> bool:
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
     tilt = tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
@@ -62,7 +62,7 @@ def cylinder_mates(
         if abs(gap) > limit or length <= 0.0:
             continue
         axes = mean_axes(a, b, row, column, middle)
-        if not _aligned(axes, gap, length, tolerance, tolerances):
+        if not aligned(axes, gap, length, tolerance, tolerances):
             continue
         centre, _ = box_centre(a, b, row, column)
         radius = 0.5 * (radii[0] + radii[1])
@@ -92,7 +92,7 @@ def cone_mates(
         reach = [-float(apex) * math.tan(angle) for apex, angle in zip(apexes, angles, strict=True)]
         side = float(a.sides[row])
         gap = (reach[1] - reach[0]) * math.cos(half) * side
-        if abs(gap) > EDGE * tolerance or not _aligned(axes, gap, length, tolerance, tolerances):
+        if abs(gap) > EDGE * tolerance or not aligned(axes, gap, length, tolerance, tolerances):
             continue
         middle_radius = 0.5 * (reach[0] + reach[1])
         centre, _ = box_centre(a, b, row, column)

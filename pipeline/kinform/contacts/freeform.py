@@ -8,15 +8,18 @@ uncertainty of its direction.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.mates import EDGE, box_centre
+from kinform.contacts.coaxial import aligned
+from kinform.contacts.mates import EDGE, box_centre, mean_axes
 from kinform.contacts.narrow import Probes, Verdict, join, verify
 from kinform.contacts.patches import classify_fit
 from kinform.contacts.placed import NearSurfaces, PlacedPart
 from kinform.model.contacts import Patch
+from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["freeform_patches"]
@@ -24,6 +27,10 @@ __all__ = ["freeform_patches"]
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+LOOSE = ("freeform", "torus", "revolution", "extrusion", "helicoid")
+"""Kinds whose contacts are found facet by facet."""
+_TURNING = ("torus", "revolution")
+"""Of these, those that turn on themselves about an axis."""
 _PROBES = 400
 """Greatest number of probes from either side of a pair of surfaces."""
 _FACING = 0.93
@@ -41,7 +48,7 @@ def freeform_patches(
     tolerances: Tolerances,
 ) -> list[Patch]:
     """Patches between freeform surfaces flagged in `overlap` (s, t), in the frame of the pair."""
-    rows, columns = near[0].of_kind("freeform"), near[1].of_kind("freeform")
+    rows, columns = near[0].of_kind(*LOOSE), near[1].of_kind(*LOOSE)
     found, probes, areas = [], [], []
     for i, j in np.argwhere(overlap[np.ix_(rows, columns)]):
         row, column = int(rows[i]), int(columns[j])
@@ -61,7 +68,8 @@ def freeform_patches(
         here = here[verdict.holds[here] & (np.abs(verdict.along_b - verdict.along_a)[here] <= EDGE * tolerance)]
         weights = shares[here - end + len(shares)]
         if weights.sum() >= _LEAST * tolerance**2:
-            patches.append(_patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance))
+            patch = _patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance)
+            patches.append(_turning(patch, near, (row, column), tolerance, tolerances))
     return patches
 
 
@@ -135,4 +143,35 @@ def _patch(
         uncertainty=(max(disagreement, math.radians(1.0)), chord),
         chord=chord,
         fit=classify_fit(gaps, chord, 0.0, tolerance),
+    )
+
+
+def _turning(
+    patch: Patch, near: tuple[NearSurfaces, NearSurfaces], rows: tuple[int, int], tolerance: float,
+    tolerances: Tolerances,
+) -> Patch:  # fmt: skip
+    """The patch as one of two surfaces that turn about one axis, where they do: its normals then leave that turn
+    exactly free."""
+    kinds = [KINDS[side.kinds[row]] for side, row in zip(near, rows, strict=True)]
+    if not set(kinds) <= set(_TURNING):
+        return patch
+    axes = mean_axes(*near, *rows, patch.point)
+    length = float(np.ptp(patch.points @ axes.axis))
+    if not aligned(axes, patch.gap, max(length, float(near[0].radii[rows[0]])), tolerance, tolerances):
+        return patch
+    velocity = np.cross(axes.axis, patch.points - axes.point)
+    speed = np.linalg.norm(velocity, axis=1)
+    along = velocity / np.maximum(speed, 1e-300)[:, None]
+    normals = patch.normals - np.einsum("ij,ij->i", patch.normals, along)[:, None] * along
+    return replace(
+        patch,
+        kind="torus" if kinds == ["torus", "torus"] else "revolution",
+        one_sided=False,
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+        axis=axes.axis,
+        point=axes.point,
+        radii=(float(near[0].radii[rows[0]]), float(near[1].radii[rows[1]])),
+        misalignment=axes.misalignment,
+        offset=axes.offset,
+        uncertainty=axes.uncertainty,
     )

@@ -21,7 +21,7 @@ __all__ = ["COAXIAL", "FAR", "Evidence", "Item", "gather"]
 
 Array = NDArray[np.float64]
 
-COAXIAL = ("cylinder", "cone")
+COAXIAL = ("cylinder", "cone", "torus", "revolution")
 GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
 """(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
 FAR = GAP_BANDS[1][0]

@@ -25,7 +25,8 @@ class Patch:
     surfaces: tuple[int, int]
     """Index of the surface in each part's MeshSurfaces."""
     kind: str
-    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. Else: other (planes
+    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus and revolution: of facets, so that the
+    common turn stays free. Else: other (planes
     that touch askew), freeform (normals of facets), point and line (higher pairs)."""
     one_sided: bool
     """True: analytic on one side, facets of no known surface on the other."""

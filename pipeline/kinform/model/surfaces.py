@@ -23,7 +23,8 @@ class Surface:
     plane: `axis` is the outward normal, `point` on it. cylinder: `axis`, `point` on the axis,
     `radius`. cone: `axis` from the apex into the nappe, `point` the apex, `half_angle`.
     sphere: `point` the centre, `radius`, `axis` zero. torus: `axis`, `point` the centre, `radius` of the
-    middle circle, `minor_radius` of the tube, `side` that of the tube. freeform: all zero.
+    middle circle, `minor_radius` of the tube, `side` that of the tube. revolution and helicoid: `axis`, `point`
+    on it, `radius` the mean distance from it. extrusion: `axis` its direction. freeform: all zero.
     """
 
     kind: str
@@ -53,6 +54,8 @@ class Surface:
     """Facet indices, ascending."""
     minor_radius: float = 0.0
     """m: of the tube of a torus, whose `radius` is that of the circle in the tube's middle."""
+    pitch: float = 0.0
+    """m a turn of a helicoid, right-handed positive."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,7 @@ __all__ = ["read", "write"]
 _MESHES = (text("digest"), real("noise", "m"), text("fingerprint"))
 _SURFACES = (
     integer("mesh"), text("kind"), vector("axis", "1"), vector("point", "m"), real("radius", "m"),
-    real("half_angle", "rad"), real("minor_radius", "m"), integer("side"), real("area", "m²"),
+    real("half_angle", "rad"), real("minor_radius", "m"), real("pitch", "m"), integer("side"), real("area", "m²"),
     pair("extent", real, ("extent_from", "extent_to"), "m"), real("sweep", "rad"), real("residual", "m"),
     real("axis_uncertainty", "rad"), real("point_uncertainty", "m"), real("chord", "m"),
 )  # fmt: skip

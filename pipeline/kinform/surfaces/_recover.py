@@ -6,6 +6,8 @@ neither the size of a part nor the order in its file changes what is found.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinform.model.assembly import Mesh, freeze
@@ -17,6 +19,7 @@ from kinform.surfaces.fabric import fabric, scatter
 from kinform.surfaces.kind import Batch
 from kinform.surfaces.merge import coincident_planes, coincident_regions
 from kinform.surfaces.partition import CURVED, Partition, partition
+from kinform.surfaces.sliding import sliding
 from kinform.surfaces.topology import Patchwork, Scale, build
 
 __all__ = ["recover"]
@@ -90,12 +93,28 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
         out.extend(curved(kind, batch, params[heads], side[heads], loosest, scale))
     planes = coincident_planes(work, parts.planes, scale)
     out.extend(flat(work, planes, scale))
+    rest = parts.freeform.copy()
+    for found in sliding(work, rest, scale):
+        chord = freeform(work, found.polygons, _inner(work, rest, found.polygons)).chord
+        out.append(replace(found, chord=chord))
+        rest[found.polygons] = -1
     inner = np.flatnonzero(work.smooth)
-    inner = inner[parts.freeform[work.a[inner]] == parts.freeform[work.b[inner]]]
-    inner = inner[parts.freeform[work.a[inner]] >= 0]
-    for number, patch in enumerate(_groups(parts.freeform)):
-        out.append(freeform(work, patch, inner[parts.freeform[work.a[inner]] == number]))
+    inner = inner[(rest[work.a[inner]] >= 0) & (rest[work.a[inner]] == rest[work.b[inner]])]
+    order = np.argsort(rest[work.a[inner]], kind="stable")
+    inner, owner = inner[order], rest[work.a[inner[order]]]
+    for patch in _groups(rest):
+        low, high = np.searchsorted(owner, [rest[patch[0]], rest[patch[0]] + 1])
+        out.append(freeform(work, patch, inner[low:high]))
     return out
+
+
+def _inner(work: Patchwork, number: Ints, polygons: Ints) -> Ints:
+    """Smooth edges inside the patch that these polygons are."""
+    _, edges = work.sides.expand(polygons)
+    edges = np.unique(edges)
+    edges = edges[work.smooth[edges]]
+    inside: Ints = edges[number[work.a[edges]] == number[work.b[edges]]]
+    return inside
 
 
 def _groups(numbers: Ints) -> list[Ints]:
@@ -146,6 +165,7 @@ def _surface(item: Description, area: float, faces: Ints, centre: Array, diagona
         radius=item.radius * diagonal,
         half_angle=item.half_angle,
         minor_radius=item.minor_radius * diagonal,
+        pitch=item.pitch * diagonal,
         side=item.side,
         area=area * diagonal**2,
         extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),

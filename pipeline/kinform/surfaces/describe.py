@@ -17,7 +17,7 @@ from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale
 
-__all__ = ["Description", "canonical", "curved", "flat", "freeform"]
+__all__ = ["COVERAGE", "Description", "canonical", "curved", "flat", "freeform"]
 
 COVERAGE = 3.0
 """Stated uncertainties are this many standard deviations."""
@@ -34,6 +34,7 @@ class Description:
     radius: float = 0.0
     half_angle: float = 0.0
     minor_radius: float = 0.0
+    pitch: float = 0.0
     side: int = 1
     extent: tuple[float, float] = (0.0, 0.0)
     sweep: float = 0.0
