@@ -75,11 +75,11 @@ def _thickness(vertices: Array) -> float:
 
 def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float) -> MeshHealth:
     corners = vertices[faces] - vertices.mean(axis=0)
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2)).max(axis=1)
-    slivers = int(np.count_nonzero(np.linalg.norm(doubled, axis=1) <= 1e-12 * longest**2))
-    ordered = np.sort(faces, axis=1)
-    duplicates = len(faces) - len(np.unique(ordered, axis=0))
+    sides = [corners[:, k] - corners[:, k - 1] for k in range(3)]
+    doubled = np.cross(sides[1], sides[2])
+    longest = np.max([np.einsum("ij,ij->i", side, side) for side in sides], axis=0)
+    slivers = int(np.count_nonzero(np.einsum("ij,ij->i", doubled, doubled) <= 1e-24 * longest**2))
+    duplicates = _duplicates(faces, len(vertices))
     watertight = edges.open == 0 and edges.overused == 0
     return MeshHealth(
         facets=len(raw.faces),
@@ -95,6 +95,18 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
         shells=int(shells_of(vertices, faces, edges).max()) + 1,
         weld=distance,
     )
+
+
+def _duplicates(faces: Ints, count: int) -> int:
+    """Facets of the same three vertices as another, whichever way round, less one of each."""
+    low = np.minimum(np.minimum(faces[:, 0], faces[:, 1]), faces[:, 2])
+    high = np.maximum(np.maximum(faces[:, 0], faces[:, 1]), faces[:, 2])
+    middle = faces.sum(axis=1) - low - high
+    pair = low * np.int64(count) + high
+    order = np.argsort(pair, kind="stable")
+    alike = np.flatnonzero(np.diff(pair[order]) == 0)
+    some = np.unique(np.r_[order[alike], order[alike + 1]])
+    return len(some) - len(np.unique(np.stack([pair[some], middle[some]], axis=1), axis=0))
 
 
 def _manifold_status(vertices: Array, faces: Ints) -> str:
