@@ -100,11 +100,10 @@ def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
     scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-300))
     scaled = matrix * scale[:, :, None] * scale[:, None, :]
     scaled = scaled + damping * np.eye(matrix.shape[1])
-    scaled = np.where(np.isfinite(scaled), scaled, 0.0)
-    values, vectors = np.linalg.eigh(scaled)
-    inverse = np.where(values > 1e-15, 1.0 / np.maximum(values, 1e-15), 0.0)
-    projected = np.einsum("gji,gj->gi", vectors, np.nan_to_num(right * scale)) * inverse
-    return np.asarray(np.einsum("gij,gj->gi", vectors, projected) * scale)
+    # the damping keeps every matrix regular that is finite
+    scaled[~np.isfinite(scaled).all(axis=(1, 2))] = np.eye(matrix.shape[1])
+    solution = np.linalg.solve(scaled, np.nan_to_num(right * scale)[:, :, None])[:, :, 0]
+    return np.asarray(solution * scale)
 
 
 def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:

@@ -50,6 +50,7 @@ class Batch:
         self._edges: tuple[Ints, Ints, Mask] | None = None
         self._corners: tuple[Ints, Ints] | None = None
         self._points: Array | None = None
+        self._inner: dict[int, tuple[Ints, Ints]] = {}
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -84,11 +85,13 @@ class Batch:
 
     def inner_vertices(self, least: int = 3) -> tuple[Ints, Ints]:
         """(region, vertex) of vertices that at least so many of the region's polygons share."""
-        owner, vertex = self.corners
-        total = np.int64(max(len(self.patchwork.vertices), 1))
-        key, times = np.unique(self.region[owner] * total + vertex, return_counts=True)
-        key = key[times >= least]
-        return key // total, key % total
+        if least not in self._inner:
+            owner, vertex = self.corners
+            total = np.int64(max(len(self.patchwork.vertices), 1))
+            key, times = np.unique(self.region[owner] * total + vertex, return_counts=True)
+            key = key[times >= least]
+            self._inner[least] = key // total, key % total
+        return self._inner[least]
 
     def select(self, keep: Mask) -> Batch:
         """The batch without some of its pairs."""

@@ -32,7 +32,7 @@ LEAST_BLEND = 8
 WORTH = 2e-3
 """Share of the mesh's area that a round of searching must explain for another one to follow."""
 
-GRAIN = 3e-5
+GRAIN = 1e-4
 """Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
 own stays freeform."""
 
@@ -200,7 +200,7 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     bent = curvature(work, link)
     like = link.alike & continues(work, bent, link)
     simple = tuple(kind for kind in CURVED if not kind.saddle)
-    for kinds, joined, both in ((CURVED, like, True), (simple, link.alike, False), (simple, like, False)):
+    for kinds, joined, both in ((CURVED, like, True), (simple, link.alike, False)):
         pieces = _blends(work, link, joined, bent, free) if both else _pieces(work, link, joined, free)
         found = [absorb(ground, item) for item in _explained(ground, *pieces, bent, kinds)]
         _take(regions, _choose(found, work, free), free)
