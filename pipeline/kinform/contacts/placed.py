@@ -106,6 +106,9 @@ def near_facets(placed: PlacedPart, low: Array, high: Array) -> tuple[Ints, Arra
     return some, low_f, high_f
 
 
+MOST = 3000
+"""Surfaces of one part that a pair looks at."""
+
 _BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
 """One for each side of a box that a vertex can lie beyond."""
 
@@ -155,6 +158,13 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
     order = np.argsort(labels, kind="stable")
     near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
     ids, starts = np.unique(labels, return_index=True)
+    if len(ids) > MOST:
+        # a crumpled mesh, every facet a surface of its own: the largest decide, and memory stays bounded
+        areas = np.array([placed.surfaces.surfaces[i].area for i in ids])
+        largest = np.sort(np.lexsort((ids, -areas))[:MOST])
+        keep = np.isin(labels, ids[largest])
+        near, labels, low_f, high_f = near[keep], labels[keep], low_f[keep], high_f[keep]
+        ids, starts = np.unique(labels, return_index=True)
     chosen = [placed.surfaces.surfaces[i] for i in ids]
     R_FP, p_FP = placed.X_FP[:3, :3], placed.X_FP[:3, 3]
 
