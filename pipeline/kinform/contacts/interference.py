@@ -84,7 +84,7 @@ def find_interference(
         floor=_EXACT * tolerance,
         tolerance=tolerance,
     )
-    pieces = solids.overlap(a, b)
+    pieces = solids.overlap(a, b, allowance.floor**3)
     if pieces is None:
         return _by_facets(a, b, allowance)
     return _by_volume(a, b, pieces, allowance)

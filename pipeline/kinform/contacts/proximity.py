@@ -16,7 +16,7 @@ Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 _CELLS = 48
-"""Cells along the longest side of the common box."""
+"""Most cells along the longest side of the common box; for few boxes fewer do."""
 
 
 def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:
@@ -29,7 +29,8 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     low = np.maximum(low_a.min(axis=0), low_b.min(axis=0)) - margin
     high = np.minimum(high_a.max(axis=0), high_b.max(axis=0)) + margin
     size = np.maximum(high - low, 1e-300)
-    counts = np.maximum(np.ceil(_CELLS * size / size.max()), 1).astype(np.int64)
+    finest = min(_CELLS, 8 + int(np.sqrt(len(low_a) + len(low_b)) / 4))
+    counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
     keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
     keep_a &= ((low_a <= high) & (high_a >= low)).all(axis=1)

@@ -52,8 +52,8 @@ class SolidStore:
 
     solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
 
-    def overlap(self, a: PlacedPart, b: PlacedPart) -> list[Piece] | None:
-        """Pieces of the overlap, largest first; None where a mesh is not a manifold."""
+    def overlap(self, a: PlacedPart, b: PlacedPart, least: float) -> list[Piece] | None:
+        """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
         first, second = self._solid(a.index.mesh, 0), self._solid(b.index.mesh, 1)
         if first is None or second is None:
             return None
@@ -64,7 +64,7 @@ class SolidStore:
         pieces = [
             _piece(piece, middle_a, scale_a)
             for piece in (first ^ second.transform(place)).decompose()
-            if not piece.is_empty()
+            if not piece.is_empty() and piece.volume() * scale_a**3 > 0.5 * least
         ]
         return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
 
