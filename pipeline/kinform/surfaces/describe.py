@@ -91,7 +91,9 @@ def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
 def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
     """A patch that no analytic surface explains; `numbers` are its inner edges."""
     a, b, length = work.a[numbers], work.b[numbers], np.maximum(work.length[numbers], 1e-300)
-    width = np.minimum(work.area[a], work.area[b]) / length
+    area = np.minimum(work.area[a], work.area[b])
+    # a short common edge says nothing of how far the two polygons reach from it
+    width = np.minimum(area / length, 2 * np.sqrt(area))
     chord = float((width * work.angle[numbers]).max() / 8) if len(numbers) else 0.0
     return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
 

@@ -32,6 +32,9 @@ LEAST_BLEND = 8
 WORTH = 2e-3
 """Share of the mesh's area that a round of searching must explain for another one to follow."""
 
+BROAD = 2e-2
+"""Share of the mesh's area above which a polygon is a plane of its own, whatever is beside it."""
+
 GRAIN = 1e-4
 """Share of the mesh's area that the two polygons at a seed have at least: finer detail that is no piece of its
 own stays freeform."""
@@ -250,7 +253,7 @@ def _remainder(work: Patchwork, left: Mask) -> tuple[Ints, Ints]:
     a, b = work.a[edges], work.b[edges]
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
-    dominant = work.area > 3 * nearby / np.maximum(neighbours, 1)
+    dominant = (work.area > 3 * nearby / np.maximum(neighbours, 1)) | (work.area > BROAD * work.area.sum())
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
     loose = left & (size >= 4) & (neighbours >= 1) & ~dominant
