@@ -2,35 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from assemblies import assembly
-from solids import box, part, random_pose, rod
+from fastened import CORNERS, drilled, found, kinds
+from solids import box, random_pose, rod
 
-from kinform import contacts, kinematics, surfaces
-
-CORNERS = [(12, 8), (-12, 8), (-12, -8), (12, -8)]
 POSES = [np.eye(4), random_pose(np.random.default_rng(3))]
-
-
-def found(X, infer=False, **solids):
-    made = replace(assembly(*(part(name, solid, X) for name, solid in solids.items())), infer_fasteners=infer)
-    recovered = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
-    touching = contacts.find(made, recovered)
-    return touching.suggestions, kinematics.derive(made, recovered, touching)
-
-
-def drilled(z0, z1, places, radius=2.0):
-    plate = box(-20, 20, -15, 15, z0, z1)
-    for x, y in places:
-        plate = plate - rod(radius, z0 - 1, z1 + 1).translate((x, y, 0))
-    return plate
-
-
-def kinds(suggestions):
-    return [(hint.parts, hint.kind) for hint in suggestions]
 
 
 @pytest.mark.parametrize("X", POSES)

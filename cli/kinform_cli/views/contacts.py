@@ -44,9 +44,11 @@ def render(design: Design) -> RenderableType:
             )
         items.append(overlaps)
     if contacts.suggestions:
-        applied = "applied" if design.assembly.infer_fasteners else "not applied; [fasteners] infer = true does"
-        hints = Rows("part", "part", "suggests", "evidence", title=f"\nSuggestions ({applied})", keys=2)
+        applied = "not applied; [fasteners] infer = true does"
+        if design.assembly.infer_fasteners:
+            applied = "applied, except where contact decides or a joint is stated"
+        hints = Rows("part", "part", "suggests", "confidence", "evidence", title=f"\nSuggestions ({applied})", keys=2)
         for hint in contacts.suggestions:
-            hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.evidence)
+            hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.confidence, hint.evidence)
         items.append(hints)
     return Group(*items)

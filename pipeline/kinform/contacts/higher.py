@@ -1,4 +1,4 @@
-"""Point and line contacts, where two parts share no surface: a ball or a roller on a plane.
+"""Point and line contacts, where two parts share no surface: a ball or a roller on a plane, on another or in a bore.
 
 Such a higher pair has one row a point, with the normal of the plane. It is looked for only between parts
 that have no patch at all: beside a real patch, surfaces that merely pass close to each other are many, and
@@ -18,6 +18,7 @@ from kinform.contacts.mates import box_overlap
 from kinform.contacts.narrow import Probes, join, verify
 from kinform.contacts.patches import classify_fit
 from kinform.contacts.placed import NearSurfaces, PlacedPart
+from kinform.contacts.rounds import meeting
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
@@ -30,20 +31,22 @@ _TOUCH = 0.12
 """Share of the contact tolerance within which a point or a line touches: the band of full weight."""
 _ZONE = 0.01
 """Share of the contact tolerance that bounds the zone whose area is stated."""
+_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder")]
 _ALONG = 17
 """Samples along a line."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Touch:
-    """A ball or a roller over a plane. `points` (n, 3) on the line or at the point; `normal` of the plane."""
+    """A ball or a roller over a plane, or over another. `points` (n, 3) on the line or at the point; `normals` (n, 3)
+    from the other surface towards the ball or the roller."""
 
     rows: tuple[int, int]
     first: bool
     """The round surface is a's."""
     kind: str
     points: Array
-    normal: Array
+    normals: Array
     gaps: Array
     axis: Array
     radius: float
@@ -69,6 +72,12 @@ def higher_pairs(
         for row in convex:
             for column in np.nonzero(flags[row] & (flat_side.kinds == KINDS.index("plane")))[0]:
                 touch = _touch(round_side, flat_side, int(row), int(column), first, tolerance, tolerances)
+                if touch is not None:
+                    touches.append(touch)
+            for column in np.nonzero(flags[row] & np.isin(flat_side.kinds, _ROUND))[0]:
+                if not first and round_side.kinds[row] == flat_side.kinds[column]:
+                    continue
+                touch = _round_touch(round_side, flat_side, int(row), int(column), first, tolerance, tolerances)
                 if touch is not None:
                     touches.append(touch)
     if not touches:
@@ -115,7 +124,7 @@ def _touch(
         first=first,
         kind="line" if kind == "cylinder" else "point",
         points=centres[close] - (radius + 0.5 * gaps[close])[:, None] * normal,
-        normal=normal,
+        normals=np.tile(normal, (int(close.sum()), 1)),
         gaps=gaps[close],
         axis=ball.axes[row],
         radius=radius,
@@ -126,9 +135,43 @@ def _touch(
     )
 
 
+def _round_touch(
+    ball: NearSurfaces,
+    other: NearSurfaces,
+    row: int,
+    column: int,
+    first: bool,
+    tolerance: float,
+    tolerances: Tolerances,
+) -> _Touch | None:
+    """The touch of a convex sphere or cylinder with another round surface, if they come close enough."""
+    turns = (float(ball.axis_uncertainty[row]), float(other.axis_uncertainty[column]))
+    found = meeting(ball, other, row, column, tolerances.alignment + sum(turns))
+    if found is None:
+        return None
+    shift = float(ball.point_uncertainty[row] + other.point_uncertainty[column])
+    close = np.abs(found.gaps) <= _TOUCH * tolerance
+    if shift > _TOUCH * tolerance or not close.any():
+        return None
+    return _Touch(
+        rows=(row, column) if first else (column, row),
+        first=first,
+        kind="line" if found.line and close.sum() > 1 else "point",
+        points=found.points[close],
+        normals=found.normals[close],
+        gaps=found.gaps[close],
+        axis=ball.axes[row] if KINDS[ball.kinds[row]] == "cylinder" else other.axes[column],
+        radius=float(ball.radii[row]),
+        spacing=found.spacing,
+        slack=float(ball.slacks[row] + other.slacks[column]),
+        uncertainty=(max(turns), shift),
+        chord=float(ball.chords[row] + other.chords[column]),
+    )
+
+
 def _normals(touch: _Touch) -> Array:
-    """(n, 3) out of a: against the plane's normal where the round surface is a's."""
-    return np.tile(-touch.normal if touch.first else touch.normal, (len(touch.points), 1))
+    """(n, 3) out of a."""
+    return -touch.normals if touch.first else touch.normals
 
 
 def _probes(touch: _Touch, near: tuple[NearSurfaces, NearSurfaces], tolerance: float) -> Probes:

@@ -4,5 +4,5 @@ from kinform.fastening.suggest import fastened, suggest
 
 __all__ = ["CODE_VERSION", "fastened", "suggest"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2
 """Bumped when results change."""

@@ -11,8 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.fastening.bores import Cylinders, cylinders_of, lined_up, occupied
-from kinform.model.assembly import Assembly, freeze
+from kinform.fastening.bores import COAXIAL, Cylinders, Holes, aligned_holes, cylinders_of, occupied, together
+from kinform.fastening.rims import rims_of
+from kinform.model.assembly import Assembly, Part, freeze
 from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
@@ -30,50 +31,61 @@ WALL = 0.02
 """Cosine below which a face is parallel to a direction."""
 
 
+class _Scene:
+    """Parts and their cylinders; which parts are near each other."""
+
+    def __init__(self, assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts):
+        self.parts: dict[PartName, Part] = {part.name: part for part in assembly.parts}
+        self.surfaces = surfaces
+        self.cylinders = cylinders_of(assembly, surfaces)
+        self._near: dict[PartName, set[PartName]] = defaultdict(set)
+        for first, second in contacts.candidates:
+            self._near[first].add(second)
+            self._near[second].add(first)
+
+    def beside(self, pair: Pair) -> Cylinders:
+        """Cylinders of the other parts that come near one of the pair."""
+        names = (self._near[pair[0]] | self._near[pair[1]]) - set(pair)
+        return together(self.cylinders[name] for name in sorted(names))
+
+    def rims(self, name: PartName, plane: int) -> list[tuple[Array, float]]:
+        """Rims of a plane surface of a part."""
+        part = self.parts[name]
+        assert part.mesh is not None
+        return rims_of(part, self.surfaces[part.mesh.digest], plane)
+
+
 def suggest(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
 ) -> tuple[Suggestion, ...]:  # fmt: skip
     """Suggestions for all pairs in contact, sorted by part names, then kind."""
     if not contacts.patches:
         return ()
-    cylinders = cylinders_of(assembly, surfaces)
+    scene = _Scene(assembly, surfaces, contacts)
     of_pair: dict[Pair, list[Patch]] = defaultdict(list)
     for patch in contacts.patches:
         of_pair[patch.parts].append(patch)
     found: list[Suggestion] = []
     for pair in sorted(of_pair):
-        found += _of_pair(pair, of_pair[pair], cylinders, contacts.tolerance[pair])
+        found += _of_pair(pair, of_pair[pair], scene, contacts.tolerance[pair])
     return tuple(sorted(found, key=lambda hint: (hint.parts, hint.kind)))
 
 
-def _of_pair(
-    pair: Pair, patches: list[Patch], cylinders: Mapping[PartName, Cylinders], tolerance: float
-) -> list[Suggestion]:  # fmt: skip
+def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) -> list[Suggestion]:
     firm = [patch for patch in patches if not patch.one_sided]
-    out = _pressed(pair, firm)
-    planes = [patch for patch in firm if patch.kind == "plane"]
+    planes = sorted((patch for patch in firm if patch.kind == "plane"), key=lambda patch: -patch.area)
+    out = _pressed(pair, firm) + _pocket(pair, firm)
     if not planes:
         return out
-    largest = max(planes, key=lambda patch: patch.area)
-    a, b = cylinders[pair[0]], cylinders[pair[1]]
-    others = [cylinders[name] for name in sorted(cylinders) if name not in pair]
-    pattern = lined_up(a, b, largest, tolerance)
-    holes = [
-        (i, j, place)
-        for i, j, place in pattern
-        if a.sides[i] < 0 and b.sides[j] < 0
-        and not occupied((a.axes[i], place, max(float(a.radii[i]), float(b.radii[j]))), others, tolerance)
-    ]  # fmt: skip
-    holes = _distinct(holes, tolerance)
-    pivoted = any(patch.kind == "cylinder" and abs(float(patch.axis @ largest.axis)) > 1 - WALL for patch in firm)
-    if len(holes) >= 2 and not pivoted:
-        middle = np.mean([place for _, _, place in holes], axis=0)
-        out.append(_hint(pair, "holes", f"{len(holes)} aligned empty holes", largest.axis, middle))
-    out += _pocket(pair, firm)
-    if all(patch.kind == "plane" and abs(patch.axis @ largest.axis) > 0.9999 for patch in patches):
-        area = sum(patch.area for patch in planes)
-        if area >= LEAST_AREA * tolerance**2:
-            out += _axis(pair, pattern, holes, a, b, largest, tolerance)
+    holes = _holes(pair, planes, patches, scene, tolerance)
+    if len(holes.radii) >= 2:
+        text = f"{len(holes.radii)} aligned empty holes"
+        out.append(_hint(pair, "holes", text, holes.axes[0], holes.places.mean(axis=0)))
+        return out
+    largest = planes[0]
+    flat = all(patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > 0.9999 for patch in patches)
+    if flat and sum(patch.area for patch in planes) >= LEAST_AREA * tolerance**2:
+        out += _axis(pair, planes, scene, tolerance)
     return out
 
 
@@ -84,13 +96,25 @@ def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Su
     return Suggestion(pair, kind, evidence, np.asarray(freeze(turned + 0.0)), np.asarray(freeze(point + 0.0)))
 
 
-def _distinct(holes: list[tuple[int, int, Array]], tolerance: float) -> list[tuple[int, int, Array]]:
-    """One for each place: counterbores and steps stand on one axis."""
-    out: list[tuple[int, int, Array]] = []
-    for hole in holes:
-        if all(np.linalg.norm(hole[2] - other[2]) > tolerance for other in out):
-            out.append(hole)
-    return out
+def _holes(pair: Pair, planes: list[Patch], patches: list[Patch], scene: _Scene, tolerance: float) -> Holes:
+    """Aligned holes with nothing in them, across planes that do not turn on a single journal."""
+    fixed = [plane for plane in planes if not _pivoted(plane, patches, tolerance)]
+    holes = aligned_holes(scene.cylinders[pair[0]], scene.cylinders[pair[1]], fixed, tolerance)
+    if not len(holes.radii):
+        return holes
+    empty = ~occupied(holes, scene.beside(pair), tolerance)
+    return Holes(holes.axes[empty], holes.places[empty], holes.radii[empty])
+
+
+def _pivoted(plane: Patch, patches: list[Patch], tolerance: float) -> bool:
+    """Whether the parts share one journal that stands on the plane: they may be meant to turn. Two journals side
+    by side are dowels."""
+    upright = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ plane.axis)) > 1 - WALL]
+    if not upright:
+        return False
+    offset = np.array([p.point for p in upright]) - upright[0].point
+    aside = offset - (offset @ plane.axis)[:, None] * plane.axis
+    return bool(np.linalg.norm(aside, axis=1).max() <= tolerance)
 
 
 def _pressed(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
@@ -115,7 +139,7 @@ def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
                 walls.append(patch.axis[None])
             elif patch.kind == "cylinder" and abs(float(patch.axis @ out)) > 1 - WALL:
                 continue
-            elif patch.kind != "plane" or float(patch.axis @ out) < 1 - WALL:
+            elif patch.kind != "plane" or float(patch.axis @ out) < 0.0:
                 break
         else:
             if walls and _surrounded(np.concatenate(walls), out):
@@ -134,26 +158,37 @@ def _surrounded(normals: Array, out: Array) -> bool:
     return bool(gaps.max() < math.pi - 0.05)
 
 
-def _axis(
-    pair: Pair, pattern: list[tuple[int, int, Array]], holes: list[tuple[int, int, Array]],
-    a: Cylinders, b: Cylinders, plane: Patch, tolerance: float,
-) -> list[Suggestion]:  # fmt: skip
-    """The one axis about which both parts have round rims, or patterns of holes about one centre."""
-    places = _distinct(pattern, tolerance)
-    if len(places) == 1:
-        i, j, place = places[0]
-        sizes = f"{2e3 * a.radii[i]:.4g} and {2e3 * b.radii[j]:.4g} mm"
-        return [_hint(pair, "rim", f"coaxial rims of diameter {sizes}", plane.axis, place)]
-    if len(places) > 1:
-        return []
-    centres = [_bolt_circle(side, plane, tolerance) for side in (a, b)]
-    first, second = centres
-    if first is None or second is None or holes:
-        return []
-    if np.linalg.norm(first[0] - second[0]) > 0.2 * tolerance:
+def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> list[Suggestion]:
+    """The one axis about which both parts have rims at their contact, or patterns of holes about one centre."""
+    near, normal = COAXIAL * tolerance, planes[0].axis
+    met: list[tuple[Array, float, float]] = []
+    for patch in planes:
+        rims = [scene.rims(name, index) for name, index in zip(pair, patch.surfaces, strict=True)]
+        for centre, radius in rims[0]:
+            for other, size in rims[1]:
+                if _aside(centre, other, normal) <= near:
+                    met.append((centre, radius, size))
+    if met:
+        centre, radius, size = max(met, key=lambda rim: rim[1:])
+        if any(_aside(centre, other, normal) > tolerance for other, _, _ in met):
+            return []
+        # a shaft that stands there has contacts of its own, which say more
+        rim = Holes(normal[None], centre[None], np.array([max(radius, size)]))
+        if occupied(rim, scene.beside(pair), tolerance).any():
+            return []
+        text = f"coaxial rims of diameter {2e3 * radius:.4g} and {2e3 * size:.4g} mm"
+        return [_hint(pair, "rim", text, normal, centre)]
+    first, second = (_bolt_circle(scene.cylinders[name], planes[0], tolerance) for name in pair)
+    if first is None or second is None or np.linalg.norm(first[0] - second[0]) > near:
         return []
     text = f"bolt circles of {first[1]} and {second[1]} holes about one centre"
-    return [_hint(pair, "bolt circle", text, plane.axis, first[0])]
+    return [_hint(pair, "bolt circle", text, normal, first[0])]
+
+
+def _aside(place: Array, other: Array, axis: Array) -> float:
+    """Distance of two places across an axis."""
+    offset = other - place
+    return float(np.linalg.norm(offset - float(offset @ axis) * axis))
 
 
 def _bolt_circle(side: Cylinders, plane: Patch, tolerance: float) -> tuple[Array, int] | None:

@@ -93,16 +93,27 @@ def init_manifest(
             lines.append(f"body = {_text(part.mesh.body)}")
         lines.append('# material = "steel"   # or density = 7850.0 (kg/m³)')
     lines += ["", "# Parts that are fastened by means that the geometry does not show:"]
+    taken = {str(part.name) for part in assembly.parts}
     hints = [] if fastened is None else fastened(assembly)
     for parts, evidence in hints or [([part.name for part in assembly.parts[:2]], "")]:
+        label = _free(f"{parts[0]}_body" if hints else "frame", taken)
         lines += [
-            "# [[group]]" + (f"   # {evidence}" if evidence else ""), f"# name = {_text(parts[0] if hints else 'frame')}",
+            "# [[group]]" + (f"   # {_text(evidence)[1:-1]}" if evidence else ""), f"# name = {_text(label)}",
             f"# parts = [{', '.join(_text(part) for part in parts)}]",
         ]  # fmt: skip
     lines += [
         "", "# What the device is for:", "# [function]", "# mobility = 1", "",
     ]  # fmt: skip
     return "\n".join(lines)
+
+
+def _free(name: str, taken: set[str]) -> str:
+    """The name, numbered if it is taken; taken from now on."""
+    found, number = name, 2
+    while found in taken:
+        found, number = f"{name}{number}", number + 1
+    taken.add(found)
+    return found
 
 
 def _doubts(assembly: Assembly, units: str) -> list[str]:

@@ -40,8 +40,9 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     """
     del surfaces  # the patches carry the analytic geometry already
     merger, extents = Merger(assembly), Extents(assembly)
-    fasten(assembly, contacts, merger)
     decided = _decide_all(assembly, contacts, merger, extents)
+    if fasten(assembly, contacts, merger):
+        decided = _decide_all(assembly, contacts, merger, extents)
     bodies = merger.bodies()
     of_part = {part: body.name for body in bodies for part in body.parts}
     stated = _stated(assembly, of_part)

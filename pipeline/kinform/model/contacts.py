@@ -94,6 +94,11 @@ class Suggestion:
         """Whether it says that the parts are one body."""
         return self.kind in ("holes", "pressed", "pocket")
 
+    @property
+    def confidence(self) -> str:
+        """fair or low: a nominal overlap may be a journal drawn too large, and rims lie beside true axes too."""
+        return "fair" if self.kind in ("holes", "pocket") else "low"
+
 
 @dataclass(frozen=True, eq=False)
 class Contacts:

@@ -140,7 +140,8 @@ def _contacts(design: Design) -> dict[str, Any]:
         "patches": [{"index": i} | _fields(patch, *of_patch) for i, patch in enumerate(contacts.patches)],
         "interferences": [_fields(overlap, *of_overlap) for overlap in contacts.interferences],
         "suggestions": [
-            _fields(hint, "parts", "kind", "fastens", "evidence", "axis", "point") for hint in contacts.suggestions
+            _fields(hint, "parts", "kind", "fastens", "confidence", "evidence", "axis", "point")
+            for hint in contacts.suggestions
         ],
         "pairs": [{"parts": pair, "tolerance": contacts.tolerance.get(pair)} for pair in contacts.candidates],
     }

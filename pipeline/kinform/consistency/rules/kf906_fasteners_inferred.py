@@ -1,7 +1,8 @@
-"""The manifest asks kinform to infer fasteners, and suggestions were applied.
+"""The manifest asks kinform to infer fasteners, and a suggestion was applied, or contradicts what is stated.
 
 Parts that suggestions hold together count as one body, and a contact of planes alone with one round rim on both
-sides turns about it.
+sides turns about it. What contact decides by itself is not reported here. Where an assumption or the function
+states a joint that moves between two bodies, that outweighs the suggestion.
 
 Why it matters: a suggestion is no proof. Holes line up across true joints too, and rims lie beside the axis of
 a joint as often as on it.
@@ -16,28 +17,45 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency._words import quoted
+from kinform.model.contacts import Suggestion
+from kinform.model.kinematics import Kinematics
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
-    """Suggestions that were applied."""
+    """Suggestions that were applied, and those that were not because something else is stated."""
     if not context.assembly.infer_fasteners:
         return skipped("the manifest does not ask to infer fasteners")
-    contacts = context.contacts
+    contacts, kinematics = context.contacts, context.kinematics
     if isinstance(contacts, Outcome):
         return contacts
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    said = ((hint, _became(hint, kinematics)) for hint in contacts.suggestions)
     return decided(
         RULE.finding(
             hint.parts,
-            f"{quoted(hint.parts)} are taken for one body: {hint.evidence}"
-            if hint.fastens
-            else f"{quoted(hint.parts)} may turn about an axis: {hint.evidence}",
+            f"{quoted(hint.parts)} {became}: {hint.evidence} ({hint.confidence} confidence)",
             declared=context.assembly.source,
             remedy="Write it as [[group]] or [[assume]] if it is true.",
         )
-        for hint in contacts.suggestions
+        for hint, became in said
+        if became
     )
+
+
+def _became(hint: Suggestion, kinematics: Kinematics) -> str:
+    """What followed from a suggestion, or nothing."""
+    first, second = (kinematics.body_of(part) for part in hint.parts)
+    if first is second:
+        applied = any(f"{'~'.join(hint.parts)}: {hint.evidence}" in reason for reason in first.merged)
+        return "are taken for one body" if hint.fastens and applied else ""
+    if hint.fastens:
+        return "are not made one body, because a joint is stated between them"
+    pair = {first.name, second.name}
+    turned = any(set(joint.bodies) == pair and hint.kind in joint.evidence for joint in kinematics.joints)
+    return "are taken to turn about an axis" if turned else ""
 
 
 RULE = Rule("KF906", "fasteners-inferred", "note", __doc__, check)

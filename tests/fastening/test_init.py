@@ -1,0 +1,98 @@
+"""`kinform init` proposes groups that can be taken over by removing the comment signs; `show` lists suggestions."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tomllib
+
+import numpy as np
+import pytest
+import trimesh
+from commands import environment
+from fastened import CORNERS, drilled
+from solids import box
+
+SOLIDS = {
+    "servo": box(-10, 10, -6, 6, 0, 20),
+    "bracket": box(-30, 30, -15, 15, -4, 12) - box(-10, 10, -6, 6, 0, 30),
+    "servo_body": drilled(30, 35, CORNERS),
+    'a "quoted" plate': drilled(35, 40, CORNERS),
+}
+
+
+def written(folder):
+    names = []
+    for name, solid in SOLIDS.items():
+        mesh = solid.to_mesh64()
+        vertices = np.asarray(mesh.vert_properties)[:, :3]
+        trimesh.Trimesh(vertices, np.asarray(mesh.tri_verts), process=False).export(folder / f"{name}.stl")
+        names.append(f"{name}.stl")
+    return names
+
+
+def kinform(folder, *arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "kinform_cli", *map(str, arguments)],
+        cwd=folder, env=environment(), capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+
+
+def uncommented(text):
+    return re.sub(r"^# (\[\[group\]\]|name = |parts = )", r"\1", text, flags=re.MULTILINE)
+
+
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("begun")
+    ran = kinform(folder, "init", *written(folder), "--units", "mm", "-o", "m.toml")
+    assert ran.returncode == 0, ran.stderr
+    return folder, ran
+
+
+def test_proposed_groups_are_ready_to_be_taken_over(begun):
+    folder, _ = begun
+    text = (folder / "m.toml").read_text()
+    assert text.count("# [[group]]") == 2
+    assert "4 aligned empty holes" in text
+    assert "in a pocket that it can leave one way only" in text
+    (folder / "taken.toml").write_text(uncommented(text))
+    for steps in (["import", "taken.toml"], ["contacts", "t.h5"], ["joints", "t.h5"]):
+        ran = kinform(folder, *steps, "-o", "t.h5")
+        assert ran.returncode == 0, ran.stderr
+    shown = json.loads(kinform(folder, "show", "t.h5", "joints", "--format", "json").stdout)
+    assert sorted(sorted(body["parts"]) for body in shown["bodies"]) == [
+        ['a "quoted" plate', "servo_body"],
+        ["bracket", "servo"],
+    ]
+
+
+def test_nothing_but_comments_is_proposed(begun):
+    folder, _ = begun
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "mm", "--no-suggest")
+    plain = [line for line in ran.stdout.splitlines() if not line.startswith("#")]
+    kept = [line for line in (folder / "m.toml").read_text().splitlines() if not line.startswith("#")]
+    assert kept == plain
+
+
+def test_the_manifest_alone_goes_to_stdout(begun):
+    folder, _ = begun
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "mm")
+    assert tomllib.loads(ran.stdout)["schema"] == 1
+    assert len(tomllib.loads(ran.stdout)["part"]) == len(SOLIDS)
+
+
+def test_show_lists_suggestions_with_evidence_and_confidence(begun):
+    folder, _ = begun
+    for steps in (["import", "m.toml"], ["contacts", "s.h5"]):
+        assert kinform(folder, *steps, "-o", "s.h5").returncode == 0
+    table = kinform(folder, "show", "s.h5", "contacts").stdout
+    assert "not applied; [fasteners] infer = true does" in table
+    assert "4 aligned empty holes" in table
+    listed = json.loads(kinform(folder, "show", "s.h5", "contacts", "--format", "json").stdout)["suggestions"]
+    assert [(hint["parts"], hint["kind"], hint["confidence"], hint["fastens"]) for hint in listed] == [
+        (['a "quoted" plate', "servo_body"], "holes", "fair", True),
+        (["bracket", "servo"], "pocket", "fair", True),
+    ]
