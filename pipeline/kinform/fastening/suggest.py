@@ -130,21 +130,20 @@ def _pressed(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
 def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
     """Faces that let one part leave the other in a single direction: a floor, and flat walls all round. Round
     walls alone would let it turn."""
-    flat = [patch for patch in firm if patch.kind == "plane"]
-    for floor in sorted(flat, key=lambda patch: -patch.area):
-        out = floor.axis
-        walls = []
-        for patch in firm:
-            if patch.kind == "plane" and abs(float(patch.axis @ out)) < WALL:
-                walls.append(patch.axis[None])
-            elif patch.kind == "cylinder" and abs(float(patch.axis @ out)) > 1 - WALL:
-                continue
-            elif patch.kind != "plane" or float(patch.axis @ out) < 0.0:
-                break
-        else:
-            if walls and _surrounded(np.concatenate(walls), out):
-                text = "in a pocket that it can leave one way only"
-                return [_hint(pair, "pocket", text, out, floor.point)]
+    flat = sorted((patch for patch in firm if patch.kind == "plane"), key=lambda patch: -patch.area)
+    round_ = [patch for patch in firm if patch.kind != "plane"]
+    if not flat or any(patch.kind != "cylinder" for patch in round_):
+        return []
+    normals = np.array([patch.axis for patch in flat])
+    axes = np.array([patch.axis for patch in round_]).reshape(-1, 3)
+    for floor in flat:
+        along = normals @ floor.axis
+        walls = normals[np.abs(along) < WALL]
+        if along.min() <= -WALL or (np.abs(axes @ floor.axis) <= 1 - WALL).any():
+            continue
+        if len(walls) and _surrounded(walls, floor.axis):
+            text = "in a pocket that it can leave one way only"
+            return [_hint(pair, "pocket", text, floor.axis, floor.point)]
     return []
 
 
