@@ -6,5 +6,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 3
+CODE_VERSION: int = 4
 """Raised when the same input would give other contacts."""

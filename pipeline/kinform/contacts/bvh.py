@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from kinform.contacts.boxes import FacetBoxes, facet_boxes
+from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
@@ -62,6 +64,12 @@ def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     return model
 
 
+def _partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    """FCL's model of some facets, with the vertices that they use."""
+    used, corners = np.unique(faces, return_inverse=True)
+    return _model(vertices[used], corners.reshape(-1, 3))
+
+
 class MeshIndex:
     """One mesh with its facet normals and areas, and its BVH, built when first asked for."""
 
@@ -77,6 +85,28 @@ class MeshIndex:
         self._bvh: fcl.BVHModel | None = None
         self._borders: Ints | None = None
         self._shells: Ints | None = None
+        self._boxes: FacetBoxes | None = None
+        self._rays: list[_Ray] | None = None
+        self._table: SurfaceTable | None = None
+        self.low: Array = mesh.vertices.min(axis=0)
+        self.high: Array = mesh.vertices.max(axis=0)
+        """(3,) m, box in the part frame."""
+
+    @property
+    def boxes(self) -> FacetBoxes:
+        """Boxes of the facets in the part frame."""
+        if self._boxes is None:
+            vertices, faces = self.mesh.vertices, self.mesh.faces
+            self._boxes = FacetBoxes(
+                *facet_boxes((vertices[faces[:, 0]], vertices[faces[:, 1]], vertices[faces[:, 2]]))
+            )
+        return self._boxes
+
+    def table(self, surfaces: MeshSurfaces) -> SurfaceTable:
+        """The mesh's surfaces as arrays."""
+        if self._table is None:
+            self._table = SurfaceTable.of(surfaces, self.rims(surfaces))
+        return self._table
 
     @property
     def bvh(self) -> fcl.BVHModel:
@@ -89,7 +119,8 @@ class MeshIndex:
         """These facets (ascending) as something to cast probes against; all of them where they are most."""
         if 2 * len(facets) >= len(self.mesh.faces):
             return self.whole()
-        return Region(self, _model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None, facets)
+        model = _partial_model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None
+        return Region(self, model, facets)
 
     def whole(self) -> Region:
         """All facets."""
@@ -108,6 +139,12 @@ class MeshIndex:
             pairs = np.stack(np.divmod(pairs, max(len(surfaces.surfaces), 1)), axis=1)
             self._borders = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
         return self._borders
+
+    def neighbours(self, surfaces: MeshSurfaces, surface: int) -> list[int]:
+        """Surfaces that share an edge with this one, ascending."""
+        borders = self.borders(surfaces)
+        first, last = np.searchsorted(borders[:, 0], [surface, surface + 1])
+        return [int(k) for k in borders[first:last, 1]]
 
     @property
     def shells(self) -> Ints:
@@ -136,34 +173,37 @@ class MeshIndex:
 
         Open and inside-out meshes have an inside as far as two of three rays agree on it.
         """
-        crossings = np.stack([_crossings(self.mesh, points, ray) for ray in _RAYS])
+        if self._rays is None:
+            self._rays = [_Ray(self.mesh, ray) for ray in _RAYS]
+        crossings = np.stack([ray.crossings(points) for ray in self._rays])
         return np.asarray(np.abs(np.median(crossings, axis=0)) > 0.5)
 
 
-def _crossings(mesh: Mesh, points: Array, ray: Array) -> Array:
-    """(n,) facets that a ray from each point leaves through, less those that it enters through."""
-    ray = ray / np.linalg.norm(ray)
-    across = np.eye(3)[np.argmin(np.abs(ray))]
-    u = np.cross(ray, across)
-    u /= np.linalg.norm(u)
-    frame = np.stack([u, np.cross(ray, u), ray])
-    x, y, z = frame @ mesh.vertices.T
-    corners = [(x[f], y[f], z[f]) for f in mesh.faces.T]
-    low = [np.minimum(np.minimum(a, b), c) for a, b, c in zip(*(corner[:2] for corner in corners), strict=True)]
-    high = [np.maximum(np.maximum(a, b), c) for a, b, c in zip(*(corner[:2] for corner in corners), strict=True)]
-    top = np.maximum(np.maximum(corners[0][2], corners[1][2]), corners[2][2])
-    out = np.zeros(len(points))
-    for k, (px, py, pz) in enumerate(points @ frame.T):
-        near = np.flatnonzero((low[0] <= px) & (high[0] >= px) & (low[1] <= py) & (high[1] >= py) & (top > pz))
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([column[near] for column in corner] for corner in corners)
-        a = (bx - px) * (cy - py) - (by - py) * (cx - px)
-        b = (cx - px) * (ay - py) - (cy - py) * (ax - px)
-        c = (ax - px) * (by - py) - (ay - py) * (bx - px)
-        total = a + b + c
-        inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
-        height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
-        out[k] = np.sign(total[inside & (height > pz)]).sum()
-    return out
+class _Ray:
+    """A mesh as seen along one direction."""
+
+    def __init__(self, mesh: Mesh, ray: Array):
+        ray = ray / np.linalg.norm(ray)
+        u = np.cross(ray, np.eye(3)[np.argmin(np.abs(ray))])
+        u /= np.linalg.norm(u)
+        self._frame = np.stack([u, np.cross(ray, u), ray])
+        self._vertices = mesh.vertices @ self._frame.T
+        self._faces = mesh.faces
+        flat = self._vertices[:, :2]
+        self._boxes = FacetBoxes(*facet_boxes((flat[mesh.faces[:, 0]], flat[mesh.faces[:, 1]], flat[mesh.faces[:, 2]])))
+
+    def crossings(self, points: Array) -> Array:
+        """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""
+        out = np.zeros(len(points))
+        for k, p in enumerate(points @ self._frame.T):
+            corners = self._vertices[self._faces[self._boxes.meeting(p[:2], p[:2])]]
+            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ((corners[:, i] - p).T for i in range(3))
+            a, b, c = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
+            total = a + b + c
+            inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
+            height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
+            out[k] = np.sign(total[inside & (height > 0)]).sum()
+        return out
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,8 @@ Ints = NDArray[np.int64]
 
 _SAMPLES = 400
 """Points at which the depth of one pair's overlap is measured."""
+_BESIDE = 100
+"""Points beside the deepest one that are measured too."""
 _EXACT = 0.02
 """Share of the contact tolerance below which an overlap is none: rounding of coordinates."""
 
@@ -76,7 +78,7 @@ def find_interference(
     a: PlacedPart, b: PlacedPart, patches: list[Patch], solids: SolidStore, tolerance: float
 ) -> Interference | None:
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
-    if not (a.part.solid and b.part.solid) or not _meet(a, b, tolerance):
+    if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, tolerance):
         return None
     allowance = _Allowance(
         chords=(_chords(a), _chords(b)),
@@ -91,32 +93,61 @@ def find_interference(
 
 
 def _chords(part: PlacedPart) -> Array:
-    return np.array([s.chord + s.residual + s.point_uncertainty for s in part.surfaces.surfaces])
+    return part.table.slacks + part.table.point_uncertainty
 
 
-def _meet(a: PlacedPart, b: PlacedPart, tolerance: float) -> bool:
+def _meet(a: PlacedPart, b: PlacedPart, patches: list[Patch], tolerance: float) -> bool:
     """Whether the two boundaries cross, or one part holds a shell of the other.
 
-    Faces that coincide cross or do not as rounding has it, so the question is put once more with the
-    second part moved by less than what counts as an overlap.
+    Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide
+    cross or do not as rounding has it, so the question is put once more with the second part moved by as much.
     """
     low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
-    if (high - low).min() < _EXACT * tolerance:
+    least = _EXACT * tolerance
+    if (high - low).min() < least:
         return False
-    shift = _EXACT * tolerance * np.array([0.61, 0.53, 0.59])
-    for move in (np.zeros(3), shift, -shift):
-        X_AB = b.X_FP.copy()
-        X_AB[:3, 3] += move
-        if a.region.crosses(b.region, X_AB):
+    X_AF = np.linalg.inv(a.X_FP)
+
+    def cross(move: Array) -> bool:
+        X_FB = b.X_FP.copy()
+        X_FB[:3, 3] += move
+        return a.region.crosses(b.region, X_AF @ X_FB)
+
+    apart = _parting(patches)
+    if apart is None or cross(0.9 * least * apart):
+        shift = least * np.array([0.61, 0.53, 0.59])
+        if any(cross(move) for move in (np.zeros(3), shift, -shift)):
             return True
     return _holds(a, b) or _holds(b, a)
 
 
+def _parting(patches: list[Patch]) -> Array | None:
+    """The direction (3,) in which the second part leaves all plane contacts fastest; None where none does.
+
+    The point of least norm in the hull of the normals, by Frank and Wolfe's method.
+    """
+    normals = np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3)
+    if not len(normals):
+        return None
+    nearest = normals.mean(axis=0)
+    for _ in range(60):
+        step = normals[np.argmin(normals @ nearest)] - nearest
+        gain = -float(step @ nearest)
+        if gain <= 1e-9:
+            break
+        nearest = nearest + min(1.0, gain / float(step @ step)) * step
+    length = float(np.linalg.norm(nearest))
+    return nearest / length if length > 0.1 else None
+
+
 def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
     """Whether a whole shell of `inner` lies inside `outer`, given that no facets cross."""
-    middles = inner.vertices[inner.faces[inner.index.shells]].mean(axis=1)
+    shells = inner.index.shells
+    if len(shells) == 1 and ((inner.low < outer.low) | (inner.high > outer.high)).any():
+        return False
+    middles = inner.vertices[inner.faces[shells]].mean(axis=1)
     middles = middles[((middles > outer.low) & (middles < outer.high)).all(axis=1)]
-    return bool(outer.index.contains(outer.to_part(middles)).any())
+    return bool(len(middles)) and bool(outer.index.contains(outer.to_part(middles)).any())
 
 
 def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
@@ -136,12 +167,30 @@ def _joined(samples: list[_Samples]) -> _Samples:
 
 def _sampled(a: PlacedPart, b: PlacedPart, piece: Piece, count: int) -> _Samples:
     """Depths at about `count` points of a piece: middles of its facets, and just inside their corners."""
+    points, part, facet = _points_of(piece)
+    chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
+    return _measured_on(a, b, points[chosen], part[chosen], facet[chosen])
+
+
+def _deepest(a: PlacedPart, b: PlacedPart, piece: Piece, samples: _Samples, deep: NDArray[np.bool_]) -> float:
+    """Greatest depth (m) of the piece: of the deep samples, and of the points beside the deepest of them."""
+    best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
+    points, part, facet = _points_of(piece)
+    off = np.linalg.norm(points - samples.points[best], axis=1)
+    beside = np.lexsort((np.arange(len(off)), off))[:_BESIDE]
+    more = _measured_on(a, b, points[beside], part[beside], facet[beside])
+    return max(float(samples.depth[best]), float(more.depth.max()))
+
+
+def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
+    """Middles of the facets of a piece, and points just inside their corners; of which part and facet each is."""
     middle = piece.corners.mean(axis=1)
     points = np.concatenate([middle, (0.98 * piece.corners + 0.02 * middle[:, None]).reshape(-1, 3)])
-    part = np.concatenate([piece.part, np.repeat(piece.part, 3)])
-    facet = np.concatenate([piece.facet, np.repeat(piece.facet, 3)])
-    chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
-    points, part, facet = points[chosen], part[chosen], facet[chosen]
+    part, facet = (np.concatenate([own, np.repeat(own, 3)]) for own in (piece.part, piece.facet))
+    return points, part, facet
+
+
+def _measured_on(a: PlacedPart, b: PlacedPart, points: Array, part: Ints, facet: Ints) -> _Samples:
     return _joined(
         [
             _measured(a, b, points[part == 0], facet[part == 0], True),
@@ -163,7 +212,7 @@ def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Al
         deep, at_mates = allowance.unexplained(samples)
         thick = 2.0 * piece.volume / piece.area
         if deep.any():
-            here = float(samples.depth[deep].max())
+            here = _deepest(a, b, piece, samples, deep)
         elif thick > allowance.chords_of(samples).max(initial=0.0):
             # Two boundaries that coincide have no depth below each other: a part placed twice.
             here, at_mates = thick, False

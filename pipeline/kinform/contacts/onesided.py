@@ -70,18 +70,17 @@ def without_continuations(patches: list[Patch], a: PlacedPart, b: PlacedPart) ->
     A fillet beside a face that lies on a plane says nothing that the face does not say: a one-sided patch
     goes if its surface on one side is that of a two-sided patch, and those on the other share an edge.
     """
+    if not any(patch.one_sided for patch in patches):
+        return patches
     firm = {patch.surfaces for patch in patches if not patch.one_sided}
-    beside: tuple[dict[int, list[int]], dict[int, list[int]]] = ({}, {})
-    for part, borders in zip((a, b), beside, strict=True):
-        for own, other in part.index.borders(part.surfaces).tolist():
-            borders.setdefault(own, []).append(other)
     kept = []
     for patch in patches:
         i, j = patch.surfaces
-        continues = any((k, j) in firm for k in beside[0].get(i, [])) or any(
-            (i, k) in firm for k in beside[1].get(j, [])
+        continues = patch.one_sided and (
+            any((k, j) in firm for k in a.index.neighbours(a.surfaces, i))
+            or any((i, k) in firm for k in b.index.neighbours(b.surfaces, j))
         )
-        if not (patch.one_sided and continues):
+        if not continues:
             kept.append(patch)
     return kept
 

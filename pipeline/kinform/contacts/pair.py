@@ -49,14 +49,16 @@ def pair_contacts(
     """Contacts between two meshed parts (first < second by name), within `tolerance` (m)."""
     assert first.mesh is not None
     assert second.mesh is not None
-    X_FB = _inverse(first.X_WP) @ second.X_WP
-    a = place(first, store.index(first.mesh), surfaces[first.mesh.digest], np.eye(4))
-    b = place(second, store.index(second.mesh), surfaces[second.mesh.digest], X_FB)
+    home = first if len(first.mesh.faces) >= len(second.mesh.faces) else second
+    a, b = (
+        place(part, store.index(mesh), surfaces[mesh.digest], None if part is home else _inverse(home.X_WP) @ part.X_WP)
+        for part, mesh in ((first, first.mesh), (second, second.mesh))
+    )
     reach = _reach(a, b, tolerance)
     low, high = np.maximum(a.low, b.low) - reach, np.minimum(a.high, b.high) + reach
     if (low > high).any():
         return PairContacts((), None)
-    margin = max(s.chord + s.residual for part in (a, b) for s in part.surfaces.surfaces)
+    margin = max(a.table.slack, b.table.slack)
     a, b = facing(a, b, low - margin, high + margin, reach + margin)
     near = (near_surfaces(a, low, high), near_surfaces(b, low, high))
     mates = _mates(near, reach, tolerance, tolerances)
@@ -69,9 +71,9 @@ def pair_contacts(
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     found = find_interference(a, b, patches, solids, tolerance)
     if found is not None:
-        at = first.X_WP[:3, :3] @ found.place + first.X_WP[:3, 3]
+        at = home.X_WP[:3, :3] @ found.place + home.X_WP[:3, 3]
         found = replace(found, place=np.asarray(freeze(at)))
-    return PairContacts(tuple(placed_in_world(patch, first.X_WP) for patch in patches), found)
+    return PairContacts(tuple(placed_in_world(patch, home.X_WP) for patch in patches), found)
 
 
 def _inverse(X: Array) -> Array:
@@ -83,8 +85,7 @@ def _inverse(X: Array) -> Array:
 
 def _reach(a: PlacedPart, b: PlacedPart, tolerance: float) -> float:
     """How far apart mating surfaces of the two parts may be: clearances grow with the radius."""
-    radii = [max((s.radius for s in part.surfaces.surfaces), default=0.0) for part in (a, b)]
-    return EDGE * max(tolerance, 0.03 * min(radii))
+    return EDGE * max(tolerance, 0.03 * min(a.table.radius, b.table.radius))
 
 
 def _mates(

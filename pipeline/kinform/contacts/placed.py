@@ -1,6 +1,7 @@
 """A part as a pair sees it: the facets and surfaces that come near the other part, in the frame of the pair.
 
-The frame of a pair is the part frame of its first part, so that moving a whole assembly changes nothing.
+The frame of a pair is the part frame of the one that has more facets, so that moving a whole assembly changes
+nothing, and a large part is never placed anew for each of its neighbours.
 """
 
 from __future__ import annotations
@@ -10,8 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.contacts.boxes import facet_boxes
 from kinform.contacts.bvh import MeshIndex, Region
 from kinform.contacts.proximity import near_boxes
+from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Part
 from kinform.model.surfaces import KINDS, MeshSurfaces
 
@@ -28,14 +31,15 @@ class PlacedPart:
     part: Part
     index: MeshIndex
     surfaces: MeshSurfaces
+    table: SurfaceTable
     X_FP: Array
     """(4, 4) pose of the part frame in the frame of the pair."""
+    at_home: bool
+    """Whether the frame of the pair is the part's own."""
     vertices: Array
     """(V, 3)."""
     normals: Array
     """(F, 3) outward."""
-    rims: Array
-    """For each surface of the mesh, the greatest chord error of its neighbours (m)."""
     low: Array
     high: Array
     """(3,) bounding box."""
@@ -43,6 +47,11 @@ class PlacedPart:
     """The facets that probes of the pair can meet."""
     known: float
     """m: no other facet is nearer than this to a facet of the other part."""
+
+    @property
+    def rims(self) -> Array:
+        """For each surface of the mesh, the greatest chord error of its neighbours (m)."""
+        return self.table.rims
 
     @property
     def faces(self) -> Ints:
@@ -72,15 +81,20 @@ class PlacedPart:
         return np.asarray(directions @ self.X_FP[:3, :3])
 
 
-def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array) -> PlacedPart:
-    """The part at pose `X_FP` (4, 4) in the frame of the pair."""
-    R_FP = X_FP[:3, :3]
-    vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
-    normals = index.normals @ R_FP.T
-    columns = np.ascontiguousarray(vertices.T)
-    low, high = columns.min(axis=1), columns.max(axis=1)
+def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array | None) -> PlacedPart:
+    """The part at pose `X_FP` (4, 4) in the frame of the pair; None: that frame is the part's own."""
+    table = index.table(surfaces)
     region = Region(index, None, np.zeros(0, np.int64))
-    return PlacedPart(part, index, surfaces, X_FP, vertices, normals, index.rims(surfaces), low, high, region, 0.0)
+    if X_FP is None:
+        vertices, normals, low, high = index.mesh.vertices, index.normals, index.low, index.high
+    else:
+        R_FP = X_FP[:3, :3]
+        vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
+        normals = index.normals @ R_FP.T
+        columns = np.ascontiguousarray(vertices.T)
+        low, high = columns.min(axis=1), columns.max(axis=1)
+    pose = np.eye(4) if X_FP is None else X_FP
+    return PlacedPart(part, index, surfaces, table, pose, X_FP is None, vertices, normals, low, high, region, 0.0)
 
 
 def facing(a: PlacedPart, b: PlacedPart, low: Array, high: Array, margin: float) -> tuple[PlacedPart, PlacedPart]:
@@ -96,13 +110,15 @@ def facing(a: PlacedPart, b: PlacedPart, low: Array, high: Array, margin: float)
 
 def near_facets(placed: PlacedPart, low: Array, high: Array) -> tuple[Ints, Array, Array]:
     """Facets whose boxes meet the box from `low` to `high` (3,), ascending, and their boxes (n, 3)."""
+    if placed.at_home:
+        boxes = placed.index.boxes
+        some = boxes.meeting(low, high)
+        return some, boxes.low[some], boxes.high[some]
     vertices, faces = placed.vertices, placed.faces
     beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
     a, b, c = faces.T
     some = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
-    first, second, third = (vertices[faces[some, k]] for k in range(3))
-    low_f = np.minimum(np.minimum(first, second), third)
-    high_f = np.maximum(np.maximum(first, second), third)
+    low_f, high_f = facet_boxes((vertices[a[some]], vertices[b[some]], vertices[c[some]]))
     return some, low_f, high_f
 
 
@@ -147,8 +163,10 @@ class NearSurfaces:
 
     def of_kind(self, *kinds: str) -> Ints:
         """Positions of the surfaces of these kinds."""
-        wanted = [KINDS.index(kind) for kind in kinds]
-        return np.nonzero(np.isin(self.kinds, wanted))[0]
+        wanted = np.zeros(len(self.kinds), dtype=bool)
+        for kind in kinds:
+            wanted |= self.kinds == KINDS.index(kind)
+        return np.flatnonzero(wanted)
 
 
 def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
@@ -160,36 +178,27 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
     ids, starts = np.unique(labels, return_index=True)
     if len(ids) > MOST:
         # a crumpled mesh, every facet a surface of its own: the largest decide, and memory stays bounded
-        areas = np.array([placed.surfaces.surfaces[i].area for i in ids])
-        largest = np.sort(np.lexsort((ids, -areas))[:MOST])
+        largest = np.sort(np.lexsort((ids, -placed.table.areas[ids]))[:MOST])
         keep = np.isin(labels, ids[largest])
         near, labels, low_f, high_f = near[keep], labels[keep], low_f[keep], high_f[keep]
         ids, starts = np.unique(labels, return_index=True)
-    chosen = [placed.surfaces.surfaces[i] for i in ids]
     R_FP, p_FP = placed.X_FP[:3, :3], placed.X_FP[:3, 3]
-
-    def column(values: list[float]) -> Array:
-        return np.array(values, dtype=np.float64)
-
-    def stacked(values: list[Array], width: int) -> Array:
-        return np.array(values, dtype=np.float64).reshape(-1, width)
-
-    empty = np.zeros((0, 3))
+    table, empty = placed.table, np.zeros((0, 3))
     return NearSurfaces(
         ids=ids.astype(np.int64),
-        kinds=np.array([KINDS.index(s.kind) for s in chosen], dtype=np.int64),
-        axes=stacked([s.axis for s in chosen], 3) @ R_FP.T,
-        points=stacked([s.point for s in chosen], 3) @ R_FP.T + p_FP,
-        radii=column([s.radius for s in chosen]),
-        half_angles=column([s.half_angle for s in chosen]),
-        sides=column([float(s.side) for s in chosen]),
-        axis_uncertainty=column([s.axis_uncertainty for s in chosen]),
-        point_uncertainty=column([s.point_uncertainty for s in chosen]),
-        slacks=column([s.chord + s.residual for s in chosen]),
-        chords=column([s.chord for s in chosen]),
-        rims=placed.rims[ids],
-        extents=stacked([np.array(s.extent) for s in chosen], 2),
-        areas=column([s.area for s in chosen]),
+        kinds=table.kinds[ids],
+        axes=table.axes[ids] @ R_FP.T,
+        points=table.points[ids] @ R_FP.T + p_FP,
+        radii=table.radii[ids],
+        half_angles=table.half_angles[ids],
+        sides=table.sides[ids],
+        axis_uncertainty=table.axis_uncertainty[ids],
+        point_uncertainty=table.point_uncertainty[ids],
+        slacks=table.slacks[ids],
+        chords=table.chords[ids],
+        rims=table.rims[ids],
+        extents=table.extents[ids],
+        areas=table.areas[ids],
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),

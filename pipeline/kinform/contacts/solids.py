@@ -1,6 +1,6 @@
 """Overlap of two closed meshes by manifold3d: its pieces, and which facets of either part bound them.
 
-Coordinates are centred on the first part and scaled by a power of two to the order of 1 before the
+Coordinates are centred on the part whose frame is that of the pair, and scaled by a power of two to the order of 1 before the
 boolean, because manifold3d's tolerances are relative to the size of what it is given.
 """
 
@@ -54,17 +54,18 @@ class SolidStore:
 
     def overlap(self, a: PlacedPart, b: PlacedPart, least: float) -> list[Piece] | None:
         """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
-        first, second = self._solid(a.index.mesh, 0), self._solid(b.index.mesh, 1)
+        home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
+        first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
             return None
-        middle_a, scale_a = _scaling(a.index.mesh)
-        middle_b, scale_b = _scaling(b.index.mesh)
-        R, p = b.X_FP[:3, :3], b.X_FP[:3, 3]
-        place = np.concatenate([R * scale_b, (R @ middle_b + p - middle_a)[:, None]], axis=1) / scale_a
+        middle, scale = _scaling(home.index.mesh)
+        own_middle, own_scale = _scaling(guest.index.mesh)
+        R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
+        place = np.concatenate([R * own_scale, (R @ own_middle + p - middle)[:, None]], axis=1) / scale
         pieces = [
-            _piece(piece, middle_a, scale_a)
+            _piece(piece, middle, scale)
             for piece in (first ^ second.transform(place)).decompose()
-            if not piece.is_empty() and piece.volume() * scale_a**3 > 0.5 * least
+            if not piece.is_empty() and piece.volume() * scale**3 > 0.5 * least
         ]
         return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
 

@@ -1,0 +1,60 @@
+"""The boxes of a mesh's facets, in chunks of facets that lie together: what meets a small box is found without
+asking all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["FacetBoxes", "facet_boxes"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_CHUNK = 48
+"""Facets of a chunk."""
+
+
+def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+    """Lower and upper corners (n, d) of the boxes of triangles, given by their three corners (n, d) each."""
+    first, second, third = corners
+    return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
+
+
+class FacetBoxes:
+    """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place."""
+
+    def __init__(self, low: Array, high: Array):
+        self.low, self.high = low, high
+        self._order = _together(low, high)
+        starts = np.arange(0, len(low), _CHUNK)
+        self._starts = starts
+        if len(starts):
+            self._chunk_low = np.minimum.reduceat(low[self._order], starts)
+            self._chunk_high = np.maximum.reduceat(high[self._order], starts)
+
+    def meeting(self, low: Array, high: Array) -> Ints:
+        """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
+        if not len(self._starts):
+            return np.zeros(0, np.int64)
+        chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
+        at = (self._starts[chunks, None] + np.arange(_CHUNK)).ravel()
+        some = np.sort(self._order[at[at < len(self._order)]])
+        meets = ((self.low[some] <= high) & (self.high[some] >= low)).all(axis=1)
+        return np.asarray(some[meets])
+
+
+def _together(low: Array, high: Array) -> Ints:
+    """An order in which neighbours are of like size and lie together: by octave of size, then along a Z-curve."""
+    count, dimensions = low.shape
+    if count == 0:
+        return np.zeros(0, np.int64)
+    size = (high - low).max(axis=1)
+    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -20, 0).astype(np.int64)
+    cell = np.clip((0.5 * (low + high) - low.min(axis=0)) / whole * 1024.0, 0, 1023).astype(np.int64)
+    code = np.zeros(count, dtype=np.int64)
+    for bit in range(10):
+        for axis in range(dimensions):
+            code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
+    return np.lexsort((code, -octave)).astype(np.int64)
