@@ -16,8 +16,11 @@ __all__ = [
     "Mask",
     "Ragged",
     "components",
+    "counted",
+    "distinct",
     "group_sum",
     "normal_equations",
+    "ordered_quantile",
     "quantile",
     "solve_normal",
     "starts_of",
@@ -61,6 +64,19 @@ def cross(a: Array, b: Array) -> Array:
 def starts_of(groups: Ints, count: int) -> Ints:
     """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
     return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
+
+
+def distinct(keys: Ints) -> Ints:
+    """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
+    ordered = np.sort(keys)
+    return ordered[np.r_[True, ordered[1:] != ordered[:-1]]] if len(ordered) else ordered
+
+
+def counted(keys: Ints) -> tuple[Ints, Ints]:
+    """The distinct keys, ascending, and how often each occurs."""
+    ordered = np.sort(keys)
+    heads = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]]) if len(ordered) else np.zeros(0, np.int64)
+    return ordered[heads], np.diff(np.r_[heads, len(ordered)])
 
 
 def group_sum(groups: Ints, values: Array, count: int) -> Array:
@@ -109,10 +125,15 @@ def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
 def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
     """The lower `share` quantile of the values of each group; 0 for empty groups."""
     order = np.lexsort((values, groups))
-    starts = starts_of(groups[order], count)
+    return ordered_quantile(groups[order], values[order], count, share)
+
+
+def ordered_quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
+    """`quantile` of values that are sorted by group, then by size."""
+    starts = starts_of(groups, count)
     size = np.diff(starts)
     at = starts[:-1] + np.floor(share * np.maximum(size - 1, 0)).astype(np.int64)
     out = np.zeros(count)
     filled = size > 0
-    out[filled] = values[order][at[filled]]
+    out[filled] = values[at[filled]]
     return out

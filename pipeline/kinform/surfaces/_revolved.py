@@ -9,7 +9,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, cross, group_sum, normal_equations, quantile, solve_normal
+from kinform.surfaces._batch import (
+    Array,
+    Ints,
+    Mask,
+    counted,
+    cross,
+    distinct,
+    group_sum,
+    normal_equations,
+    quantile,
+    solve_normal,
+)
 from kinform.surfaces.kind import ALONG, Batch, Params, Probe
 
 __all__ = [
@@ -92,15 +103,31 @@ def probe(params: Params, points: Array) -> Probe:
 
 def jacobian(params: Params, points: Array, cone: bool) -> Array:
     """(N, 5 or 6): by offset across the axis (2), tilt (2), radius, and half-angle for cones."""
-    t, rho, radial = split(params, points)
-    cos, sin = np.cos(params[:, 7]), np.sin(params[:, 7])
     x, y = basis(params[:, :3])
-    rx, ry = np.einsum("ij,ij->i", radial, x), np.einsum("ij,ij->i", radial, y)
-    lever = cos * t + sin * rho
-    columns = [-cos * rx, -cos * ry, -lever * rx, -lever * ry, -cos]
+    return _columns(*split(params, points), params[:, 6], params[:, 7], x, y, cone)
+
+
+def _columns(
+    t: Array, rho: Array, radial: Array, radius: Array, angle: Array, x: Array, y: Array, cone: bool
+) -> Array:  # fmt: skip
+    rx = radial[:, 0] * x[:, 0] + radial[:, 1] * x[:, 1] + radial[:, 2] * x[:, 2]
+    ry = radial[:, 0] * y[:, 0] + radial[:, 1] * y[:, 1] + radial[:, 2] * y[:, 2]
+    out = np.empty((len(t), 6 if cone else 5))
     if cone:
-        columns.append(-(rho - params[:, 6]) * sin - t * cos)
-    return np.stack(columns, axis=1)
+        cos, sin = np.cos(angle), np.sin(angle)
+        lever = cos * t + sin * rho
+        np.multiply(-cos, rx, out=out[:, 0])
+        np.multiply(-cos, ry, out=out[:, 1])
+        out[:, 4] = -cos
+        out[:, 5] = -(rho - radius) * sin - t * cos
+    else:
+        lever = t
+        np.negative(rx, out=out[:, 0])
+        np.negative(ry, out=out[:, 1])
+        out[:, 4] = -1.0
+    np.multiply(-lever, rx, out=out[:, 2])
+    np.multiply(-lever, ry, out=out[:, 3])
+    return out
 
 
 def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Mask, Mask]:
@@ -138,7 +165,7 @@ def defining(batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints
         )
         use = inner | (distance < tolerance[region])
         keys.append(np.repeat(region[use], 2) * total + ends[use].ravel())
-    key = np.unique(np.concatenate(keys))
+    key = distinct(np.concatenate(keys))
     return key // total, key % total
 
 
@@ -156,13 +183,17 @@ def gauss_newton(
         if not len(region):
             return params
         points = work.vertices[vertex]
-        params = _recentred(params, region, points, count)
-        mine = params[region]
-        columns = jacobian(mine, points, cone)
-        residual = probe(mine, points).distance
+        t, rho, radial = split(params[region], points)
+        params, middle = _recentred(params, region, t, count)
+        t -= middle[region]
+        radius, angle = params[region, 6], params[region, 7]
+        x, y = basis(params[:, :3])
+        columns = _columns(t, rho, radial, radius, angle, x[region], y[region], cone)
+        residual = (rho - radius) * np.cos(angle) - t * np.sin(angle) if cone else rho - radius
         group = region
         if cone:
-            group, columns, residual = with_apices(mine, points, region, columns, residual, apices(mine, points))
+            at = np.flatnonzero(rho < APEX * radius)
+            group, columns, residual = with_apices(params[region], points, region, columns, residual, at)
         matrix, right = normal_equations(group, columns, residual, count)
         change = -solve_normal(matrix, right, 1e-11)
         params = _moved(params, change, cone)
@@ -202,15 +233,14 @@ def with_apices(
     )
 
 
-def _recentred(params: Params, region: Ints, points: Array, count: int) -> Params:
-    """Moves each reference point along its axis beside the mean of the points."""
-    t, _, _ = split(params[region], points)
+def _recentred(params: Params, region: Ints, t: Array, count: int) -> tuple[Params, Array]:
+    """Moves each reference point along its axis beside the mean of the points; by how much (R,)."""
     size = np.maximum(np.bincount(region, minlength=count), 1)
     middle = np.bincount(region, t, count) / size
     out = params.copy()
     out[:, 3:6] += middle[:, None] * params[:, :3]
     out[:, 6] += middle * np.tan(params[:, 7])
-    return out
+    return out, middle
 
 
 def _moved(params: Params, change: Array, cone: bool) -> Params:
@@ -278,7 +308,7 @@ def regular(batch: Batch, params: Params) -> Mask:
     region, edge = region[inner], edge[inner]
     total = np.int64(work.count)
     sides = np.r_[region * total + work.a[edge], region * total + work.b[edge]]
-    key, times = np.unique(sides, return_counts=True)
+    key, times = counted(sides)
     whole = np.isin(batch.region * total + batch.polygon, key[times >= 2])
     width = widths(batch, params)
     group = np.r_[batch.region[whole], region]

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, starts_of
+from kinform.surfaces._batch import Array, Ints, Mask, counted, starts_of
 from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["Batch", "Kind", "Params", "Probe", "widths"]
@@ -79,7 +79,7 @@ class Batch:
         if self._edges is None:
             owner, edge = self.patchwork.sides.expand(self.polygon)
             total = np.int64(max(len(self.patchwork.a), 1))
-            key, times = np.unique(self.region[owner] * total + edge, return_counts=True)
+            key, times = counted(self.region[owner] * total + edge)
             self._edges = key // total, key % total, times == 2
         return self._edges
 
@@ -88,7 +88,7 @@ class Batch:
         if least not in self._inner:
             owner, vertex = self.corners
             total = np.int64(max(len(self.patchwork.vertices), 1))
-            key, times = np.unique(self.region[owner] * total + vertex, return_counts=True)
+            key, times = counted(self.region[owner] * total + vertex)
             key = key[times >= least]
             self._inner[least] = key // total, key % total
         return self._inner[least]

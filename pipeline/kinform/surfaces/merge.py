@@ -9,9 +9,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinform.surfaces._batch import Array, Ints, Mask, components
-from kinform.surfaces.grow import conforms
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
+from kinform.surfaces.spread import conforms
 from kinform.surfaces.topology import Patchwork, Scale
 
 __all__ = ["coincident_planes", "coincident_regions"]

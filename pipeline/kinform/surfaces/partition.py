@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components, quantile
+from kinform.surfaces._batch import Array, Ints, Mask, components, distinct, quantile
 from kinform.surfaces.cone import Cone
 from kinform.surfaces.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.cylinder import Cylinder
-from kinform.surfaces.grow import Found, Ground, absorb, pursue, whole
+from kinform.surfaces.grow import Found, absorb, pursue, whole
 from kinform.surfaces.kind import Batch, Kind
 from kinform.surfaces.sphere import Sphere
+from kinform.surfaces.spread import Ground
 from kinform.surfaces.topology import Patchwork, Scale
 from kinform.surfaces.torus import Torus
 
@@ -164,7 +165,7 @@ def _around(ground: Ground, seeds: Ints, side: Ints, straightness: float) -> Bat
     cosine = np.abs(np.einsum("ij,ij->i", direction[edge], direction[seeds[region[owner]]]))
     near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
     keep = near & ground.free[target] & (work.sign[edge] * side[region[owner]] >= 0)
-    key = np.unique(np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]])
+    key = distinct(np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]])
     return Batch(work, key // work.count, key % work.count, len(seeds))
 
 
