@@ -1,6 +1,6 @@
 """Time and memory of the geometric stages by size: `python benchmarks/scale.py [MANIFEST...] [--quick]`.
 
-Synthetic assemblies (plates with pins in their bores, all pins copies in poses of their own, or one large drilled
+Synthetic assemblies (plates with pins in their bores, all pins copies in poses of their own; ten copies of a drilled
 plate) of 10 k to 3 M facets and of 10 to 5,000 parts, and the manifests named; each in a process of its own,
 beside floors in the same run: reading the bytes once, `trimesh.load`, a bare FCL BVH of every mesh and of every
 distinct mesh, FCL's `distance` of the same pairs, and trimesh's `in_collision_internal(return_data=True)`.
@@ -69,6 +69,27 @@ def plate_with_pins(folder, pins, segments):
         lines += ["[[part]]", f'name = "pin{k}"', f'mesh = "pin{k}.stl"']
     (folder / "pins.toml").write_text("\n".join(lines) + "\n")
     return folder / "pins.toml"
+
+
+def stack_of_copies(folder, facets):
+    """Ten drilled plates on each other, one shape in ten poses, each a file of its own."""
+    from manifold3d import Manifold, OpType
+    from scipy.spatial.transform import Rotation
+
+    bore = Manifold.cylinder(7, 3, 3, max(8, facets // 2560))
+    places = [(10.0 * (k % 8), 10.0 * (k // 8), -1) for k in range(64)]
+    plate = Manifold.cube((84, 84, 5)).translate((-7, -7, 0)) - Manifold.batch_boolean(
+        [bore.translate(place) for place in places], OpType.Add
+    )
+    lines = ["schema = 1", "[assembly]", 'name = "stack"', 'units = "mm"']
+    for k in range(10):
+        pose = np.eye(4)
+        pose[:3, :3] = Rotation.from_euler("z", 90 * k, degrees=True).as_matrix()
+        pose[:3, 3] = 0, 0, 5 * k
+        write(folder / f"plate{k}.stl", plate, pose)
+        lines += ["[[part]]", f'name = "plate{k}"', f'mesh = "plate{k}.stl"']
+    (folder / "stack.toml").write_text("\n".join(lines) + "\n")
+    return folder / "stack.toml"
 
 
 def timed(work):
@@ -175,6 +196,9 @@ def main(arguments) -> None:
     for parts in PARTS[: 2 if quick else None]:
         with tempfile.TemporaryDirectory() as folder:
             show(f"{parts} pins", measured(plate_with_pins(Path(folder), parts, 24)))
+    for facets in FACETS[2 : 3 if quick else -1]:
+        with tempfile.TemporaryDirectory() as folder:
+            show("10 copies", measured(stack_of_copies(Path(folder), facets)))
     size = np.log([row["facets"] for row in rows])
     for stage in ("import", "surfaces", "contacts"):
         print(

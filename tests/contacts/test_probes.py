@@ -37,7 +37,7 @@ def test_depths_are_distances_to_the_boundary_and_name_the_nearest_facet():
     walls = np.concatenate([points, np.array([10, 20, 30]) * MM - points], axis=1)
     np.testing.assert_allclose(depth, walls.min(axis=1), atol=1e-10)
     nearest = np.argmin(walls, axis=1)
-    np.testing.assert_allclose(np.abs(box.normals[facet]).argmax(axis=1), nearest % 3)
+    np.testing.assert_allclose(np.abs(box.normals(facet)).argmax(axis=1), nearest % 3)
 
 
 def test_points_inside_a_solid_are_told_from_points_in_its_cavities():

@@ -13,6 +13,8 @@ Ints = NDArray[np.int64]
 
 _CHUNK = 48
 """Facets of a chunk."""
+_OFTEN = 6
+"""Questions that are cheaper to answer without chunks than the chunks are to make."""
 
 
 def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
@@ -22,21 +24,26 @@ def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
 
 
 class FacetBoxes:
-    """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place."""
+    """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place once they are asked for often."""
 
     def __init__(self, low: Array, high: Array):
         self.low, self.high = low, high
-        self._order = _together(low, high)
-        starts = np.arange(0, len(low), _CHUNK)
-        self._starts = starts
-        if len(starts):
-            self._chunk_low = np.minimum.reduceat(low[self._order], starts)
-            self._chunk_high = np.maximum.reduceat(high[self._order], starts)
+        self._asked = 0
+        self._order: Ints | None = None
 
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
-        if not len(self._starts):
-            return np.zeros(0, np.int64)
+        self._asked += 1
+        if self._asked <= _OFTEN or len(self.low) <= _CHUNK:
+            meets = np.ones(len(self.low), dtype=bool)
+            for axis in range(self.low.shape[1]):
+                meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
+            return np.flatnonzero(meets)
+        if self._order is None:
+            self._order = _together(self.low, self.high)
+            self._starts = np.arange(0, len(self.low), _CHUNK)
+            self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
+            self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
         chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
         at = (self._starts[chunks, None] + np.arange(_CHUNK)).ravel()
         some = np.sort(self._order[at[at < len(self._order)]])

@@ -71,17 +71,10 @@ def _partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
 
 
 class MeshIndex:
-    """One mesh with its facet normals and areas, and its BVH, built when first asked for."""
+    """One mesh with what is asked of its facets; its BVH and their boxes are made when first asked for."""
 
     def __init__(self, mesh: Mesh):
         self.mesh = mesh
-        corners = mesh.vertices[mesh.faces]
-        across = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        length = np.sqrt(np.einsum("ij,ij->i", across, across))
-        self.areas: Array = 0.5 * length
-        """(F,) m²."""
-        self.normals: Array = across / np.where(length > 0.0, length, 1.0)[:, None]
-        """(F, 3) unit, part frame."""
         self._bvh: fcl.BVHModel | None = None
         self._borders: Ints | None = None
         self._shells: Ints | None = None
@@ -91,6 +84,22 @@ class MeshIndex:
         self.low: Array = mesh.vertices.min(axis=0)
         self.high: Array = mesh.vertices.max(axis=0)
         """(3,) m, box in the part frame."""
+
+    def spans(self, facets: Ints) -> Array:
+        """(n, 3) cross products of two edges of each facet: outward, of twice its area (m²)."""
+        corners = self.mesh.vertices[self.mesh.faces[facets]]
+        return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    def areas(self, facets: Ints) -> Array:
+        """(n,) m²."""
+        spans = self.spans(facets)
+        return np.asarray(0.5 * np.sqrt(np.einsum("ij,ij->i", spans, spans)))
+
+    def normals(self, facets: Ints) -> Array:
+        """(n, 3) unit, outward, part frame; zero for facets without area."""
+        spans = self.spans(facets)
+        length = np.sqrt(np.einsum("ij,ij->i", spans, spans))
+        return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
 
     @property
     def boxes(self) -> FacetBoxes:
@@ -239,7 +248,7 @@ class Region:
         probe, facet = pairs[:, 0], pairs[:, 1]
         if self.facets is not None:
             facet = self.facets[facet]
-        normal = self.index.normals[facet]
+        normal = self.index.normals(facet)
         facing = np.einsum("ij,ij->i", normal, directions[probe])
         height = np.einsum("ij,ij->i", normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
         steep = np.abs(facing) > 1e-3

@@ -90,10 +90,10 @@ def _probes(
         centres = part.vertices[part.faces[facets]].mean(axis=1)
         within = np.nonzero(((centres >= low) & (centres <= high)).all(axis=1))[0]
         chosen = within[:: max(1, math.ceil(len(within) / _PROBES))]
-        areas = part.index.areas[facets[chosen]]
-        total = float(part.index.areas[facets[within]].sum())
+        areas = part.index.areas(facets[chosen])
+        total = float(part.index.areas(facets[within]).sum())
         points.append(centres[chosen])
-        normals.append(sense * part.normals[facets[chosen]])
+        normals.append(sense * part.normals(facets[chosen]))
         shares.append(0.5 * areas * total / max(float(areas.sum()), 1e-300))
     count = len(points[0]) + len(points[1])
     ids = np.array([near[0].ids[row], near[1].ids[column]])

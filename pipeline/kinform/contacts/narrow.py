@@ -102,7 +102,7 @@ def verify(a: PlacedPart, b: PlacedPart, probes: Probes, opposed: float, margin:
         return Verdict(holds, np.zeros(count), np.zeros(count), np.ones(count))
     along = [np.where(holds, h.along[c], 0.0) for h, c in zip(all_hits, chosen, strict=True)]
     facets = [h.facet[c] for h, c in zip(all_hits, chosen, strict=True)]
-    cosine = np.einsum("ij,ij->i", a.normals[facets[0]], b.normals[facets[1]])
+    cosine = np.einsum("ij,ij->i", a.normals(facets[0]), b.normals(facets[1]))
     holds &= cosine < opposed
     inset = margin + 0.05 * np.abs(along[1] - along[0])
     low, high = np.minimum(*along) + inset, np.maximum(*along) - inset

@@ -173,7 +173,7 @@ def _resting(
     within = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
     facets, corners = facets[within], corners[within]
     normals = side * chart.normals(corners.mean(axis=1))
-    facing = np.einsum("ij,ij->i", normals, taker.placed.normals[facets]) < _OPPOSED
+    facing = np.einsum("ij,ij->i", normals, taker.placed.normals(facets)) < _OPPOSED
     corners = corners[facing]
     if not len(corners):
         return np.zeros((0, 3, 3))

@@ -32,6 +32,8 @@ _THIN = 0.01
 """Regions thinner than this share of the tolerance are lines, not patches."""
 _SMALL = 0.02
 """Regions smaller than this share of the squared tolerance are points, not patches."""
+_MANY = 64
+"""Triangles of which the outline is quicker to unite than all of them."""
 _KEY = 1e-6
 """Points of a region closer than this share of the tolerance are one."""
 
@@ -112,8 +114,44 @@ def _region(flat: Array, unit: float) -> CrossSection:
     """The union of triangles (n, 3, 2), in units of `unit` (m)."""
     signed = _signed(flat)
     flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
-    keep = np.abs(signed) > 1e-12 * unit * unit
-    return CrossSection(list(np.ascontiguousarray(flat[keep])), FillRule.Positive)
+    flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
+    return CrossSection(_outline(flat) if len(flat) > _MANY else list(flat), FillRule.Positive)
+
+
+def _outline(flat: Array) -> list[Array]:
+    """Closed loops around triangles (n, 3, 2) of positive area: edges that no other triangle runs the other way.
+
+    They wind about every point as often as the triangles do, and there are far fewer of them.
+    """
+    cells = np.round(flat.reshape(-1, 2) / _KEY)
+    order = np.lexsort((cells[:, 1], cells[:, 0]))
+    fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
+    renamed = np.empty(len(order), np.int64)
+    renamed[order] = np.cumsum(fresh) - 1
+    points, count = flat.reshape(-1, 2)[order[fresh]], np.int64(fresh.sum())
+    corner = renamed.reshape(-1, 3)
+    start, end = renamed, np.roll(corner, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    edge, number = np.unique(low * count + high, return_inverse=True)
+    net = np.bincount(number, np.where(start < end, 1.0, -1.0)).astype(np.int64)
+    times = np.abs(net)
+    one: Ints = np.repeat(edge // count, times)
+    two: Ints = np.repeat(edge % count, times)
+    forward = np.repeat(net > 0, times)
+    onward: dict[int, list[int]] = {}
+    for a, b in zip(np.where(forward, one, two).tolist(), np.where(forward, two, one).tolist(), strict=True):
+        onward.setdefault(a, []).append(b)
+    loops = []
+    for begin in sorted(onward):
+        while onward[begin]:
+            # every corner is left as often as it is reached, so that a walk ends where it began
+            loop, at = [begin], onward[begin].pop()
+            while at != begin:
+                loop.append(at)
+                at = onward[at].pop()
+            if len(loop) > 2:
+                loops.append(points[loop])
+    return loops
 
 
 def _perimeter(polygons: list[Array]) -> float:

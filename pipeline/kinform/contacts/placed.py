@@ -38,8 +38,6 @@ class PlacedPart:
     """Whether the frame of the pair is the part's own."""
     vertices: Array
     """(V, 3)."""
-    normals: Array
-    """(F, 3) outward."""
     low: Array
     high: Array
     """(3,) bounding box."""
@@ -57,6 +55,10 @@ class PlacedPart:
     def faces(self) -> Ints:
         """(F, 3)."""
         return self.index.mesh.faces
+
+    def normals(self, facets: Ints) -> Array:
+        """(n, 3) unit, outward, of facets (n,), in the frame of the pair."""
+        return np.asarray(self.index.normals(facets) @ self.X_FP[:3, :3].T)
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m to the mesh of points (n, 3) on the other part, and the nearest facets (n,).
@@ -86,15 +88,14 @@ def place(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array | No
     table = index.table(surfaces)
     region = Region(index, None, np.zeros(0, np.int64))
     if X_FP is None:
-        vertices, normals, low, high = index.mesh.vertices, index.normals, index.low, index.high
+        vertices, low, high = index.mesh.vertices, index.low, index.high
     else:
         R_FP = X_FP[:3, :3]
         vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
-        normals = index.normals @ R_FP.T
         columns = np.ascontiguousarray(vertices.T)
         low, high = columns.min(axis=1), columns.max(axis=1)
     pose = np.eye(4) if X_FP is None else X_FP
-    return PlacedPart(part, index, surfaces, table, pose, X_FP is None, vertices, normals, low, high, region, 0.0)
+    return PlacedPart(part, index, surfaces, table, pose, X_FP is None, vertices, low, high, region, 0.0)
 
 
 def facing(a: PlacedPart, b: PlacedPart, low: Array, high: Array, margin: float) -> tuple[PlacedPart, PlacedPart]:
