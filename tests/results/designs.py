@@ -18,7 +18,7 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
-from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility
+from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Release
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -149,6 +149,11 @@ def mobilities(draw: Any) -> Mobility:
     return draw(of(Mobility, freedoms=array(draw(st.integers(0, 2)), draw(st.integers(0, 2)), 6)))
 
 
+def releases() -> st.SearchStrategy[Any]:
+    """Ways out of contact."""
+    return of(Release, twist=array(6))
+
+
 def mass_properties() -> st.SearchStrategy[Any]:
     """Mass properties, known or not."""
     return of(MassProperties, inertia=array(3, 3), principal_axes=array(3, 3))
@@ -171,7 +176,7 @@ def simulations(draw: Any) -> Simulation:
 
 SPECIAL: dict[Any, Any] = {
     Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
-    Mobility: mobilities, MassProperties: mass_properties, Simulation: simulations,
+    Mobility: mobilities, Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip
 
 

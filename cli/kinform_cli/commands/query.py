@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -14,7 +16,7 @@ from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from kinform.kinematics import QueryAnswer
+    from kinform.kinematics import IntendedAnswer, IntendedMotion, QueryAnswer, QueryBlocker
     from kinform.model.design import Design
     from kinform_cli.text import Lengths
 
@@ -24,6 +26,7 @@ EXAMPLES = examples(
     "kinform query arm.h5 base shoulder --turn z@0,-45.2,16.5",
     "kinform query arm.h5 housing lid --slide 0,0,1",
     "kinform query arm.h5 rail carriage --slide x --format json",
+    "kinform query arm.h5 --intended",
 )
 
 _NAMED = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -31,11 +34,11 @@ _NAMED = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 def query(
     source: Results,
-    a: Annotated[str, typer.Argument(metavar="A", show_default=False, help="Part, group or body.")],
+    a: Annotated[str | None, typer.Argument(metavar="A", show_default=False, help="Part, group or body.")] = None,
     b: Annotated[
-        str,
+        str | None,
         typer.Argument(metavar="B", show_default=False, help="Part, group or body that moves relative to A."),
-    ],
+    ] = None,
     turn: Annotated[
         str | None,
         typer.Option(
@@ -50,6 +53,9 @@ def query(
         str | None,
         typer.Option("--slide", metavar="DIRECTION", show_default=False, help="Translation: x, y, z, -x … or 0,0,1."),
     ] = None,
+    intended: Annotated[
+        bool, typer.Option("--intended", help="Ask it of every joint of [function], in place of A, B and a motion.")
+    ] = False,
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
     ] = TableFormat.table,
@@ -60,21 +66,24 @@ def query(
 
     The exit code says whether there is an answer (0), not which one.
     """
+    if intended:
+        if not (a is b is turn is slide is None):
+            raise typer.BadParameter("goes without A, B, --turn and --slide", param_hint="--intended")
+        _intended(source, format)
+        return
+    if a is None or b is None:
+        raise typer.BadParameter("name A and B, or ask for --intended")
     if (turn is None) == (slide is None):
         raise typer.BadParameter("give either --turn AXIS@POINT or --slide DIRECTION")
     axis, point = (None, None) if turn is None else _turn(turn)
     direction = None if slide is None else _direction(slide, "--slide")
-    design = files.read(source)
+    design = _design(source)
     import numpy as np
 
     from kinform import kinematics
-    from kinform.errors import StageError
     from kinform_cli import text
 
     lengths = text.Lengths.of(design.assembly)
-    with files.needing(source):
-        if design.kinematics is None:
-            raise StageError("`kinform query`", "joints")
     rotation = None if point is None else (np.array(axis), np.array(point) * lengths.metres)
     try:
         answer = kinematics.query(design, a, b, turn=rotation, slide=None if direction is None else np.array(direction))
@@ -85,6 +94,30 @@ def query(
         console.emit(text.dumps(_data(design, motion, answer)))
     else:
         console.out(_render(answer, lengths))
+
+
+def _design(source: Path) -> Design:
+    design = files.read(source)
+    from kinform.errors import StageError
+
+    with files.needing(source):
+        if design.kinematics is None:
+            raise StageError("`kinform query`", "joints")
+    return design
+
+
+def _intended(source: Path, format: TableFormat) -> None:
+    """The answers for all intended joints."""
+    design = _design(source)
+    from kinform import kinematics
+    from kinform_cli import text
+
+    answers = kinematics.intended_answers(design)
+    if format is TableFormat.json:
+        head = {"schema": "kinform/query-intended/1", "assembly": design.assembly.name}
+        console.emit(text.dumps(head | {"joints": [_data_intended(design, answer) for answer in answers]}))
+    else:
+        console.out(_render_intended(answers, text.Lengths.of(design.assembly)))
 
 
 def _turn(value: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -121,35 +154,65 @@ def _data(design: Design, motion: dict[str, Any], answer: QueryAnswer) -> dict[s
         "assembly": design.assembly.name,
         "bodies": answer.bodies,
         "motion": motion,
+        **_answered(answer),
+    }
+
+
+def _answered(answer: QueryAnswer) -> dict[str, Any]:
+    def ways(pair: tuple[bool | None, bool | None] | None) -> dict[str, bool | None] | None:
+        return None if pair is None else {"forward": pair[0], "backward": pair[1]}
+
+    def contacts(blockers: Iterable[QueryBlocker]) -> list[dict[str, Any]]:
+        names = ("parts", "patch", "kind", "place", "area")
+        return [{name: getattr(blocker, name) for name in names} for blocker in blockers]
+
+    return {
         "free_in_pair": answer.free_in_pair,
         "free_in_assembly": answer.free_in_assembly,
         "residual": answer.residual,
-        "blocked_by": [
-            {
-                "parts": blocker.parts,
-                "patch": blocker.patch,
-                "kind": blocker.kind,
-                "place": blocker.place,
-                "area": blocker.area,
-            }
-            for blocker in answer.blocked_by
-        ],
+        "blocked_by": contacts(answer.blocked_by),
         "text": answer.text,
+        "ways_in_pair": ways(answer.pair_ways),
+        "ways_in_assembly": ways(answer.assembly_ways),
+        "assembly_blocked_by": contacts(answer.assembly_blocked_by),
+        "assembly_blocked_by_joints": answer.assembly_blocked_by_joints,
+    }
+
+
+def _data_intended(design: Design, found: IntendedAnswer) -> dict[str, Any]:
+    return {
+        "name": found.joint.name,
+        "type": found.joint.type,
+        "between": found.joint.between,
+        "free": found.free,
+        "text": found.text,
+        "motions": [{"kind": item.kind, "twist": item.twist, **_answered(item.answer)} for item in found.motions],
     }
 
 
 def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
     from rich.console import Group
 
+    items: list[RenderableType] = [answer.text]
+    if answer.blocked_by:
+        items.append(_contacts("\nBlocked by", answer.blocked_by, lengths))
+    elsewhere = [item for item in answer.assembly_blocked_by if item.patch not in {b.patch for b in answer.blocked_by}]
+    if elsewhere:
+        title = "\nBlocked in the whole assembly also by" if answer.blocked_by else "\nBlocked in the whole assembly by"
+        items.append(_contacts(title, elsewhere, lengths))
+    if answer.assembly_blocked_by_joints:
+        items.append(f"\nand by joints that are stated: {', '.join(answer.assembly_blocked_by_joints)}")
+    return Group(*items)
+
+
+def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) -> RenderableType:
     from kinform_cli.tables import Rows
 
-    if not answer.blocked_by:
-        return answer.text
     unit = lengths.unit
     numeric = ("patch", f"area {unit}²")
     headings = ("part", "part", "patch", "surface", numeric[1], f"at {unit}")
-    rows = Rows(*headings, title="\nBlocked by", right=numeric, keys=2)
-    for blocker in answer.blocked_by:
+    rows = Rows(*headings, title=title, right=numeric, keys=2)
+    for blocker in blockers:
         rows.add(
             *blocker.parts,
             str(blocker.patch),
@@ -157,4 +220,33 @@ def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
             lengths.area(blocker.area),
             lengths.point(blocker.place),
         )
-    return Group(answer.text, rows)
+    return rows
+
+
+def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> RenderableType:
+    from rich.console import Group
+    from rich.text import Text
+
+    if not answers:
+        return "no joints are intended: [function] states none"
+    items: list[RenderableType] = []
+    words = {True: "yes", False: "no", None: "not known"}
+    for found in answers:
+        between = " and ".join(found.joint.between)
+        items.append(
+            Text(f"{found.joint.name}: {found.joint.type} between {between}: {words[found.free]}", style="bold")
+        )
+        items.append(f"  {found.text}")
+        for item in found.motions:
+            if not item.answer.free_in_assembly:
+                items.append(f"  {item.kind} ({_sense(item)}): {item.answer.text}")
+                blocking = {b.patch: b for b in (*item.answer.blocked_by, *item.answer.assembly_blocked_by)}
+                if blocking:
+                    items.append(_contacts("Blocked by", blocking.values(), lengths))
+    return Group(*items)
+
+
+def _sense(item: IntendedMotion) -> str:
+    from kinform_cli.text import vector
+
+    return vector(item.twist[:3] if item.kind != "slide" else item.twist[3:])

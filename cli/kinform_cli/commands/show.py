@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinform_cli import console, files
+from kinform_cli.errors import refuse
 from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
+
+if TYPE_CHECKING:
+    from kinform.model.design import Design
 
 __all__ = ["EXAMPLES", "Topic", "show"]
 
@@ -16,6 +21,7 @@ EXAMPLES = examples(
     "kinform show arm.h5",
     "kinform show arm.h5 joints",
     "kinform show arm.h5 joints --format json | jq '.joints[].type'",
+    "kinform show arm.h5 joints --joint base~shoulder",
     "kinform show arm.h5 contacts | grep shoulder",
 )
 
@@ -45,13 +51,28 @@ def show(
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
     ] = TableFormat.table,
+    joint: Annotated[
+        str | None,
+        typer.Option(
+            "--joint",
+            metavar="NAME",
+            show_default=False,
+            help="With joints: all the evidence of this joint, and what would make it another.",
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Show what a results file holds: tables for people, or JSON."""
+    if joint is not None and topic is not Topic.joints:
+        raise typer.BadParameter("goes with joints, as in: kinform show F.h5 joints --joint NAME", param_hint="--joint")
     design = files.read(source)
     from kinform import reports
     from kinform_cli import views
+
+    if joint is not None:
+        _one(design, joint, source, format)
+        return
 
     name = None if topic is None else topic.value
     with files.needing(source):
@@ -59,3 +80,18 @@ def show(
             console.emit(reports.summary_json(design, name))
         else:
             console.out(views.render(design, name))
+
+
+def _one(design: Design, joint: str, source: Path, format: TableFormat) -> None:
+    """The evidence of one joint."""
+    from kinform import reports
+    from kinform_cli import views
+
+    try:
+        with files.needing(source):
+            if format is TableFormat.json:
+                console.emit(reports.joint_json(design, joint))
+            else:
+                console.out(views.render_joint(design, joint))
+    except KeyError as error:
+        raise refuse(str(error.args[0]), file=source, remedy="name one of them") from None

@@ -6,10 +6,10 @@ from rich.console import RenderableType
 
 from kinform.errors import StageError
 from kinform.model.design import Design
-from kinform_cli.views import overview
+from kinform_cli.views import joint, overview
 from kinform_cli.views.topics import TOPICS
 
-__all__ = ["render"]
+__all__ = ["render", "render_joint"]
 
 
 def render(design: Design, topic: str | None) -> RenderableType:
@@ -19,6 +19,12 @@ def render(design: Design, topic: str | None) -> RenderableType:
     _require(design, topic)
     view: RenderableType = TOPICS[topic].view.render(design)
     return view
+
+
+def render_joint(design: Design, name: str) -> RenderableType:
+    """All the evidence of one joint; raises StageError, or KeyError for a name that no joint has."""
+    _require(design, "joints")
+    return joint.render(design, name)
 
 
 def _require(design: Design, topic: str) -> None:

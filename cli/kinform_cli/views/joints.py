@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kinform.model.design import Design
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, count, number, vector
 
-__all__ = ["ground_note", "render"]
+__all__ = ["blockers", "ground_note", "leaves", "render", "sentence"]
 
 
 def _known(design: Design) -> Kinematics:
@@ -44,6 +46,7 @@ def render(design: Design) -> RenderableType:
             ", ".join(joint.evidence),
         )
     items: list[RenderableType] = [rows]
+    items += _leaving(kinematics)
     for joint in kinematics.joints:
         if joint.status != "determined":
             items += _doubt(joint, lengths)
@@ -52,6 +55,59 @@ def render(design: Design) -> RenderableType:
     if note is not None:
         items.append(note)
     return Group(*items)
+
+
+MOST_WAYS = 3
+"""Ways to leave that are told of each joint; `--joint` tells all."""
+
+
+def sentence(joint: Joint) -> str:
+    """The joint and how it comes apart: "revolute about z; can also lift off along +z"."""
+    about = "" if joint.axis is None else f" {_SENSES.get(joint.type, 'along')} {vector(joint.axis)}"
+    if joint.type == "planar":
+        about = f" on {vector(joint.axis)}"
+    return f"{joint.type}{about}; {leaves(joint)}"
+
+
+_SENSES = {"revolute": "about", "screw": "about", "universal": "about"}
+
+
+def leaves(joint: Joint) -> str:
+    """Whether contact holds the bodies together, and else how the second leaves the first."""
+    if joint.held:
+        return "held: no motion breaks the contact"
+    if joint.held is None:
+        return f"not known whether they can come apart: {joint.held_reason or 'computed by an older version'}"
+    return f"can also {_told(joint.releases, many=joint.extremes is None or joint.extremes > len(joint.releases))}"
+
+
+def _told(releases: Sequence[Release], *, many: bool = False) -> str:
+    """The slides among the ways to leave, else the first turns."""
+    slides = [way for way in releases if way.kind == "slide"]
+    told = (slides or list(releases))[:MOST_WAYS]
+    words = ", ".join(way.words for way in told)
+    if many or not all(way.extreme for way in told):
+        return f"{words}, and many ways beside"
+    more = len(releases) - len(told)
+    return words + (f", and {count(more, 'more way')}" if more else "")
+
+
+def _leaving(kinematics: Kinematics) -> list[RenderableType]:
+    """How each joint comes apart that does, and what leaves the assembly."""
+    lines: list[RenderableType] = []
+    loose = [joint for joint in kinematics.joints if joint.held is False]
+    if loose:
+        lines.append(Text("\nContact that can be broken, by the second body relative to the first", style="bold"))
+        lines += [f"  {joint.name}: {sentence(joint)}" for joint in loose]
+    held = sum(joint.held is True for joint in kinematics.joints)
+    if held:
+        lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {count(len(kinematics.joints), 'joint')}")
+    if kinematics.separations:
+        lines.append(Text("\nCan leave the assembly, the rest at rest", style="bold"))
+        lines += [f"  {', '.join(item.bodies)}: {_told(item.releases)}" for item in kinematics.separations]
+    if kinematics.separations_reason:
+        lines.append(f"\n{kinematics.separations_reason}")
+    return lines
 
 
 def ground_note(design: Design) -> str | None:
@@ -66,6 +122,12 @@ def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:
     lines: list[RenderableType] = [Text(f"\n{joint.name} is {joint.status}: {joint.reason}")]
     if joint.status == "ambiguous":
         lines.append(f"  singular values: {', '.join(number(float(value)) for value in joint.singular_values)}")
+    return [*lines, *blockers(joint, lengths)]
+
+
+def blockers(joint: Joint, lengths: Lengths) -> list[RenderableType]:
+    """A line for each patch that blocks the joint."""
+    lines: list[RenderableType] = []
     for blocker in joint.blockers:
         extent = f"{lengths.area(blocker.area)} {lengths.unit}², {100 * blocker.share:.2g} % of the contact"
         lines.append(

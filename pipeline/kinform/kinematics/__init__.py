@@ -1,9 +1,24 @@
 """Joints and mobility from contacts: screw algebra, constraint rows, decisions, loop closure."""
 
 from kinform.kinematics.derive import derive, functional, mobility_within
+from kinform.kinematics.insight import Insight, insight
+from kinform.kinematics.intended import IntendedAnswer, IntendedMotion, intended_answers
 from kinform.kinematics.query import QueryAnswer, QueryBlocker, query
 
-__all__ = ["CODE_VERSION", "QueryAnswer", "QueryBlocker", "derive", "functional", "mobility_within", "query"]
+__all__ = [
+    "CODE_VERSION",
+    "Insight",
+    "IntendedAnswer",
+    "IntendedMotion",
+    "QueryAnswer",
+    "QueryBlocker",
+    "derive",
+    "functional",
+    "insight",
+    "intended_answers",
+    "mobility_within",
+    "query",
+]
 
-CODE_VERSION = 3
+CODE_VERSION = 4
 """Bumped when the results of this stage change for the same input."""

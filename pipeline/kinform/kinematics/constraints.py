@@ -16,35 +16,92 @@ from kinform.kinematics.screws import Frame, perpendicular, rows, scaled
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
 
-__all__ = ["assemble", "extreme_samples"]
+__all__ = ["assemble", "extreme_samples", "hull"]
 
 Array = NDArray[np.float64]
 
-RIM = 16
-"""Extreme samples are looked for in this many directions in the plane of a patch."""
+SECTORS = 16
+"""Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept."""
+FEW = 12
+"""Patches with no more samples than this keep them all."""
+STRAIGHT = 1e-6
+"""Corners of a hull that stand out less than this share of its size are on an edge."""
 
 
 def extreme_samples(patch: Patch) -> NDArray[np.int64]:
-    """Indices of the samples that bound the patch, ascending."""
+    """Indices of the samples that bound the patch, ascending: n·v ≥ 0 at these implies it at all samples.
+
+    Exact for planes, lines and for cylinders and cones sampled on a grid. Of other curved patches with many
+    samples the ends of sectors of normals are kept.
+    """
     points = patch.points
-    if len(points) <= 2 * RIM:
-        return np.arange(len(points), dtype=np.int64)
-    chosen: set[int] = set()
     if patch.kind == "plane":
-        u, v = perpendicular(patch.axis)
-        angle = 2.0 * np.pi * np.arange(RIM) / RIM
-        height = points @ (np.outer(np.cos(angle), u) + np.outer(np.sin(angle), v)).T
-        chosen.update(int(k) for k in height.argmax(axis=0))
-    else:
-        # on a curved patch the normals differ: keep the extremes in each sector of normals
-        u, v = perpendicular(patch.axis) if np.any(patch.axis) else (np.eye(3)[0], np.eye(3)[1])
-        w = np.cross(u, v)
-        sector = np.floor(np.arctan2(patch.normals @ v, patch.normals @ u) / (2.0 * np.pi / RIM)).astype(int)
-        height = points @ w
-        for s in np.unique(sector):
-            members = np.flatnonzero(sector == s)
-            chosen.update((int(members[height[members].argmin()]), int(members[height[members].argmax()])))
-    return np.array(sorted(chosen), dtype=np.int64)
+        return hull(points, patch.axis)
+    if len(points) <= FEW or not (np.any(patch.axis) or patch.kind == "sphere"):
+        return np.arange(len(points), dtype=np.int64)
+    if patch.kind == "sphere":
+        return _rim(patch.normals)
+    u, v = perpendicular(patch.axis)
+    angle = np.arctan2(patch.normals @ v, patch.normals @ u)
+    height = points @ patch.axis
+    sector = np.floor(angle / (2.0 * np.pi / SECTORS)).astype(int)
+    turn = np.round(angle / 1e-6)
+    level = np.round(height / (1e-6 * max(float(np.ptp(height)), 1e-300)))
+    ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
+    ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
+    first = np.flatnonzero(np.diff(sector[ends[0]], prepend=sector.min() - 1))
+    return np.unique(np.concatenate([order[first] for order in ends])).astype(np.int64)
+
+
+def hull(points: Array, axis: Array) -> NDArray[np.int64]:
+    """Indices, ascending, of the corners of the convex hull of the points (n, 3) seen along the axis."""
+    from scipy.spatial import ConvexHull
+
+    if len(points) <= 2:
+        return np.arange(len(points), dtype=np.int64)
+    u, v = perpendicular(axis)
+    flat = np.stack([points @ u, points @ v], axis=1)
+    flat = flat - flat.mean(axis=0)
+    size = float(np.abs(flat).max())
+    if size == 0.0:
+        return np.zeros(1, dtype=np.int64)
+    _, _, right = np.linalg.svd(flat, full_matrices=False)
+    if float(np.abs(flat @ right[1]).max()) < STRAIGHT * size:
+        along = flat @ right[0]
+        return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
+    corners = ConvexHull(flat).vertices.astype(np.int64)
+    while len(corners) > 3:
+        here, before, after = flat[corners], flat[np.roll(corners, 1)], flat[np.roll(corners, -1)]
+        edge, arm = after - before, here - before
+        out = np.abs(edge[:, 0] * arm[:, 1] - edge[:, 1] * arm[:, 0])
+        k = int(np.argmin(out))
+        if out[k] > STRAIGHT * size * max(float(np.hypot(*edge[k])), STRAIGHT * size):
+            break
+        corners = np.delete(corners, k)
+    return np.sort(corners)
+
+
+def _rim(normals: Array) -> NDArray[np.int64]:
+    """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round."""
+    mean = normals.mean(axis=0)
+    along = normals @ mean / max(float(np.linalg.norm(mean)), 1e-300)
+    if along.min() > 1e-3:
+        return hull(normals / along[:, None], mean / np.linalg.norm(mean))
+    ends = SPREAD @ normals.T
+    return np.unique(ends.argmax(axis=1)).astype(np.int64)
+
+
+def _spread(count: int) -> Array:
+    """(count, 3) unit vectors, evenly over the sphere (a golden spiral)."""
+    k = np.arange(count) + 0.5
+    z = 1.0 - 2.0 * k / count
+    turn = np.pi * (1.0 + 5.0**0.5) * k
+    flat = np.sqrt(1.0 - z * z)
+    return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+
+
+SPREAD = _spread(96)
+"""Directions in which the ends of a ball's normals are looked for."""
 
 
 def assemble(bodies: Sequence[Body], joints: Sequence[Joint], patches: Sequence[Patch]) -> ConstraintMatrix:

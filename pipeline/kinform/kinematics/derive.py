@@ -17,7 +17,9 @@ from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import body_twists, close
+from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.screws import twist_at_origin
+from kinform.kinematics.separations import links_between, separations
 from kinform.kinematics.snapping import snap
 from kinform.model.assembly import Assembly, Assumption
 from kinform.model.contacts import Contacts, Patch
@@ -26,7 +28,7 @@ from kinform.model.kinematics import Body, Joint, Kinematics, Misfit, Mobility
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["derive", "functional", "mobility_within"]
+__all__ = ["derive", "evidence_between", "functional", "mobility_within"]
 
 Array = NDArray[np.float64]
 Pair = tuple[BodyName, BodyName]
@@ -63,7 +65,10 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
             misaligned.append((joint.name, angle, offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
     snapped, misfit = snap(joints, contacts.patches, extents.assembly)
-    return _finish(assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly)
+    return _finish(
+        assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
+        _clusters(assembly, contacts),
+    )  # fmt: skip
 
 
 def functional(assembly: Assembly) -> Kinematics:
@@ -81,7 +86,7 @@ def functional(assembly: Assembly) -> Kinematics:
         if pair is not None:
             stated[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     joints = tuple(stated[pair] for pair in sorted(stated))
-    return _finish(assembly, bodies, joints, (), Misfit(), {}, (), Extents(assembly).assembly)
+    return _finish(assembly, bodies, joints, (), Misfit(), {}, (), Extents(assembly).assembly, bodies)
 
 
 def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
@@ -119,9 +124,8 @@ def _decide_all(
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
-                contact = max(contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members)
-                size = min(extents.diagonal(body.parts) for body in bodies if body.name in pair)
-                evidence = gather(members, assembly.tolerances, contact, size)
+                between = [body for body in bodies if body.name in pair]
+                evidence = evidence_between(members, between, assembly, contacts, extents)
                 known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
             found = known[key]
             if found is None:
@@ -135,6 +139,26 @@ def _decide_all(
                 fused = True
         if not fused:
             return out
+
+
+def _clusters(assembly: Assembly, contacts: Contacts) -> tuple[Body, ...]:
+    """The parts that something other than contact makes one: what could come apart, seen from contact alone."""
+    merger = Merger(assembly)
+    fasten(assembly, contacts, merger)
+    return merger.bodies()
+
+
+def evidence_between(
+    members: Sequence[tuple[int, Patch, bool]],
+    bodies: Sequence[Body],
+    assembly: Assembly,
+    contacts: Contacts,
+    extents: Extents,
+) -> Evidence | None:
+    """Evidence of patches (index, patch, turned) between two bodies; None where none has an area."""
+    contact = max(contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members)
+    size = min(extents.diagonal(body.parts) for body in bodies)
+    return gather(members, assembly.tolerances, contact, size)
 
 
 def _stated_roots(assembly: Assembly, merger: Merger) -> set[frozenset[int]]:
@@ -199,6 +223,7 @@ def _finish(
     strict: Mapping[JointName, Array],
     misaligned: tuple[tuple[str, float, float], ...],
     size: float,
+    clusters: tuple[Body, ...],
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
@@ -221,7 +246,12 @@ def _finish(
         uncertain=tuple(j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"),
     )
     matrix = assemble(bodies, joints, patches)
-    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned)
+    rows = ContactRows(matrix, bodies, patches)
+    joints = with_releases(joints, pair_cones(rows, joints, patches))
+    links = links_between(clusters, bodies, joints, patches, rows)
+    first = next(k for k, item in enumerate(clusters) if item.ground)
+    apart, reason = separations([item.name for item in clusters], first, links)
+    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason)
 
 
 def _orthonormal(twists: Array) -> Array:

@@ -22,6 +22,8 @@ __all__ = [
     "Kinematics",
     "Misfit",
     "Mobility",
+    "Release",
+    "Separation",
 ]
 
 Array = NDArray[np.float64]
@@ -63,6 +65,24 @@ class Blocker:
 
 
 @dataclass(frozen=True, eq=False)
+class Release:
+    """One way in which the second body can leave the first, breaking contact; the opposite way is blocked."""
+
+    kind: str
+    """slide, turn or screw."""
+    twist: Array
+    """(6,) of the second relative to the first: unit direction of a slide, unit ω of a turn or screw."""
+    direction: Array
+    """(3,) unit, signed: of the slide, or of the turn by the right hand."""
+    point: Array | None
+    """(3,) m, on the axis of a turn or screw."""
+    extreme: bool
+    """False: one of very many directions, in the middle of them."""
+    words: str
+    """"lift off along +z", "tip about -x"."""
+
+
+@dataclass(frozen=True, eq=False)
 class Joint:
     """What two bodies may do relative to each other; values are of the second about `axis`
     relative to the first."""
@@ -93,6 +113,26 @@ class Joint:
     range_lower: float | None = None
     range_upper: float | None = None
     range_status: str = "unknown"
+    held: bool | None = None
+    """Whether contact lets no motion of the second body break it; None where contact does not say."""
+    releases: tuple[Release, ...] = ()
+    """Ways to leave, where they are not held: slides first."""
+    extremes: int | None = None
+    """How many extreme directions the leaving motions have; None where held, not known, or too many to list."""
+    held_reason: str = ""
+    """Why it is not known whether they are held."""
+
+
+@dataclass(frozen=True, eq=False)
+class Separation:
+    """Bodies that can leave the rest of the assembly together, as one, with everything else at rest."""
+
+    bodies: tuple[BodyName, ...]
+    """Sorted. Parts or groups, where contact alone makes them one body with others."""
+    contacts: tuple[JointName, ...]
+    """The pairs whose contact it breaks."""
+    releases: tuple[Release, ...]
+    """Relative to the rest; slides first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +193,10 @@ class Kinematics:
     misfit: Misfit
     misaligned: tuple[tuple[str, float, float], ...] = ()
     """(joint name, angle rad, offset m) of pairs whose axes were mated beyond what clearance allows."""
+    separations: tuple[Separation, ...] = ()
+    """What can leave the assembly, ground held; sorted by bodies."""
+    separations_reason: str = ""
+    """Why it is not known, or not known of all bodies, whether they can leave."""
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from kinform.model.design import Design
 from kinform.model.findings import CheckReport
 from kinform.reports import as_json, concise, full
-from kinform.reports.json_views import summary, summary_json
+from kinform.reports.json_views import joint_evidence, joint_json, summary, summary_json
 
-__all__ = ["FORMATS", "render", "summary", "summary_json"]
+__all__ = ["FORMATS", "joint_evidence", "joint_json", "render", "summary", "summary_json"]
 
 FORMATS: dict[str, Callable[[CheckReport, Design], str]] = {
     "concise": concise.render,

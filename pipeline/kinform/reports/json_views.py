@@ -16,15 +16,26 @@ import numpy as np
 
 from kinform.behaviour.joints import KINDS
 from kinform.errors import StageError
+from kinform.kinematics import insight
 from kinform.model.assembly import Assembly, Part
 from kinform.model.design import Design
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Joint, Kinematics, Mobility
+from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
 from kinform.reports import as_json
 
-__all__ = ["TOPICS", "coordinates", "mobility_counts", "plain", "summary", "summary_json"]
+__all__ = [
+    "TOPICS",
+    "coordinates",
+    "joint_evidence",
+    "joint_json",
+    "mobility_counts",
+    "plain",
+    "release",
+    "summary",
+    "summary_json",
+]
 
 
 def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
@@ -48,6 +59,39 @@ def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
 def summary_json(design: Design, topic: str | None = None) -> str:
     """`summary` as JSON text, ending in a newline."""
     return json.dumps(summary(design, topic), indent=1, allow_nan=False) + "\n"
+
+
+def joint_evidence(design: Design, name: str) -> dict[str, Any]:
+    """All the evidence of one joint. Raises StageError when joints are not known, KeyError for another name."""
+    if not _known(design, "joints"):
+        raise StageError("`kinform show joints`", TOPICS["joints"][0])
+    found = insight(design, name)
+    of_patch = ("parts", "surfaces", "kind", "one_sided", "area", "gap", "fit")
+    evidence: dict[str, Any] = plain(
+        {
+            "schema": "kinform/joint/1",
+            "assembly": design.assembly.name,
+            "units": design.assembly.units,
+            "joint": _joint(found.joint),
+            "patches": [
+                _fields(item, "index", "role", "share", "rows") | _fields(item.patch, *of_patch)
+                for item in found.patches
+            ],
+            **_fields(found, "rows", "samples", "last_free", "first_held"),
+            "thresholds": _fields(found, "free", "held"),
+            "alternatives": [
+                _fields(item, "without", "frees", "type", "freedoms", "status", "axis") for item in found.alternatives
+            ],
+            **_fields(found, "tried"),
+            "remark": found.remark or None,
+        }
+    )
+    return evidence
+
+
+def joint_json(design: Design, name: str) -> str:
+    """`joint_evidence` as JSON text, ending in a newline."""
+    return json.dumps(joint_evidence(design, name), indent=1, allow_nan=False) + "\n"
 
 
 def plain(value: Any) -> Any:
@@ -153,6 +197,11 @@ def _joints(design: Design) -> dict[str, Any]:
         "bodies": [_fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [_joint(joint) for joint in kinematics.joints],
         "mobility": mobility_counts(kinematics.mobility),
+        "separations": [
+            _fields(item, "bodies", "contacts") | {"releases": [release(way) for way in item.releases]}
+            for item in kinematics.separations
+        ],
+        "separations_reason": kinematics.separations_reason or None,
     }
 
 
@@ -170,7 +219,14 @@ def _joint(joint: Joint) -> dict[str, Any]:
         "patches": joint.patches,
         "blocked_by": [_fields(blocker, *of_blocker) for blocker in joint.blockers],
         "singular_values": joint.singular_values,
+        **_fields(joint, "held", "held_reason", "extremes"),
+        "releases": [release(way) for way in joint.releases],
     }
+
+
+def release(way: Release) -> dict[str, Any]:
+    """A way to leave, as JSON has it."""
+    return _fields(way, "kind", "direction", "point", "twist", "extreme", "words")
 
 
 def _mobility(design: Design) -> dict[str, Any]:

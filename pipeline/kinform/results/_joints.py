@@ -6,7 +6,7 @@ from typing import Any
 
 import h5py
 
-from kinform.model.kinematics import Blocker, Body, Joint, Kinematics, Misfit
+from kinform.model.kinematics import Blocker, Body, Joint, Kinematics, Misfit, Release, Separation
 from kinform.results._table import (
     flag,
     integer,
@@ -14,6 +14,7 @@ from kinform.results._table import (
     read_ragged,
     read_records,
     read_rows,
+    read_texts,
     real,
     text,
     texts,
@@ -21,6 +22,7 @@ from kinform.results._table import (
     write_ragged,
     write_records,
     write_rows,
+    write_texts,
 )
 
 __all__ = ["read", "write"]
@@ -36,6 +38,15 @@ _BLOCKERS = (
     integer("joint"), pair("parts", text, ("part_a", "part_b")), integer("patch"), real("area", "m²"),
     real("share", "1"), vector("place", "m"), real("gap", "m"), text("forbids"),
 )  # fmt: skip
+_HELD = (integer("held", optional=True), integer("extremes", optional=True), text("held_reason"))
+_RELEASE = (
+    text("kind"), vector("direction", "1"), vector("point", "m"), flag("extreme"),
+    text("words"), vector("twist", "rad/s, m/s (ω; v)", ("wx", "wy", "wz", "vx", "vy", "vz")),
+)  # fmt: skip
+"""Columns of a release, wherever one is stored."""
+_RELEASES = (integer("joint"), *_RELEASE)
+_SEPARATIONS = (texts("bodies"), texts("contacts"))
+_WAYS_APART = (integer("separation"), *_RELEASE)
 _MISFIT = (real("angle", "rad"), real("distance", "m"), text("angle_at"), text("distance_at"))
 _MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
 
@@ -50,19 +61,41 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     write_ragged(group, "patches", [joint.patches for joint in joints], "1", dtype="<i8")
     blockers = [vars(blocker) | {"joint": i} for i, joint in enumerate(joints) for blocker in joint.blockers]
     write_rows(group, "blockers", _BLOCKERS, blockers)
+    held = [vars(joint) | {"held": None if joint.held is None else int(joint.held)} for joint in joints]
+    write_rows(group, "held", _HELD, held)
+    releases = [vars(release) | {"joint": i} for i, joint in enumerate(joints) for release in joint.releases]
+    write_rows(group, "releases", _RELEASES, releases)
+    apart = kinematics.separations
+    write_records(group, "separations", _SEPARATIONS, apart)
+    ways = [vars(release) | {"separation": i} for i, item in enumerate(apart) for release in item.releases]
+    write_rows(group, "separation_releases", _WAYS_APART, ways)
+    write_texts(group, "separations_reason", [kinematics.separations_reason])
     write_records(group, "misfit", _MISFIT, [kinematics.misfit])
     fields = [column.field for column in _MISALIGNED]
     rows = [dict(zip(fields, row, strict=True)) for row in kinematics.misaligned]
     write_rows(group, "misaligned", _MISALIGNED, rows)
 
 
+def _separations(group: h5py.Group) -> dict[str, Any]:
+    if "separations" not in group:
+        return {}
+    (reason,) = read_texts(group, "separations_reason")
+    rows = read_rows(group, "separations", _SEPARATIONS)
+    ways: list[list[Release]] = [[] for _ in rows]
+    for row in read_rows(group, "separation_releases", _WAYS_APART):
+        ways[row.pop("separation")].append(Release(**row))
+    found = [Separation(**row, releases=tuple(own)) for row, own in zip(rows, ways, strict=True)]
+    return {"separations": tuple(found), "separations_reason": reason}
+
+
 def read(group: h5py.Group) -> dict[str, Any]:
-    """The fields `bodies`, `joints`, `misfit` and `misaligned` of Kinematics."""
+    """The fields of Kinematics that `write` wrote."""
     (misfit,) = read_records(group, "misfit", _MISFIT, Misfit)
     return {
         "bodies": read_records(group, "bodies", _BODIES, Body),
         "joints": _read_joints(group),
         "misfit": misfit,
+        **_separations(group),
         "misaligned": tuple(tuple(row.values()) for row in read_rows(group, "misaligned", _MISALIGNED)),
     }
 
@@ -72,6 +105,13 @@ def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:
     blockers: list[list[Blocker]] = [[] for _ in rows]
     for row in read_rows(group, "blockers", _BLOCKERS):
         blockers[row.pop("joint")].append(Blocker(**row))
+    releases: list[list[Release]] = [[] for _ in rows]
+    held: list[dict[str, Any]] = [{} for _ in rows]
+    if "held" in group:
+        for i, row in enumerate(read_rows(group, "held", _HELD)):
+            held[i] = row | {"held": None if row["held"] is None else bool(row["held"])}
+        for row in read_rows(group, "releases", _RELEASES):
+            releases[row.pop("joint")].append(Release(**row))
     ragged = zip(
         read_ragged(group, "twists"),
         read_ragged(group, "singular_values"),
@@ -85,6 +125,10 @@ def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:
             singular_values=singular,
             patches=tuple(patches.tolist()),
             blockers=tuple(owned),
+            releases=tuple(ways),
+            **kept,
         )
-        for row, owned, (twists, singular, patches) in zip(rows, blockers, ragged, strict=True)
+        for row, owned, ways, kept, (twists, singular, patches) in zip(
+            rows, blockers, releases, held, ragged, strict=True
+        )
     )

@@ -1,0 +1,102 @@
+"""One joint with all of its evidence: patches, singular values, what blocks it, how it comes apart, what would
+make it another."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kinform.kinematics import Insight, insight
+from kinform.model.design import Design
+from kinform.model.kinematics import Release
+from kinform_cli.tables import Rows
+from kinform_cli.text import Lengths, count, number, vector
+from kinform_cli.views.joints import blockers, sentence
+
+__all__ = ["render"]
+
+
+def render(design: Design, name: str) -> RenderableType:
+    """The joint of this name; raises KeyError where there is none."""
+    found, lengths = insight(design, name), Lengths.of(design.assembly)
+    joint = found.joint
+    items: list[RenderableType] = [
+        Text(f"{joint.name}: {sentence(joint)}", style="bold"),
+        f"{joint.status}: {joint.reason}",
+        f"values and motions are those of {joint.bodies[1]} relative to {joint.bodies[0]}",
+    ]
+    if joint.point is not None:
+        items.append(f"through ({lengths.point(joint.point)}) {lengths.unit}")
+    items += [_patches(found, lengths), *_values(found)]
+    if joint.blockers:
+        items += [Text("\nLeft out of the decision: they block it", style="bold"), *blockers(joint, lengths)]
+    if joint.releases:
+        many = "" if joint.extremes is not None else ", of very many"
+        items.append(Text(f"\nWays out of contact{many}", style="bold"))
+        items += [f"  {_way(release, lengths)}" for release in joint.releases]
+    items += _alternatives(found)
+    return Group(*items)
+
+
+def _patches(found: Insight, lengths: Lengths) -> Rows:
+    unit = lengths.unit
+    headings = (
+        "patch",
+        "kind",
+        "part",
+        "part",
+        "surfaces",
+        "fit",
+        f"gap {unit}",
+        f"area {unit}²",
+        "weight",
+        "rows",
+        "role",
+    )
+    rows = Rows(
+        *headings, title=f"\n{count(len(found.patches), 'patch', 'patches')}", right=(*headings[6:10], "patch"), keys=4
+    )
+    for item in found.patches:
+        patch = item.patch
+        kind = f"{patch.kind} (one side)" if patch.one_sided else patch.kind
+        surfaces = f"{patch.surfaces[0]}, {patch.surfaces[1]}"
+        rows.add(
+            str(item.index), kind, *patch.parts, surfaces, patch.fit, lengths.length(patch.gap),
+            lengths.area(patch.area), f"{100 * item.share:.3g} %", str(item.rows), item.role,
+        )  # fmt: skip
+    return rows
+
+
+def _values(found: Insight) -> list[RenderableType]:
+    joint = found.joint
+    lines: list[RenderableType] = [Text("\nSingular values", style="bold")]
+    if not found.samples or not all(value == value for value in joint.singular_values):
+        return [*lines, "  none: contact does not decide this joint"]
+    lines.append(f"  {', '.join(number(float(value)) for value in joint.singular_values)}")
+    lines.append(f"  from {count(found.samples, 'sample')}; {count(found.rows, 'row')} in J")
+    last = "none is free" if found.last_free is None else f"last free {number(found.last_free)}"
+    first = "none is held" if found.first_held is None else f"first held {number(found.first_held)}"
+    lines.append(f"  {last}, {first}; free is below {found.free:g}, held above {found.held:g}, ambiguous between")
+    return lines
+
+
+def _way(release: Release, lengths: Lengths) -> str:
+    place = "" if release.point is None else f", axis through ({lengths.point(release.point)}) {lengths.unit}"
+    middle = "" if release.extreme else " (in the middle of very many directions)"
+    return f"{release.words}{place}{middle}"
+
+
+def _alternatives(found: Insight) -> list[RenderableType]:
+    lines: list[RenderableType] = [Text("\nWhat would make it another", style="bold")]
+    for item in found.alternatives:
+        names = f"{'patch' if len(item.without) == 1 else 'patches'} {', '.join(map(str, item.without))}"
+        axis = "" if item.axis is None else f" ({vector(item.axis)})"
+        why = f", which forbid{'s' if len(item.without) == 1 else ''} {item.frees}" if item.frees else ""
+        lines.append(f"  without {names}{why}: {item.type}{axis}, {count(item.freedoms, 'freedom')}, {item.status}")
+    if not found.alternatives and found.tried:
+        lines.append(f"  nothing found: the same without each of {count(found.tried, 'set')} of patches")
+    if not found.alternatives and not found.tried and not found.remark:
+        lines.append("  nothing: a single patch carries it")
+    if found.remark:
+        lines.append(f"  {found.remark}")
+    return lines

@@ -1,0 +1,287 @@
+"""Contact-breaking motion of every pair: is the second body held, and if not, how does it leave the first?
+
+Rows come from the assembly's J, which is consistent with the snapped freedoms; those of patches that block
+count too. Joints that somebody stated, or that an axis suggested by rims made, are not decided by contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.cone import FREE, HELD, extreme_rays, held_for_certain, opening, reduced, unit_rows, within
+from kinform.kinematics.constraints import extreme_samples
+from kinform.kinematics.screws import Frame, twist_at_origin
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Body, ConstraintMatrix, Joint, Release
+from kinform.model.names import BodyName, PartName
+
+__all__ = [
+    "MOST",
+    "Cone",
+    "ContactRows",
+    "Leaving",
+    "certainly_held",
+    "cone_of",
+    "direction_words",
+    "pair_cones",
+    "released",
+    "stated",
+    "with_releases",
+]
+
+Array = NDArray[np.float64]
+
+MOST = 12
+"""Extreme directions up to which each is told."""
+STEPS = 200
+SAME = 1e-3
+"""Two unit directions that differ by less are one; a screw with less pitch (over the size) is a turn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cone:
+    """What contact allows the second body relative to the first, twists scaled in `frame`."""
+
+    fixed: Array
+    """(k, 6) orthonormal: directions that single patches hold both ways, as a shaft in its bore does."""
+    rows: Array
+    """(n, 6) unit: what the other patches allow one way; perpendicular to `fixed`."""
+    frame: Frame
+
+    @property
+    def preserved(self) -> Array:
+        """(6, f) orthonormal: contact-preserving motion."""
+        moved = np.hstack([reduced(self.rows)[0], self.fixed.T])
+        return np.linalg.svd(moved, full_matrices=True)[0][:, moved.shape[1] :] if moved.shape[1] else np.eye(6)
+
+
+@dataclass(frozen=True, eq=False)
+class Leaving:
+    """What the cone of a pair says; fields as of Joint."""
+
+    held: bool | None
+    releases: tuple[Release, ...] = ()
+    extremes: int | None = None
+    held_reason: str = ""
+
+
+class ContactRows:
+    """Rows of patches: of the assembled J where they are in it, else of the patch itself."""
+
+    def __init__(self, matrix: ConstraintMatrix, bodies: Sequence[Body], patches: Sequence[Patch]):
+        self._matrix, self._patches = matrix, patches
+        self._body = {part: k for k, body in enumerate(bodies) for part in body.parts}
+        self._parts = {body.name: frozenset(body.parts) for body in bodies}
+        self._cones: dict[tuple[tuple[int, bool], ...], Cone | None] = {}
+        self._held: frozenset[int] | None = None
+        self._blocks = matrix.data.reshape(-1, 12)
+        self._order = np.argsort(matrix.patch, kind="stable")
+        self._bounds = np.searchsorted(matrix.patch[self._order], np.arange(len(patches) + 1))
+
+    def parts_of(self, body: BodyName) -> frozenset[PartName]:
+        """The parts of a body."""
+        return self._parts[body]
+
+    def cone(self, members: Sequence[tuple[int, bool]]) -> Cone | None:
+        """The cone of patches given as (index, turned): turned when part a belongs to the second body."""
+        key = tuple(members)
+        if key not in self._cones:
+            self._cones[key] = self._cone(key)
+        return self._cones[key]
+
+    def _cone(self, members: Sequence[tuple[int, bool]]) -> Cone | None:
+        points = np.concatenate([np.zeros((0, 3)), *(self._of(k, turned=turned)[0] for k, turned in members)])
+        if not len(points):
+            return None
+        frame = Frame.of(points)
+        both: list[Array] = [np.zeros((0, 6))]
+        one: list[Array] = [np.zeros((0, 6))]
+        for k, turned in members:
+            (both if self._two_way(k) else one).append(self.rows(k, frame, turned=turned))
+        fixed = reduced(unit_rows(np.concatenate(both)))[0].T
+        return Cone(fixed, within(unit_rows(np.concatenate(one)), fixed), frame)
+
+    def rows(self, k: int, frame: Frame, *, turned: bool) -> Array:
+        """Rows (n, 6) of the extreme samples of one patch, against twists scaled in `frame`."""
+        _, normals, moments = self._of(k, turned=turned)
+        return np.hstack([(moments + np.cross(self._matrix.centre - frame.centre, normals)) / frame.length, normals])
+
+    def _two_way(self, k: int) -> bool:
+        """Does this patch alone hold whatever it does not let slide?"""
+        if self._held is None:
+            # a plane has one normal, and holds nothing both ways
+            curved = [k for k, p in enumerate(self._patches) if p.kind != "plane" and len(p.points) > 1]
+            rows = []
+            for other in curved:
+                frame = Frame.of(self._patches[other].points)
+                rows.append(unit_rows(self.rows(other, frame, turned=False)))
+            self._held = (
+                frozenset(np.array(curved, dtype=int)[held_for_certain(rows)].tolist()) if curved else frozenset()
+            )
+        return k in self._held
+
+    def _of(self, k: int, *, turned: bool) -> tuple[Array, Array, Array]:
+        """Points, normals and moments (m) about the centre of J, of the extreme samples of one patch."""
+        patch, sign = self._patches[k], -1.0 if turned else 1.0
+        chosen = self._order[self._bounds[k] : self._bounds[k + 1]]
+        if len(chosen):
+            first, second = (self._body[part] for part in patch.parts)
+            block = self._blocks[chosen, 6:] if first < second else self._blocks[chosen, :6]
+            points = patch.points[self._matrix.sample[chosen]]
+            return points, sign * block[:, 3:], sign * block[:, :3] * self._matrix.length
+        samples = extreme_samples(patch)
+        points, normals = patch.points[samples], sign * patch.normals[samples]
+        return points, normals, np.cross(points - self._matrix.centre, normals)
+
+
+def pair_cones(rows: ContactRows, joints: Sequence[Joint], patches: Sequence[Patch]) -> list[Cone | None]:
+    """The rows of each joint's patches and blockers; None for joints that contact does not decide."""
+    out: list[Cone | None] = []
+    for joint in joints:
+        own = sorted({*joint.patches, *(blocker.patch for blocker in joint.blockers)})
+        first = rows.parts_of(joint.bodies[0])
+        out.append(None if stated(joint) else rows.cone([(k, patches[k].parts[0] not in first) for k in own]))
+    return out
+
+
+def stated(joint: Joint) -> bool:
+    """Is the joint what somebody stated, or what rims suggested, rather than what contact leaves?"""
+    return not joint.patches or bool({"rim", "bolt circle", "assumption", "function"}.intersection(joint.evidence))
+
+
+def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tuple[Joint, ...]:
+    """The joints with whether contact holds them, and how they come apart."""
+    known = [k for k, cone in enumerate(cones) if cone is not None]
+    certain = dict(zip(known, certainly_held([cone for cone in cones if cone is not None]), strict=True))
+    out = []
+    for k, joint in enumerate(joints):
+        cone = cones[k]
+        if cone is None:
+            out.append(replace(joint, held_reason="contact does not decide this joint"))
+        elif certain[k]:
+            out.append(replace(joint, held=True))
+        else:
+            out.append(replace(joint, **vars(cone_of(cone))))
+    return tuple(out)
+
+
+def certainly_held(cones: Sequence[Cone]) -> NDArray[np.bool_]:
+    """Whether it is proven that nothing leaves."""
+    nothing_left = np.array([not len(cone.rows) for cone in cones], dtype=np.bool_)
+    return np.asarray(held_for_certain([cone.rows for cone in cones]) | nothing_left)
+
+
+def cone_of(cone: Cone, *, turns: bool = True) -> Leaving:
+    """Whether and how a pair that is not certainly held comes apart; without `turns` only slides, where there are."""
+    slides, many = _slides(cone)
+    if not len(slides):
+        lp = opening(cone.rows)
+        if lp.held:
+            return Leaving(held=True)
+        if lp.held is None:
+            reason = (
+                f"contact opens at {lp.speed:.2g} of the motion: between none (< {FREE:g}) and certain (> {HELD:g})"
+            )
+            return Leaving(None, held_reason=reason)
+    rays = extreme_rays(cone.rows) if turns else None
+    found = [released(np.concatenate([np.zeros(3), d]), cone.frame, extreme=not many) for d in slides]
+    if rays is not None and len(rays) <= MOST:
+        others = [ray for ray in rays if not _slides_off(ray, cone, slides)]
+        found += _ordered([released(ray, cone.frame) for ray in others])
+    elif not found:
+        found = [released(lp.motion, cone.frame, extreme=False)]
+    return Leaving(held=False, releases=tuple(found), extremes=None if rays is None else len(rays))
+
+
+def _slides(cone: Cone) -> tuple[Array, bool]:
+    """Unit directions (k, 3) in which it leaves without turning: the extreme ones, or, where those are many, the
+    one in their middle (and True)."""
+    straight = np.eye(3)
+    if len(cone.fixed):
+        _, values, right = np.linalg.svd(cone.fixed[:, 3:], full_matrices=True)
+        straight = right[int(np.count_nonzero(values > SAME)) :].T
+    normals = unit_rows(cone.rows[:, 3:] @ straight)
+    none = np.zeros((0, 3))
+    if not len(normals):
+        return none, False
+    rays = extreme_rays(normals)
+    if rays is None:
+        rays = _middle(normals)
+        return rays @ straight.T, True
+    # pure slides must break contact in fact, not by rounding
+    rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > HELD] if len(rays) else none
+    if not len(rays):
+        return none, False
+    rays = _distinct(rays @ straight.T)
+    if len(rays) > MOST:
+        middle = rays.sum(axis=0)
+        return (middle / np.linalg.norm(middle))[None], True
+    return rays[np.lexsort(np.round(rays, 6).T)[::-1]], False
+
+
+def _middle(normals: Array) -> Array:
+    """The direction (1, t) farthest inside a cone of very many extreme directions; (0, t) where it has no inside."""
+    mean = normals.mean(axis=0)
+    for _ in range(STEPS):
+        speed = normals @ mean
+        worst = int(speed.argmin())
+        if speed[worst] > HELD * float(np.linalg.norm(mean)):
+            return np.asarray(mean / np.linalg.norm(mean))[None]
+        mean = mean + normals[worst] * (0.1 - speed[worst])
+    return np.zeros((0, normals.shape[1]))
+
+
+def _distinct(rays: Array) -> Array:
+    kept: list[Array] = []
+    for ray in rays:
+        if all(np.linalg.norm(ray - other) > SAME for other in kept):
+            kept.append(ray)
+    return np.array(kept)
+
+
+def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
+    """Is the ray one of the slides already told, but for contact-preserving motion?"""
+    basis, _ = reduced(cone.rows)
+    for slide in slides:
+        shadow = basis @ (basis.T @ np.concatenate([np.zeros(3), slide]))
+        size = float(np.linalg.norm(shadow))
+        if size > SAME and np.linalg.norm(shadow / size - ray) < SAME:
+            return True
+    return False
+
+
+def _ordered(found: list[Release]) -> list[Release]:
+    return sorted(found, key=lambda r: (r.kind != "slide", r.kind != "turn", tuple(-np.round(r.twist, 6))))
+
+
+def released(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
+    """A scaled twist (6,) as a release: unit slide, turn or screw about a line, in words."""
+    omega, velocity = ray[:3] / frame.length, ray[3:]
+    turning = float(np.linalg.norm(ray[:3]))
+    if turning < SAME * float(np.linalg.norm(ray)):
+        direction = velocity / np.linalg.norm(velocity)
+        twist = np.concatenate([np.zeros(3), direction])
+        return Release("slide", twist, direction, None, extreme, f"lift off along {direction_words(direction)}")
+    rate = float(np.linalg.norm(omega))
+    direction = omega / rate
+    lead = float(direction @ velocity) / rate
+    point = frame.centre + np.cross(omega, velocity) / rate**2
+    twist = (twist_at_origin(ray[:, None], frame) / rate).ravel()
+    about = direction_words(direction)
+    if abs(lead) < SAME * frame.length:
+        return Release("turn", twist, direction, point, extreme, f"tip about {about}")
+    sense = "along" if lead > 0.0 else "against"
+    return Release("screw", twist, direction, point, extreme, f"turn about {about} while sliding {sense} it")
+
+
+def direction_words(direction: Array) -> str:
+    """A signed direction: "+z", "-x", or its components."""
+    size = np.abs(direction)
+    axis = int(size.argmax())
+    if size[axis] > 1.0 - 0.5 * SAME**2:
+        return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
+    return "(" + ", ".join(f"{x:.3g}" for x in np.where(size < 5e-4, 0.0, direction)) + ")"

@@ -1,0 +1,74 @@
+"""What contact lets go, as the command tells it: `show joints`, `show joints --joint`, `query`, `query --intended`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from known import FIXTURES
+
+from kinform_cli.main import main
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("questions")
+    out = {}
+    for name in ("planar_block", "revolute_collars"):
+        file = folder / f"{name}.h5"
+        manifest = FIXTURES / "pairs" / name / f"{name}.toml"
+        assert main(["import", str(manifest), "-o", str(file), "-q"]) == 0
+        assert main(["contacts", str(file), "-o", str(file), "-q"]) == 0
+        assert main(["joints", str(file), "-o", str(file), "-q"]) == 0
+        out[name] = file
+    return out
+
+
+def printed(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    capsys.readouterr()
+    assert main([str(a) for a in arguments]) == 0
+    return capsys.readouterr().out
+
+
+def test_joints_say_how_they_come_apart(results: dict[str, Path], capsys: pytest.CaptureFixture[str]) -> None:
+    text = printed(capsys, "show", results["planar_block"], "joints")
+    assert "can also lift off along -z" in text
+    assert "block: lift off along +z" in text
+    (joint,) = json.loads(printed(capsys, "show", results["planar_block"], "joints", "-f", "json"))["joints"]
+    assert joint["held"] is False
+    assert joint["releases"][0]["direction"] == pytest.approx([0, 0, -1])
+    (joint,) = json.loads(printed(capsys, "show", results["revolute_collars"], "joints", "-f", "json"))["joints"]
+    assert (joint["held"], joint["releases"]) == (True, [])
+
+
+def test_one_joint_shows_its_patches_its_gap_and_its_alternatives(
+    results: dict[str, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = results["revolute_collars"]
+    text = printed(capsys, "show", file, "joints", "--joint", "block~shaft")
+    for words in ("3 patches", "first held", "0.002", "cylindrical", "held: no motion breaks the contact"):
+        assert words in text
+    found = json.loads(printed(capsys, "show", file, "joints", "--joint", "block~shaft", "-f", "json"))
+    assert found["schema"] == "kinform/joint/1"
+    assert {item["type"] for item in found["alternatives"]} == {"planar", "cylindrical"}
+
+
+def test_another_joint_or_topic_is_refused(results: dict[str, Path], capsys: pytest.CaptureFixture[str]) -> None:
+    file = str(results["revolute_collars"])
+    assert main(["show", file, "joints", "--joint", "nope"]) == 2
+    assert "block~shaft" in capsys.readouterr().err
+    assert main(["show", file, "mass", "--joint", "block~shaft"]) == 2
+    assert main(["query", file, "block", "shaft", "--slide", "x", "--intended"]) == 2
+    assert main(["query", file]) == 2
+
+
+def test_queries_are_answered_one_way_and_for_what_is_intended(
+    results: dict[str, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = results["planar_block"]
+    found = json.loads(printed(capsys, "query", file, "table", "block", "--slide", "z", "-f", "json"))
+    assert found["ways_in_pair"] == found["ways_in_assembly"] == {"forward": True, "backward": False}
+    assert "one way only" in printed(capsys, "query", file, "table", "block", "--slide", "z")
+    intended = json.loads(printed(capsys, "query", results["revolute_collars"], "--intended", "-f", "json"))
+    assert all(set(item) >= {"name", "free", "motions", "text"} for item in intended["joints"])

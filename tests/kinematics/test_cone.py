@@ -1,0 +1,343 @@
+"""Contact-breaking motion: what is held, what leaves, and along which directions; known by reasoning."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from assemblies import assembly, assume, between, contacts, part
+from builders import Z, cylinder, patch, plane, ring, sphere
+from scipy.spatial.transform import Rotation
+from solids import ball, box, derived, random_pose, rod
+
+from kinform.kinematics import derive
+from kinform.kinematics.cone import extreme_rays, held_for_certain, opening, unit_rows
+from kinform.kinematics.constraints import extreme_samples
+
+X, Y = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
+
+
+def joint_of(*patches, **keys):
+    """The one joint between a and b."""
+    (joint,) = derive(assembly(part("a"), part("b"), ground="a", **keys), {}, contacts(*patches)).joints
+    return joint
+
+
+def slides(releases):
+    return [way.direction for way in releases if way.kind == "slide"]
+
+
+def same_directions(found, expected, tolerance=1e-3):
+    found, expected = np.array(found).reshape(-1, 3), np.array(expected).reshape(-1, 3)
+    if len(found) != len(expected) or not len(found):
+        return len(found) == len(expected)
+    apart = np.linalg.norm(found[:, None] - expected[None], axis=2)
+    return bool((apart.min(axis=0) < tolerance).all())
+
+
+def turned(found, R, scale=1.0, offset=0.0):
+    """A patch moved by x → scale·R·x + offset."""
+    from dataclasses import replace
+
+    axis = found.axis @ R.T
+    return replace(
+        found, points=scale * found.points @ R.T + offset, normals=found.normals @ R.T, axis=axis,
+        point=scale * R @ found.point + offset, weights=scale**2 * found.weights, area=scale**2 * found.area,
+        radii=(scale * found.radii[0], scale * found.radii[1]),
+    )  # fmt: skip
+
+
+# --- the cone itself ---------------------------------------------------------------------------
+
+
+def plane_rows(points, normals):
+    """Rows of contacts in the plane z = 0, of a body that moves in it."""
+    points, normals = np.array(points, float), np.array(normals, float)
+    return unit_rows(np.stack([points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0], *normals.T], axis=1))
+
+
+WALLS = [((1, 0.3), (-1, 0)), ((-1, -0.3), (1, 0))]
+"""Two points that press on a body from the right and the left, and turn it to the left."""
+
+
+def in_plane(*lines):
+    return np.pad(plane_rows(*zip(*lines, strict=True)), ((0, 0), (0, 3)))
+
+
+def test_form_closure_in_the_plane_takes_four_points():
+    rows = in_plane(*WALLS, ((0.3, 1), (0, -1)), ((-0.3, -1), (0, 1)))
+    assert held_for_certain([rows])[0]
+    assert opening(rows).held
+    for k in range(4):
+        three = np.delete(rows, k, axis=0)
+        assert not held_for_certain([three])[0]
+        found = opening(three)
+        assert found.held is False
+        assert (three @ found.motion).min() > -1e-7
+        assert (three @ found.motion).max() > 0.1
+
+
+def test_four_points_that_all_turn_a_body_one_way_do_not_hold_it():
+    rows = in_plane(*WALLS, ((-0.3, 1), (0, -1)), ((0.3, -1), (0, 1)))
+    assert not held_for_certain([rows])[0]
+    found = opening(rows)
+    assert found.held is False
+    assert found.motion[0] > 0.9
+
+
+def test_a_vee_too_flat_to_be_sure_of_is_neither_held_nor_free():
+    def vee(lean):
+        return unit_rows(np.array([[0, 0, 0, 0, -1, lean], [0, 0, 0, 0, 1, lean]]))
+
+    assert opening(vee(5e-4)).held is None
+    assert opening(vee(5e-3)).held is False
+    assert opening(vee(0.0)).held is True
+    assert not held_for_certain([vee(5e-4)])[0]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_certificate_and_the_linear_program_agree(seed):
+    rng = np.random.default_rng(seed)
+    pairs = []
+    for _ in range(10):
+        rows = rng.normal(size=(rng.integers(2, 14), 6))
+        rows[:, rng.permutation(6)[: rng.integers(0, 4)]] = 0.0
+        pairs.append(unit_rows(rows))
+    certain = held_for_certain(pairs)
+    for rows, held in zip(pairs, certain, strict=True):
+        found = opening(rows)
+        if held:
+            assert found.held is True
+        elif found.held is False:
+            assert (rows @ found.motion).min() > -1e-7
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_extreme_rays_span_the_cone_and_are_tight_enough(seed):
+    rng = np.random.default_rng(seed)
+    size, count = 3 + seed % 3, 8
+    inside = rng.normal(size=size)
+    rows = rng.normal(size=(count, size))
+    rows = unit_rows(rows * np.sign(rows @ inside)[:, None])
+    rays = extreme_rays(rows)
+    assert rays is not None
+    assert len(rays) >= size
+    assert (rays @ rows.T).min() > -1e-6
+    # each ray is the only direction that its tight rows leave
+    for ray in rays:
+        tight = rows[np.abs(rows @ ray) < 1e-6]
+        assert np.linalg.matrix_rank(tight, tol=1e-6) == size - 1
+    # and points of the cone are their sums
+    from scipy.optimize import nnls
+
+    for _ in range(5):
+        point = inside + 0.1 * rng.normal(size=size)
+        if (rows @ point).min() > 0:
+            assert nnls(rays.T, point)[1] < 1e-6
+
+
+def test_the_samples_that_bound_a_plane_are_the_corners_of_its_hull():
+    rng = np.random.default_rng(0)
+    corners = np.array([[0, 0, 0], [4, 0, 0], [5, 2, 0], [1, 3, 0]], float)
+    points = np.vstack([rng.dirichlet(np.ones(4), 200) @ corners, corners, 0.5 * (corners[:2] + corners[1:3])])
+    chosen = extreme_samples(patch(points, Z, "plane"))
+    assert sorted(chosen) == [200, 201, 202, 203]
+
+
+@pytest.mark.parametrize("found", [cylinder(arc=(0.0, 2.5)), cylinder(), sphere(cap=-0.3), sphere()])
+def test_what_the_chosen_samples_allow_all_samples_allow(found):
+    chosen = extreme_samples(found)
+    rows = np.hstack([np.cross(found.points / 0.01, found.normals), found.normals])
+    from scipy.optimize import nnls
+
+    missing = max(nnls(rows[chosen].T, row)[1] for row in rows)
+    assert missing < (1e-6 if found.kind == "cylinder" else 0.02)
+
+
+# --- pairs -------------------------------------------------------------------------------------
+
+
+def test_a_block_on_a_table_lifts_off_and_tips_about_its_edges():
+    joint = joint_of(between(plane(size=(0.02, 0.03)), "a", "b"))
+    assert (joint.type, joint.held, joint.extremes) == ("planar", False, 4)
+    assert same_directions(slides(joint.releases), [Z])
+    assert joint.releases[0].words == "lift off along +z"
+    tips = [way for way in joint.releases if way.kind == "turn"]
+    # about the right edge, x = 0.015, the block turns by +y: its left side rises
+    edges = {tuple(np.round(way.direction).astype(int) + 0): way.point for way in tips}
+    assert set(edges) == {(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)}
+    assert edges[(0, 1, 0)][0] == pytest.approx(0.015)
+    assert edges[(0, -1, 0)][0] == pytest.approx(-0.015)
+    assert edges[(-1, 0, 0)][1] == pytest.approx(0.01)
+
+
+def test_the_motion_is_that_of_the_second_body():
+    joint = joint_of(between(plane(), "b", "a"))
+    assert same_directions(slides(joint.releases), [-Z])
+
+
+def test_a_block_in_an_edge_slides_along_it_and_leaves_two_ways():
+    joint = joint_of(plane((0, 0, -0.01), Z), plane((-0.01, 0, 0), X))
+    assert (joint.type, joint.held) == ("prismatic", False)
+    assert same_directions(slides(joint.releases), [X, Z])
+
+
+def test_a_block_in_a_corner_is_one_body_with_it_by_contact_and_can_still_leave_three_ways():
+    found = derive(
+        assembly(part("a"), part("b"), ground="a"),
+        {},
+        contacts(plane((0, 0, -0.01), Z), plane((-0.01, 0, 0), X), plane((0, -0.01, 0), Y)),
+    )
+    assert len(found.bodies) == 1
+    (apart,) = found.separations
+    assert apart.bodies == ("b",)
+    assert same_directions(slides(apart.releases), [X, Y, Z])
+
+
+def test_a_ball_on_a_table_lifts_off():
+    joint = joint_of(patch([[0, 0, 0]], Z, "point", area=1e-8))
+    assert (joint.freedoms, joint.held, joint.extremes) == (5, False, 1)
+    assert same_directions(slides(joint.releases), [Z])
+
+
+def test_a_collared_shaft_is_held():
+    joint = joint_of(cylinder(gap=5e-5), ring((0, 0, 0.01), gap=2e-5), ring((0, 0, -0.01), normal=-Z))
+    assert (joint.type, joint.held, joint.releases) == ("revolute", True, ())
+
+
+def test_a_press_fit_and_a_clearance_fit_are_held_alike():
+    for gap in (-2e-5, 0.0, 1e-4):
+        joint = joint_of(cylinder(gap=gap))
+        assert (joint.type, joint.held) == ("cylindrical", True)
+
+
+def test_a_shaft_with_one_collar_leaves_one_way():
+    joint = joint_of(cylinder(), ring((0, 0, 0.01)))
+    assert (joint.type, joint.held, joint.extremes) == ("revolute", False, 1)
+    assert same_directions(slides(joint.releases), [Z])
+
+
+def test_an_end_stop_that_blocks_a_hinge_lets_it_turn_away():
+    stop = plane((0.02, 0, 0), Y, (0.002, 0.002), area=2e-5)
+    joint = joint_of(cylinder(), ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z), stop)
+    assert (joint.status, joint.held) == ("blocked", False)
+    (way,) = joint.releases
+    # b at x > 0 moves away along +y: it turns by +z
+    assert way.kind == "turn"
+    assert np.allclose(way.direction, Z, atol=1e-6)
+    assert np.allclose(way.point[:2], 0, atol=1e-6)
+
+
+def test_contact_does_not_say_whether_a_stated_joint_is_held():
+    joint = joint_of(plane(), assume=[assume("a", "b", "revolute", axis=(0, 0, 1), point=(0, 0, 0))])
+    assert joint.held is None
+    assert "does not decide" in joint.held_reason
+
+
+# --- meshes, and metamorphic --------------------------------------------------------------------
+
+CASES = {
+    "peg in a blind hole": (lambda: box(-20, 20, -20, 20, -20, 0) - rod(5.05, -15, 1, 48), lambda: rod(5, -15, 10), [Z]),
+    "ball in half a socket": (lambda: box(-20, 20, -20, 20, -20, 0) - ball(8.05, 64, 3), lambda: ball(8), [Z]),
+    "ball in a socket past its equator": (lambda: box(-20, 20, -20, 20, -20, 5) - ball(8.05, 64, 3), lambda: ball(8), []),
+    "box in an open slot": (
+        lambda: box(-20, 20, -20, 20, -20, 7) - box(-5, 5, -30, 30, -7, 8), lambda: box(-5, 5, -6, 6, -7, 7), [Z],
+    ),
+    "shaft in half a bearing": (
+        lambda: box(-20, 20, -20, 20, -20, 0) - rod(5.05, -30, 30, 48).rotate((90, 0, 0)),
+        lambda: rod(5, -25, 25).rotate((90, 0, 0)), [Z],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("seed", [0, 1])
+def test_meshes_at_any_pose_and_from_millimetres_to_a_hundred_metres(name, seed):
+    first, second, expected = CASES[name]
+    rng = np.random.default_rng(seed)
+    scale = (1e-3, 2.5)[seed]
+    pose = random_pose(rng, 100.0 * scale)
+    found, _ = derived(pose, scale, a=first(), b=second())
+    (joint,) = found.joints
+    assert joint.held is not (bool(expected))
+    assert same_directions(slides(joint.releases), [pose[:3, :3] @ d for d in expected], 0.02)
+    assert bool(found.separations) == bool(expected)
+
+
+def test_a_box_in_a_closed_slot_is_one_body_and_leaves_nowhere():
+    found, _ = derived(a=box(-20, 20, -20, 20, -20, 20) - box(-5, 5, -6, 6, -7, 7), b=box(-5, 5, -6, 6, -7, 7))
+    assert len(found.bodies) == 1
+    assert found.separations == ()
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+def test_turning_scaling_and_reordering_change_nothing_but_the_frame(scale):
+    R = Rotation.from_euler("xyz", [0.3, -0.8, 1.1]).as_matrix()
+    offset = scale * np.array([0.4, -0.2, 0.7])
+    before = [plane((0, 0, -0.01), Z), plane((-0.01, 0, 0), X)]
+    after = [turned(p, R, scale, offset) for p in before]
+    plain, moved = joint_of(*before), joint_of(*reversed(after))
+    assert (plain.held, plain.extremes) == (moved.held, moved.extremes)
+    assert same_directions(slides(moved.releases), [R @ d for d in slides(plain.releases)], 1e-6)
+    found = {tuple(np.round(R.T @ way.direction, 4) + 0.0) for way in moved.releases if way.kind != "slide"}
+    assert found == {tuple(np.round(way.direction, 4) + 0.0) for way in plain.releases if way.kind != "slide"}
+
+
+# --- the whole assembly --------------------------------------------------------------------------
+
+
+def stack(*names):
+    """Blocks one on the other, on a table."""
+    levels = ["table", *names]
+    patches = [between(plane((0, 0, 0.01 * k)), a, b) for k, (a, b) in enumerate(zip(levels, names, strict=False))]
+    return derive(assembly(*(part(n) for n in levels), ground="table"), {}, contacts(*patches))
+
+
+def test_what_stands_on_a_block_leaves_with_it():
+    found = stack("c", "b", "a")
+    assert [item.bodies for item in found.separations] == [("a",), ("a", "b"), ("a", "b", "c")]
+    assert all(same_directions(slides(item.releases), [Z]) for item in found.separations)
+
+
+def test_a_block_under_a_bridge_cannot_leave_alone():
+    # a lid on two posts that are one with the ground, and a block that fills the room between ground and lid
+    patches = [
+        between(plane((0, 0, 0)), "ground", "block"),
+        between(plane((0, 0, 0.02)), "block", "lid"),
+        between(plane((0.05, 0, 0.02)), "ground", "lid"),
+    ]
+    parts = [part(n) for n in ("ground", "block", "lid")]
+    found = derive(assembly(*parts, ground="ground"), {}, contacts(*patches))
+    assert [item.bodies for item in found.separations] == [("block", "lid"), ("lid",)]
+    bolted = derive(
+        assembly(*parts, ground="ground", assume=[assume("ground", "lid", "fixed")]), {}, contacts(*patches)
+    )
+    assert bolted.separations == ()
+
+
+def test_a_loop_can_hold_what_its_pairs_do_not():
+    # a wedge pair: each block can leave the ground along z, but they hold each other down by a hooked edge
+    patches = [
+        between(plane((0, 0, 0)), "ground", "one"),
+        between(plane((0.05, 0, 0.01), -Z), "ground", "two"),
+        between(plane((0.02, 0, 0.02), Z), "one", "two"),
+    ]
+    parts = [part(n) for n in ("ground", "one", "two")]
+    found = derive(assembly(*parts, ground="ground"), {}, contacts(*patches))
+    pairs = {joint.name: joint.held for joint in found.joints}
+    assert set(pairs.values()) == {False}
+    assert all(len(slides(joint.releases)) == 1 for joint in found.joints)
+    # one must rise to leave the ground, two must rise with it, and two may only sink from the ground
+    assert not any(item.bodies == ("one",) and slides(item.releases) for item in found.separations)
+
+
+def test_the_order_of_parts_and_patches_does_not_matter():
+    rng = np.random.default_rng(3)
+    patches = [plane((0, 0, -0.01), Z), plane((-0.01, 0, 0), X), cylinder(0.003, point=(0.02, 0, 0), axis=X)]
+    parts = [part("a"), part("b")]
+    plain = derive(assembly(*parts, ground="a"), {}, contacts(*patches)).joints
+    for _ in range(3):
+        mixed = [patches[k] for k in rng.permutation(len(patches))]
+        again = derive(assembly(*reversed(parts), ground="a"), {}, contacts(*mixed)).joints
+        assert [(j.held, [w.words for w in j.releases]) for j in again] == [
+            (j.held, [w.words for w in j.releases]) for j in plain
+        ]
