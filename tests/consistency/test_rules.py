@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from known import FIXTURES
+from linkages import KNOWN, manifest
 
 from kinform.consistency import RULES, UnknownRuleError, check, explain, verdict
 from kinform.model.contacts import Interference
@@ -172,6 +173,52 @@ def test_a_dynamic_level_needs_densities(hinge):
     design = replace(hinge, assembly=asked, mass=mass, simulation=simulate(asked, hinge.kinematics, mass))
     assert "KF120" in codes(design)
     assert "KF120" not in codes(hinge)
+
+
+@pytest.fixture
+def sticks(derive_design, tmp_path):
+    """A mechanism of linkages.py as a design of sticks that states its mobility."""
+
+    def made(name, mobility):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(manifest(KNOWN[name][0], mobility=mobility))
+        return derive_design(path)
+
+    return made
+
+
+def test_a_freedom_that_is_only_infinitesimal_is_found(sticks):
+    design = sticks("shaky truss", 1)
+    (finding,) = (f for f in design.report.findings if f.code == "KF305")
+    assert finding.severity == "warning"
+    assert finding.subject == ("base~link1", "base~link2", "link1~link2")
+    assert "only infinitesimal" in finding.message
+    # what a velocity allows is no mobility
+    assert any(f.code == "KF301" and "1 only infinitesimal" in f.message for f in design.report.findings)
+    assert "KF306" not in codes(design)
+
+
+def test_a_pose_from_which_two_motions_lead_is_found(sticks):
+    design = sticks("flat parallelogram", 1)
+    (finding,) = (f for f in design.report.findings if f.code == "KF306")
+    assert finding.severity == "warning"
+    assert "2 freedoms in this pose, 2 branches (1 and 1 freedoms) were found that lead out of it" in finding.message
+    assert not codes(design) & {"KF301", "KF305"}
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "Bennett", "Roberval balance", "Watt six-bar"])
+def test_mechanisms_that_move_are_neither_shaky_nor_singular(sticks, name):
+    design = sticks(name, 1)
+    assert not codes(design) & {"KF301", "KF305", "KF306"}
+    assert outcome(design, "KF305") == outcome(design, "KF306") == "passed"
+
+
+def test_a_stated_mobility_of_loops_that_could_not_be_tried_is_not_verified(hinge):
+    kinematics = hinge.kinematics
+    mobility = replace(kinematics.mobility, finite=None, finite_reason="not known: x is ambiguous")
+    unknown = replace(hinge, kinematics=replace(kinematics, mobility=mobility))
+    assert outcome(unknown, "KF305") == "inconclusive"
+    assert outcome(changed_function(unknown, mobility=None), "KF305") == "passed"
 
 
 def test_findings_do_not_depend_on_the_order_of_parts(hinge):

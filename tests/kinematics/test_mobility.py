@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from linkages import bennett
 
 from kinform.kinematics.graph import UnionFind, blocks, forest
 from kinform.kinematics.joints import twists_of
@@ -22,33 +23,6 @@ def ring_of(points, axes):
     n = len(points)
     edges = [tuple(sorted((k, (k + 1) % n))) for k in range(n)]
     return n, edges, [revolute(a, p) for p, a in zip(points, axes, strict=True)]
-
-
-def bennett():
-    a, alpha, beta, theta = 1.0, np.radians(40), np.radians(70), 1.0
-    b = a * np.sin(beta) / np.sin(alpha)
-    k = np.sin((beta + alpha) / 2) / np.sin((beta - alpha) / 2)
-
-    def link(turn, length, twist):
-        c, s, ct, st = np.cos(turn), np.sin(turn), np.cos(twist), np.sin(twist)
-        return np.array(
-            [[c, -s * ct, s * st, length * c], [s, c * ct, -c * st, length * s], [0, st, ct, 0], [0, 0, 0, 1]]
-        )
-
-    best = None
-    for ratio in (k, 1 / k, -k, -1 / k):
-        other = 2 * np.arctan(ratio / np.tan(theta / 2))
-        pose, frames = np.eye(4), []
-        for turn, length, twist in zip(
-            (theta, other, -theta, -other), (a, b, a, b), (alpha, beta, alpha, beta), strict=True
-        ):
-            frames.append(pose.copy())
-            pose = pose @ link(turn, length, twist)
-        error = np.abs(pose - np.eye(4)).max()
-        if best is None or error < best[0]:
-            best = (error, frames)
-    assert best[0] < 1e-12
-    return [f[:3, 3] for f in best[1]], [f[:3, 2] for f in best[1]]
 
 
 CLOSED = {

@@ -7,6 +7,7 @@ import math
 from rich.console import Group, RenderableType
 
 from kinform.model.design import Design
+from kinform.model.kinematics import Mobility
 from kinform.reports.json_views import mobility_counts
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths
@@ -34,15 +35,30 @@ def render(design: Design) -> RenderableType:
         grid.add(
             NONE if value is None else str(value),
             name.replace("_", " "),
-            "not computed yet" if value is None else meaning,
+            "not known, see below" if value is None else meaning,
         )
     items: list[RenderableType] = [grid]
+    if mobility.finite_reason:
+        items.append(mobility.finite_reason)
+    elif mobility.certificates:
+        items.append(_certified(mobility))
     if mobility.idle_bodies:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
     items.append(_misfit(design))
     return Group(*items)
+
+
+def _certified(mobility: Mobility) -> str:
+    """Why all freedoms of the loops are motions."""
+    step = min(certificate.step for certificate in mobility.certificates)
+    kept = min(certificate.kept for certificate in mobility.certificates)
+    residual = max(certificate.residual for certificate in mobility.certificates)
+    return (
+        f"loops close again after steps of {step:g} in every freedom: {100.0 * kept:.3g} % of the step kept, "
+        f"residual below {residual:.0e}"
+    )
 
 
 def _misfit(design: Design) -> str:

@@ -20,5 +20,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 4
+CODE_VERSION = 5
 """Bumped when the results of this stage change for the same input."""

@@ -14,6 +14,7 @@ from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
+from kinform.kinematics.finite import finite_mobility
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import body_twists, close
@@ -90,8 +91,8 @@ def functional(assembly: Assembly) -> Kinematics:
 
 
 def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
-    """Freedoms of some parts among themselves: the bodies they belong to and the joints between
-    those, relative to the first of these bodies (or ground, if it is among them)."""
+    """Freedoms of some parts among themselves, finite where that is known: the bodies they belong to and
+    the joints between those, relative to the first of these bodies (or ground, if it is among them)."""
     wanted = set(part_names)
     bodies = [b for b in kinematics.bodies if wanted.intersection(b.parts)]
     if not bodies:
@@ -100,7 +101,10 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     joints = [j for j in kinematics.joints if j.bodies[0] in index and j.bodies[1] in index]
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     ground = next((k for k, b in enumerate(bodies) if b.ground), 0)
-    return close(len(bodies), edges, [j.twists for j in joints], ground, kinematics.matrix.length).mobility
+    size = kinematics.matrix.length
+    count = close(len(bodies), edges, [j.twists for j in joints], ground, size).mobility
+    finite = finite_mobility(edges, joints, len(bodies), count, size).count
+    return count if finite is None else finite
 
 
 def _decide_all(
@@ -234,16 +238,21 @@ def _finish(
     blocked = close(len(bodies), edges, hard, ground, size).mobility if strict else closure.mobility
     idle = _idle(assembly, bodies, joints, patches, size)
     count = closure.mobility
+    finite = finite_mobility(edges, joints, len(bodies), count, size)
     mobility = Mobility(
         instantaneous=count,
-        finite=None,
-        effective=count - sum(idle.values()),
+        finite=finite.count,
+        effective=(count if finite.count is None else finite.count) - sum(idle.values()),
         idle=sum(idle.values()),
         redundant=count - (6 * (len(bodies) - 1) - sum(6 - joint.freedoms for joint in joints)),
         blocked=blocked,
         freedoms=_orthonormal(body_twists(closure, edges, spaces)),
         idle_bodies=tuple(sorted(name for name, n in idle.items() if n)),
         uncertain=tuple(j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"),
+        finite_reason=finite.reason,
+        infinitesimal=finite.infinitesimal,
+        singular=finite.singular,
+        certificates=finite.certificates,
     )
     matrix = assemble(bodies, joints, patches)
     rows = ContactRows(matrix, bodies, patches)

@@ -18,6 +18,7 @@ __all__ = [
     "Blocker",
     "Body",
     "ConstraintMatrix",
+    "FiniteCertificate",
     "Joint",
     "Kinematics",
     "Misfit",
@@ -164,6 +165,43 @@ class Misfit:
     distance_at: str = ""
 
 
+@dataclass(frozen=True)
+class FiniteCertificate:
+    """What finite steps and the second-order test say of one block of joints that close loops.
+
+    A block whose loops leave no freedom of first order has none. Lengths are shares of the block's size.
+    """
+
+    joints: tuple[JointName, ...]
+    instantaneous: int | None
+    """Freedoms of first order of the block; None where it is too large to be tried."""
+    finite: int | None
+    """Dimension of its motions: the largest of the branches through the pose; None where not decided."""
+    infinitesimal: int = 0
+    """Freedoms that no branch has."""
+    singular: bool = False
+    """Branches have fewer freedoms than the pose: where there are several, a bifurcation."""
+    branches: tuple[int, ...] = ()
+    """Freedoms of the branches that were found, eight at most: one where the pose is regular, or where the motions
+    beside it are a cone that is no union of branches; none where nothing moves."""
+    step: float = 0.0
+    """rad, and share of the size."""
+    kept: float = 0.0
+    """Share of the step that is left on the closed loops: the least of generic steps where the pose is
+    regular, else the greatest of any step."""
+    residual: float = 0.0
+    """Bound, a power of ten, of the closure errors of the stepped poses (rad, and share of the size)."""
+    stepped: int | None = None
+    """Freedoms of first order at the stepped poses, the most; None where no step was kept."""
+    second_order: str = ""
+    """Freedoms that the curvature of the closure allows: "extends" (all), "partly" (some directions),
+    "obstructed" (none), "" (not tested)."""
+    moves: tuple[JointName, ...] = ()
+    """Joints that move in the freedoms that are only infinitesimal."""
+    statement: str = ""
+    """In words, where there is anything to say: a shaky structure, a bifurcation, or why it is not known."""
+
+
 @dataclass(frozen=True, eq=False)
 class Mobility:
     """Mobility relative to ground, defined in the results contract."""
@@ -180,6 +218,14 @@ class Mobility:
     idle_bodies: tuple[BodyName, ...]
     uncertain: tuple[JointName, ...]
     """Joints that are ambiguous or general or blocked: the counts depend on them."""
+    finite_reason: str = ""
+    """Why `finite` is less than `instantaneous`, or is not known; empty where every freedom is a motion."""
+    infinitesimal: int = 0
+    """Freedoms that exist at first order only (a shaky structure); those of a bifurcation do not count."""
+    singular: bool = False
+    """The pose has more freedoms than the poses that it can move to."""
+    certificates: tuple[FiniteCertificate, ...] = ()
+    """One a block of joints with loops and freedoms, in the order of the joints."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -234,7 +234,8 @@ def _mobility(design: Design) -> dict[str, Any]:
     mobility = kinematics.mobility
     return {
         **mobility_counts(mobility),
-        **_fields(mobility, "idle_bodies", "uncertain"),
+        **_fields(mobility, "idle_bodies", "uncertain", "finite_reason", "infinitesimal", "singular"),
+        "certificates": [asdict(certificate) for certificate in mobility.certificates],
         "bodies": [body.name for body in kinematics.bodies],
         "freedoms": mobility.freedoms,
         "misfit": asdict(kinematics.misfit),

@@ -1,8 +1,9 @@
 """The assembly has more or fewer freedoms than `function.mobility` states.
 
 Compared with the *effective* mobility: independent motions of the whole assembly relative to ground,
-without freedoms that only spin or slide a single body on itself and that no intended joint names.
-Blocked joints count by their type. Inconclusive when a joint is ambiguous.
+without freedoms that only spin or slide a single body on itself and that no intended joint names, and without
+freedoms that lead nowhere over a distance (KF305, KF306), where that is known. Blocked joints count by their
+type. Inconclusive when a joint is ambiguous.
 
 Why it matters: one freedom too few and the mechanism jams; one too many and something moves that no
 drive holds.
@@ -56,8 +57,10 @@ def _details(kinematics: Kinematics) -> str:
         notes.append(f"{counted(mobility.idle, 'idle freedom')} not counted")
     if mobility.blocked != mobility.instantaneous:
         notes.append(f"{mobility.blocked} of {mobility.instantaneous} left when blockers hold")
-    if mobility.finite is not None and mobility.finite != mobility.instantaneous:
-        notes.append(f"{mobility.instantaneous - mobility.finite} only infinitesimal")
+    if mobility.infinitesimal:
+        notes.append(f"{mobility.infinitesimal} only infinitesimal")
+    if mobility.singular:
+        notes.append(f"{mobility.instantaneous} at this singular pose")
     return f" ({'; '.join(notes)})" if notes else ""
 
 

@@ -1,0 +1,54 @@
+"""The pose in which the parts are drawn is singular: it has more freedoms than the poses beside it.
+
+Where several motions lead out of the pose, it is a bifurcation, and which of them the device follows is left to
+chance. Found by finite steps in all directions of the freedoms, see KF305.
+
+Why it matters: the mobility at this pose is not that of the device in use, drives lose their hold here, and a
+simulation that starts here, or passes, cannot know how to go on.
+
+What to do: draw the assembly in another pose. If the device passes this one in use, guide it: by an end stop
+before it, or by a second crank out of phase.
+
+Example: a parallelogram of four bars that lie in one line may go on as a parallelogram, or crossed.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._words import counted, listed, quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Blocks whose pose has more freedoms than the branches that lead out of it."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    findings = []
+    for certificate in kinematics.mobility.certificates:
+        if not certificate.singular:
+            continue
+        ways = certificate.branches
+        branches = (
+            f"{len(ways)} branches ({listed([str(way) for way in ways])} freedoms) were found that lead out of it"
+            if len(ways) > 1
+            else f"beside it {ways[0]}"
+        )
+        first = context.joint(certificate.joints[0])
+        findings.append(
+            RULE.finding(
+                certificate.joints,
+                f"{quoted(certificate.joints)} have {counted(certificate.instantaneous or 0, 'freedom')} in this pose, "
+                f"{branches}",
+                found="bifurcation" if len(ways) > 1 else "singular pose",
+                place=context.place_of(first) if first is not None else None,
+                declared=context.assembly.source,
+                remedy="Draw the assembly in another pose; guide the device where it passes this one.",
+            )
+        )
+    return decided(findings)
+
+
+RULE = Rule("KF306", "pose-singular", "warning", __doc__, check)

@@ -1,0 +1,186 @@
+"""Finite mobility of the assembly: which first-order freedoms are motions over a distance.
+
+Each block of the graph of bodies and joints is tried by itself (`flexes`); a bridge closes no loop, so its
+freedoms are motions. A `general` joint is known by its velocities alone, which say nothing of where they
+lead: its block counts only where its other joints, with the general ones held, move as freely.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.flexes import Flex, flex
+from kinform.kinematics.graph import UnionFind, blocks
+from kinform.kinematics.motion import LoopSystem, loop_system
+from kinform.kinematics.poses import first_order
+from kinform.kinematics.screws import Frame
+from kinform.model.kinematics import FiniteCertificate, Joint
+from kinform.model.names import JointName
+
+__all__ = ["Finite", "finite_mobility"]
+
+Array = NDArray[np.float64]
+
+PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
+"""Joints whose point says where the mechanism is."""
+WORK = 5e8
+"""Multiplications of one singular value decomposition of a block; above it the block is not tried. A mesh of
+300 hinges has 5e7, one of 250 ball joints about 5e8."""
+
+
+@dataclass(frozen=True)
+class Finite:
+    """The count, what is special about the pose, and why one may believe it."""
+
+    count: int | None
+    reason: str
+    """Freedoms that are no motions, bifurcations, and what could not be decided; empty where all move."""
+    infinitesimal: int
+    singular: bool
+    certificates: tuple[FiniteCertificate, ...]
+
+
+def finite_mobility(
+    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], nodes: int, instantaneous: int, size: float
+) -> Finite:
+    """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
+    `instantaneous` freedoms of first order; `size` of the assembly (m)."""
+    certificates = []
+    trees = UnionFind(nodes)
+    for a, b in edges:
+        trees.union(a, b)
+    # bridges, and trees that are loose
+    open_ended = 6 * (len({trees.find(n) for n in range(nodes)}) - 1)
+    for block in blocks(nodes, edges):
+        if len(block) == 1:
+            open_ended += joints[block[0]].freedoms
+            continue
+        found = _block([edges[k] for k in block], [joints[k] for k in block], size)
+        if found is not None:
+            certificates.append(found)
+    first = [c.instantaneous for c in certificates if c.instantaneous is not None]
+    last = [c.finite for c in certificates if c.finite is not None]
+    statements = [c.statement for c in sorted(certificates, key=lambda c: c.finite is not None) if c.statement]
+    if len(first) == len(certificates) and open_ended + sum(first) != instantaneous:
+        why = "two ways to count the freedoms of first order disagree: a rank is on the edge"
+        return Finite(None, why, 0, False, tuple(certificates))
+    if len(statements) > 4:
+        statements = [*statements[:3], f"and {len(statements) - 3} more blocks of joints"]
+    decided = len(last) == len(certificates)
+    return Finite(
+        count=open_ended + sum(last) if decided else None,
+        reason="; ".join(statements),
+        infinitesimal=sum(c.infinitesimal for c in certificates),
+        singular=any(c.singular for c in certificates),
+        certificates=tuple(certificates),
+    )
+
+
+def _block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: float) -> FiniteCertificate | None:
+    """The certificate of one block with loops; None where nothing in it moves, even at first order."""
+    names = tuple(joint.name for joint in joints)
+    frame = _frame(joints, size)
+    system = loop_system(edges, [joint.twists for joint in joints], frame)
+    rows, columns = 6 * len(system.loops), system.coordinates
+    if rows * columns * min(rows, columns) > WORK:
+        why = f"{len(joints)} joints in one block, from {names[0]} to {names[-1]}, are too many to be tried"
+        return FiniteCertificate(names, None, None, statement=why)
+    doubtful = [joint.name for joint in joints if joint.status == "ambiguous"]
+    general = [joint.name for joint in joints if joint.type == "general"]
+    if not doubtful and not general:
+        found = flex(system)
+        return _certificate(names, system, found) if found.freedoms else None
+    count = first_order(system)
+    if count == 0:
+        return None
+    if not doubtful:
+        held = [joint.twists[:0] if joint.type == "general" else joint.twists for joint in joints]
+        locked = loop_system(edges, held, frame)
+        found = flex(locked)
+        if found.dimension == count:
+            return _certificate(names, locked, found)
+    why = f"{_few(doubtful)} is ambiguous" if doubtful else f"{_few(general)} is known by its velocities only"
+    if len(doubtful or general) > 1:
+        why = why.replace(" is ", " are ").replace("its", "their")
+    return FiniteCertificate(names, count, None, statement=f"not known how the loops move over a distance: {why}")
+
+
+def _frame(joints: Sequence[Joint], size: float) -> Frame:
+    """Centre and size of a block. Points of joints that meet have no size of their own: then a share of
+    the assembly's counts, as for the first-order count."""
+    placed = [j.point for j in joints if j.point is not None and j.type in PLACED]
+    placed = placed or [j.point for j in joints if j.point is not None]
+    if not placed:
+        return Frame(np.zeros(3), size)
+    low, high = np.min(placed, axis=0), np.max(placed, axis=0)
+    return Frame(0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), 0.05 * size))
+
+
+def _certificate(names: Sequence[JointName], system: LoopSystem, found: Flex) -> FiniteCertificate:
+    """What was found, with names and in words."""
+    decided = found.dimension is not None
+    singular = decided and any(count < found.freedoms for count in found.branches) and not _always(found)
+    moving = np.abs(found.lost).max(axis=0, initial=0.0)
+    moves = tuple(names[k] for k in np.unique(system.joint[moving > 1e-3 * moving.max(initial=0.0)]))
+    return FiniteCertificate(
+        joints=tuple(names),
+        instantaneous=found.freedoms,
+        finite=found.dimension,
+        infinitesimal=len(found.lost),
+        singular=singular,
+        branches=found.branches,
+        step=found.step,
+        kept=round(found.kept, 6),
+        residual=_bound(found.residual),
+        stepped=found.stepped,
+        second_order=found.order,
+        moves=moves,
+        statement=_statement(names, moves, found, singular),
+    )
+
+
+def _bound(residual: float) -> float:
+    """The next power of ten: what is below rounding is not worth a digit."""
+    return float(10.0 ** math.ceil(math.log10(max(residual, 1e-15))))
+
+
+def _always(found: Flex) -> bool:
+    """Is the one branch as short of freedoms at the stepped poses: a shaky part that rides along?"""
+    return len(found.branches) == 1 and found.stepped == found.freedoms
+
+
+def _statement(names: Sequence[str], moves: Sequence[str], found: Flex, singular: bool) -> str:
+    if found.dimension is None:
+        return f"not known how the loops of {_few(names)} move over a distance: {found.reason}"
+    said = []
+    if len(found.lost):
+        verb = "is" if len(found.lost) == 1 else "are"
+        said.append(
+            f"{len(found.lost)} of {_freedoms(found.freedoms)} {verb} only infinitesimal: "
+            f"{_few(moves)} give at first order and then lock (shaky)"
+        )
+    if singular:
+        ways = " and ".join(str(count) for count in found.branches)
+        said.append(
+            f"the pose is a bifurcation: {_few(names)} have {_freedoms(found.freedoms)} here, and "
+            f"{len(found.branches)} branches ({ways} freedoms) were found that lead out of it"
+            if len(found.branches) > 1
+            else f"the pose is singular: {_few(names)} have {_freedoms(found.freedoms)} here and "
+            f"{found.branches[0]} beside it"
+        )
+    return "; ".join(said)
+
+
+def _freedoms(count: int) -> str:
+    return f"{count} freedom" if count == 1 else f"{count} freedoms"
+
+
+def _few(names: Sequence[str], limit: int = 4) -> str:
+    """ "a, b and c"; beyond the limit "a, b, c, d and 3 more"."""
+    shown = list(names) if len(names) <= limit + 1 else [*names[:limit], f"{len(names) - limit} more"]
+    return " and ".join(filter(None, [", ".join(shown[:-1]), shown[-1] if shown else ""]))
