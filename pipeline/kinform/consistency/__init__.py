@@ -24,4 +24,4 @@ __all__ = [
     "verdict",
 ]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 4

@@ -1,4 +1,5 @@
-"""Contacts between facets that fit no surface on either side: kind "freeform".
+"""Contacts between facets that fit no surface on either side: kind "freeform"; and of surfaces that turn or slide
+on themselves in one common way: kinds "torus", "revolution" and "extrusion".
 
 Their normals are those of the facets, which is good enough to say that and where two parts touch, and too
 coarse to decide what they may do: such a patch carries the angle by which its facets disagree as the
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.contacts.coaxial import aligned
-from kinform.contacts.mates import EDGE, box_centre, mean_axes
+from kinform.contacts.mates import EDGE, box_centre, mean_axes, mean_direction
 from kinform.contacts.narrow import Probes, Verdict, join, verify
 from kinform.contacts.patches import classify_fit
 from kinform.contacts.placed import NearSurfaces, PlacedPart
@@ -69,7 +70,8 @@ def freeform_patches(
         weights = shares[here - end + len(shares)]
         if weights.sum() >= _LEAST * tolerance**2:
             patch = _patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance)
-            patches.append(_turning(patch, near, (row, column), tolerance, tolerances))
+            patch = _turning(patch, near, (row, column), tolerance, tolerances)
+            patches.append(_drawn(patch, near, (row, column), tolerances))
     return patches
 
 
@@ -174,4 +176,28 @@ def _turning(
         misalignment=axes.misalignment,
         offset=axes.offset,
         uncertainty=axes.uncertainty,
+    )
+
+
+def _drawn(
+    patch: Patch, near: tuple[NearSurfaces, NearSurfaces], rows: tuple[int, int], tolerances: Tolerances
+) -> Patch:
+    """The patch as one of two extrusions in one direction, where they are that: a spline in its hub, a dovetail of
+    curved profile. Its normals then leave the slide along it exactly free."""
+    if any(KINDS[side.kinds[row]] != "extrusion" for side, row in zip(near, rows, strict=True)):
+        return patch
+    own, other = (side.axes[row] for side, row in zip(near, rows, strict=True))
+    spread = tuple(float(side.axis_uncertainty[row]) for side, row in zip(near, rows, strict=True))
+    axis, angle, uncertainty = mean_direction(own, other if own @ other > 0.0 else -other, (spread[0], spread[1]))
+    if max(spread) > tolerances.alignment or angle > tolerances.alignment + 2.0 * uncertainty:
+        return patch
+    normals = patch.normals - (patch.normals @ axis)[:, None] * axis
+    return replace(
+        patch,
+        kind="extrusion",
+        one_sided=False,
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+        axis=axis,
+        misalignment=angle,
+        uncertainty=(uncertainty, patch.chord),
     )

@@ -19,6 +19,7 @@ from kinform.contacts.placed import NearSurfaces, PlacedPart, facing, near_surfa
 from kinform.contacts.planes import plane_mates
 from kinform.contacts.solids import SolidStore
 from kinform.contacts.spheres import sphere_mates
+from kinform.contacts.threads import threaded_patches
 from kinform.model.assembly import Part, freeze
 from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
@@ -65,7 +66,9 @@ def pair_contacts(
     overlap = box_overlap(*near, EDGE * tolerance)
     mates += one_sided_mates(a, b, near, overlap, tolerance, tolerances)
     patches = mated_patches(a, b, near, mates, tolerance, tolerances)
+    screwed = threaded_patches(a, b, near, overlap, tolerance, tolerances)
     patches += freeform_patches(a, b, near, overlap, tolerance, tolerances)
+    patches = [*_beside(patches, screwed), *screwed]
     patches = without_continuations(patches, a, b)
     patches = patches or higher_pairs(a, b, near, tolerance, tolerances)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
@@ -74,6 +77,16 @@ def pair_contacts(
         at = home.X_WP[:3, :3] @ found.place + home.X_WP[:3, 3]
         found = replace(found, place=np.asarray(freeze(at)))
     return PairContacts(tuple(placed_in_world(patch, home.X_WP) for patch in patches), found)
+
+
+def _beside(patches: list[Patch], screwed: list[Patch]) -> list[Patch]:
+    """The patches without those of facets that lie on a thread which mates: its flanks say what they say, better."""
+    if not screwed:
+        return patches
+    own = [{patch.surfaces[k] for patch in screwed} for k in (0, 1)]
+    loose = [patch.one_sided or patch.kind == "other" for patch in patches]
+    on = [patch.surfaces[0] in own[0] or patch.surfaces[1] in own[1] for patch in patches]
+    return [patch for patch, drop, thread in zip(patches, loose, on, strict=True) if not (drop and thread)]
 
 
 def _inverse(X: Array) -> Array:

@@ -156,6 +156,8 @@ class NearSurfaces:
     """(s, 2) m along the axis from the point."""
     areas: Array
     """(s,) m² of the whole surface."""
+    pitches: Array
+    """(s,) m a turn, of helicoids."""
     lows: Array
     """(s, 3) box of the near facets."""
     highs: Array
@@ -200,6 +202,7 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         rims=table.rims[ids],
         extents=table.extents[ids],
         areas=table.areas[ids],
+        pitches=table.pitches[ids],
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),

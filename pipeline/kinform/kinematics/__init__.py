@@ -20,5 +20,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 5
+CODE_VERSION = 9
 """Bumped when the results of this stage change for the same input."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.certainty import certainty
-from kinform.kinematics.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.freedoms import INDEPENDENT, fits, freedoms
 from kinform.kinematics.hypotheses import Motion, motions
 from kinform.kinematics.subspace import JointForm, name_space
@@ -140,7 +140,7 @@ def _excusable(evidence: Evidence, motion: Motion, out: NDArray[np.bool_], speed
     senses: set[int] = set()
     for k in np.flatnonzero(out):
         item = evidence.items[k]
-        curved = item.patch.kind in (*COAXIAL, "sphere")
+        curved = item.patch.kind in GUIDES
         if curved and not item.patch.one_sided:
             return False
         if not curved and item.patch.one_sided and not stops_only:

@@ -1,4 +1,4 @@
-"""Elementary motions that the surfaces of a pair suggest: turns about axes, slides along directions.
+"""Elementary motions that the surfaces of a pair suggest: turns and screws about axes, slides along directions.
 
 Every lower pair is spanned by such motions, so it is enough to test each of them against each patch.
 Axes that agree within what clearances and fits allow are one axis, fitted to all that support it.
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.evidence import COAXIAL, PITCH, Evidence, Item
 from kinform.kinematics.screws import canonical, perpendicular, rotation, translation
 
 __all__ = ["Line", "Motion", "describe", "motions"]
@@ -34,7 +34,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One candidate freedom: `turn` about `line`'s axis and point, or a slide along it."""
+    """One candidate freedom: `turn` about an axis through a point, or a slide along it."""
 
     turn: bool
     twist: Array
@@ -43,6 +43,8 @@ class Motion:
     point: Array
     curved: bool
     """Suggested by a cylinder, cone or sphere rather than by planes alone."""
+    pitch: float = 0.0
+    """m a turn; of a turn that advances, right-handed positive."""
 
 
 def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
@@ -54,6 +56,10 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
     frame, out = evidence.frame, []
     for line in lines:
         out.append(Motion(True, rotation(line.axis, line.point, frame), line.axis, line.point, True))
+    for line in lines:
+        for pitch in _pitches(evidence, line):
+            twist = rotation(line.axis, line.point, frame, pitch)
+            out.append(Motion(True, twist, line.axis, line.point, True, pitch))
     for centre in centres:
         turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
         turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > 1e-3 * frame.length]
@@ -64,6 +70,21 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
         centre = _middle(evidence, normal, alignment)
         out.append(Motion(True, rotation(normal, centre, frame), normal, centre, False))
     return tuple(out)
+
+
+def _pitches(evidence: Evidence, line: Line) -> list[float]:
+    """Pitches (m a turn) of the threads on a line; those that agree are one, by their areas."""
+    found: list[tuple[float, float]] = []
+    threads = [evidence.items[k] for k in line.items if evidence.items[k].patch.kind == "helicoid"]
+    for item in sorted(threads, key=lambda i: (-i.area, i.index)):
+        for n, (pitch, area) in enumerate(found):
+            if abs(item.patch.pitch - pitch) <= PITCH * abs(pitch):
+                total = area + item.area
+                found[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
+                break
+        else:
+            found.append((item.patch.pitch, item.area))
+    return [pitch for pitch, _ in found]
 
 
 def _axes(evidence: Evidence, alignment: float) -> list[Line]:
@@ -168,6 +189,10 @@ def _slides(
     """Directions that surfaces leave free: axes, and lines in which two planes meet."""
     planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
     found: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
+    drawn = [(item.patch.axis, item.area) for item in evidence.items if item.patch.kind == "extrusion"]
+    for axis, _ in _directions(drawn, alignment):
+        if all(np.linalg.norm(np.cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+            found.append((axis, True))
 
     def add(direction: Array, curved: bool) -> None:
         direction = _refined(direction, planes, alignment)
@@ -218,4 +243,6 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
 def describe(motion: Motion) -> str:
     """In words: "rotation about (0, 0, 1)"."""
     axis = ", ".join(f"{x:.3g}" for x in np.where(np.abs(motion.axis) < 5e-4, 0.0, motion.axis))
+    if motion.pitch:
+        return f"screw motion about ({axis}), {1e3 * motion.pitch:.4g} mm a turn"
     return f"{'rotation about' if motion.turn else 'translation along'} ({axis})"

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.decide import Decision
 from kinform.kinematics.evidence import COAXIAL, Evidence
+from kinform.kinematics.groups import in_words
 from kinform.kinematics.hypotheses import describe
 from kinform.kinematics.screws import canonical, perpendicular, twist_at_origin
 from kinform.model.kinematics import Blocker, Joint
@@ -100,6 +101,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         patches=tuple(sorted(item.index for item in kept)),
         blockers=blockers,
         singular_values=decision.singular_values,
+        motion=in_words(decision.basis, frame),
     )
 
 

@@ -63,9 +63,10 @@ def rows(points: Array, normals: Array, frame: Frame) -> Array:
     return np.hstack([np.cross((points - frame.centre) / frame.length, normals), normals])
 
 
-def rotation(axis: Array, point: Array, frame: Frame) -> Array:
-    """Scaled unit twist (6,) of a rotation about the line (unit axis, point)."""
-    twist = np.concatenate([axis, np.cross(axis, frame.centre - point) / frame.length])
+def rotation(axis: Array, point: Array, frame: Frame, pitch: float = 0.0) -> Array:
+    """Scaled unit twist (6,) of a rotation about the line (unit axis, point) that advances by `pitch` (m) a turn."""
+    velocity = np.cross(axis, frame.centre - point) + pitch / (2.0 * np.pi) * axis
+    twist = np.concatenate([axis, velocity / frame.length])
     unit: Array = twist / np.linalg.norm(twist)
     return unit
 

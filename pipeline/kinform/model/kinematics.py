@@ -122,6 +122,8 @@ class Joint:
     """How many extreme directions the leaving motions have; None where held, not known, or too many to list."""
     held_reason: str = ""
     """Why it is not known whether they are held."""
+    motion: str = ""
+    """In words what the second body may do: "turns about …, slides along …"; of joints that contact decided."""
 
 
 @dataclass(frozen=True, eq=False)

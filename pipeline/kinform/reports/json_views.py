@@ -214,7 +214,7 @@ def _joint(joint: Joint) -> dict[str, Any]:
         **({"axis2": joint.axis2} if joint.type == "universal" else {}),
         **_fields(joint, "pitch", "freedoms"),
         **({"twists": joint.twists} if joint.type == "general" else {}),
-        **_fields(joint, "evidence", "status", "reason"),
+        **_fields(joint, "evidence", "status", "reason", "motion"),
         "range": None if unknown else limits,
         "patches": joint.patches,
         "blocked_by": [_fields(blocker, *of_blocker) for blocker in joint.blockers],

@@ -32,7 +32,7 @@ _JOINTS = (
     text("name"), pair("bodies", text, ("body_a", "body_b")), text("type"), vector("axis", "1"),
     vector("point", "m"), vector("axis2", "1"), real("pitch", "m a turn"), integer("freedoms"),
     texts("evidence"), text("status"), text("reason"), real("range_lower", "rad or m"),
-    real("range_upper", "rad or m"), text("range_status"),
+    real("range_upper", "rad or m"), text("range_status"), text("motion"),
 )  # fmt: skip
 _BLOCKERS = (
     integer("joint"), pair("parts", text, ("part_a", "part_b")), integer("patch"), real("area", "m²"),
@@ -101,7 +101,7 @@ def read(group: h5py.Group) -> dict[str, Any]:
 
 
 def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:
-    rows = read_rows(group, "joints", _JOINTS)
+    rows = read_rows(group, "joints", _JOINTS, added=("motion",))
     blockers: list[list[Blocker]] = [[] for _ in rows]
     for row in read_rows(group, "blockers", _BLOCKERS):
         blockers[row.pop("joint")].append(Blocker(**row))
