@@ -7,7 +7,7 @@ import math
 from rich.console import Group, RenderableType
 
 from kinform.model.design import Design
-from kinform.model.kinematics import Mobility
+from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.json_views import mobility_counts
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths
@@ -46,6 +46,7 @@ def render(design: Design) -> RenderableType:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
+    items += [_coupling(coupling) for coupling in design.kinematics.couplings]
     items.append(_misfit(design))
     return Group(*items)
 
@@ -59,6 +60,15 @@ def _certified(mobility: Mobility) -> str:
         f"loops close again after steps of {step:g} in every freedom: {100.0 * kept:.3g} % of the step kept, "
         f"residual below {residual:.0e}"
     )
+
+
+def _coupling(coupling: Coupling) -> str:
+    """One coupling: "gear: a = -1.5 · b through c"."""
+    first, second = coupling.joints
+    known = f" ± {coupling.uncertainty:.1g}" if math.isfinite(coupling.uncertainty) else ""
+    pose = ", at this pose" if coupling.kind == "cam" else ""
+    sure = "" if coupling.status == "determined" else f" ({coupling.status})"
+    return f"{coupling.kind}: {first} = {coupling.ratio:.6g}{known} · {second} through {coupling.through}{pose}{sure}"
 
 
 def _misfit(design: Design) -> str:

@@ -62,9 +62,14 @@ def higher_pairs(
     near: tuple[NearSurfaces, NearSurfaces],
     tolerance: float,
     tolerances: Tolerances,
+    pieces: tuple[frozenset[int], frozenset[int]] = (frozenset(), frozenset()),
 ) -> list[Patch]:
-    """Points and lines in which two parts touch, in the frame of the pair."""
+    """Points and lines in which two parts touch, in the frame of the pair.
+
+    `pieces`: surfaces of a and of b that are pieces of other curves, and are left out against each other.
+    """
     overlap = box_overlap(*near, tolerance)
+    overlap &= ~np.outer(*(np.isin(side.ids, sorted(own)) for side, own in zip(near, pieces, strict=True)))
     touches: list[_Touch] = []
     for first, flags in ((True, overlap), (False, overlap.T)):
         round_side, flat_side = near if first else near[::-1]

@@ -8,6 +8,7 @@ to be meant.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +18,10 @@ from kinform.kinematics.evidence import COAXIAL, FAR, Evidence, Item
 from kinform.kinematics.freedoms import fits, freedoms
 from kinform.kinematics.screws import perpendicular
 from kinform.kinematics.subspace import name_space
+from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["certainty"]
+__all__ = ["TOUCHING", "certainty", "meets", "momentary"]
 
 Array = NDArray[np.float64]
 
@@ -33,6 +35,8 @@ TILTED = 4.0
 """So are axes within this many times the alignment."""
 APART = 2e-3
 """Gaps below this share of the size of the smaller body are as good as none."""
+ROUND = 0.02
+"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
 STRAY = (5e-4, 2e-2)
 """Share of the squared size of the smaller body below which a one-directional contact may be a stray: where
 it touches, and where it does not."""
@@ -54,8 +58,8 @@ def certainty(
             f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
             f"and held (> {tolerances.held:g})"
         )
-    touching = name_space(basis, evidence.frame).type == "general" and all(
-        item.patch.kind in TOUCHING for item in evidence.items
+    touching = momentary(evidence, basis) or (
+        name_space(basis, evidence.frame).type == "general" and meets([item.patch for item in evidence.items])
     )
     doubt = "" if touching else _loose(evidence, twists, count, tolerances) or _stray(evidence)
     doubt = doubt or _nearly_one(evidence, twists, count, tolerances) or _threaded(evidence, basis)
@@ -63,6 +67,39 @@ def certainty(
         return "ambiguous", doubt
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
     return "determined", f"the contact leaves {count} freedom{'' if count == 1 else 's'}{weakest}"
+
+
+def meets(patches: Sequence[Patch]) -> bool:
+    """Whether all contact is along points and lines, beside nothing but planes across the lines: a cam that rubs."""
+    lines = [patch.axis for patch in patches if patch.kind == "line"]
+    return any(patch.kind in TOUCHING for patch in patches) and all(
+        patch.kind in TOUCHING
+        or (patch.kind == "plane" and lines and all(np.linalg.norm(np.cross(patch.axis, d)) < 1e-3 for d in lines))
+        for patch in patches
+    )
+
+
+def momentary(evidence: Evidence, basis: Array) -> bool:
+    """Whether points and lines alone leave a turn that takes the surfaces off each other: that of two gears about
+    their pitch line, while a roller in a groove turns about its own axis."""
+    if not meets([item.patch for item in evidence.items]):
+        return False
+    form = name_space(basis, evidence.frame)
+    if form.type not in ("revolute", "cylindrical", "screw", "spherical") or form.point is None:
+        return False
+    for item in evidence.items:
+        if item.patch.kind not in TOUCHING:
+            continue
+        arm = item.points - form.point
+        if form.axis is not None:
+            arm = arm - np.outer(arm @ form.axis, form.axis)
+        away = np.linalg.norm(arm, axis=1)
+        if all(
+            (np.abs(away - radius) > ROUND * max(radius, ROUND * evidence.frame.length)).any()
+            for radius in item.patch.radii
+        ):
+            return True
+    return False
 
 
 def _count(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], tolerances: Tolerances) -> int:

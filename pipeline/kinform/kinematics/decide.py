@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.certainty import certainty
+from kinform.kinematics.certainty import certainty, momentary
 from kinform.kinematics.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.freedoms import INDEPENDENT, fits, freedoms
 from kinform.kinematics.hypotheses import Motion, motions
@@ -67,7 +67,8 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     if chosen is None or basis.shape[1] <= strict.shape[1]:
         status, reason = certainty(evidence, twists, strict, values, tolerances)
         kept = tuple(range(len(evidence.items)))
-        return Decision(name_space(strict, evidence.frame), strict, strict, status, reason, kept, (), values)
+        form = JointForm("general") if momentary(evidence, strict) else name_space(strict, evidence.frame)
+        return Decision(form, strict, strict, status, reason, kept, (), values)
     out = tuple((int(k), motion) for k in np.flatnonzero(~keep))
     area = evidence.areas
     share = float(area[~keep].sum() / area.sum())

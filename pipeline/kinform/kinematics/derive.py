@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
+from kinform.kinematics.couplings import couplings
 from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.finite import finite_mobility
+from kinform.kinematics.higher import agree
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import body_twists, close
@@ -66,8 +68,9 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
             misaligned.append((joint.name, angle, offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
     snapped, misfit = snap(joints, contacts.patches, extents.assembly)
+    closed = agree(bodies, snapped, contacts.patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
-        assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
+        assembly, bodies, closed, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
         _clusters(assembly, contacts),
     )  # fmt: skip
 
@@ -260,7 +263,8 @@ def _finish(
     links = links_between(clusters, bodies, joints, patches, rows)
     first = next(k for k, item in enumerate(clusters) if item.ground)
     apart, reason = separations([item.name for item in clusters], first, links)
-    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason)
+    tied = couplings(assembly, bodies, joints, patches, closure)
+    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason, tied)
 
 
 def _orthonormal(twists: Array) -> Array:

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 CLOSED = 1e-7
 """Relative singular value below which a combination of joint rates closes its loops; the axes have
 been made exactly parallel and coaxial before, so true zeros are rounding."""
+SLIDE = 1e-9
+"""A twist whose axis is farther away than the size of the assembly over this is a slide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,13 +104,18 @@ def _close_block(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], bloc
 def _frame(spaces: Sequence[Array], size: float) -> Frame:
     """Centre and size of the axes of a block, so that turns and slides compare. Axes that meet have
     no size of their own: then a share of the assembly's counts."""
-    turns = np.array([t for space in spaces for t in space if np.any(t[:3])]).reshape(-1, 6)
+    turns = np.array([t for space in spaces for t in space if _turns(t, size)]).reshape(-1, 6)
     if not len(turns):
         return Frame(np.zeros(3), size)
     centre = _feet(turns, np.zeros(3)).mean(axis=0)
     # the point of an axis nearest to the origin may be far away: take that nearest to the centre
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
     return Frame(frame.centre, max(frame.length, 0.05 * size))
+
+
+def _turns(twist: Array, size: float) -> bool:
+    """Whether a twist turns, beyond the rounding of a slide."""
+    return float(np.linalg.norm(twist[:3])) * size > SLIDE * float(np.linalg.norm(twist[3:]))
 
 
 def _feet(turns: Array, centre: Array) -> Array:

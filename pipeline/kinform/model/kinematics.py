@@ -18,6 +18,7 @@ __all__ = [
     "Blocker",
     "Body",
     "ConstraintMatrix",
+    "Coupling",
     "FiniteCertificate",
     "Joint",
     "Kinematics",
@@ -230,6 +231,23 @@ class Mobility:
     """One a block of joints with loops and freedoms, in the order of the joints."""
 
 
+@dataclass(frozen=True)
+class Coupling:
+    """Two joints that one contact, or one screw, ties to each other: value(first) = ratio · value(second)."""
+
+    joints: tuple[JointName, JointName]
+    ratio: float
+    """Of the values as kinform counts them (of the second body about the listed axis relative to the first), SI."""
+    kind: str
+    """gear, rack, screw, or cam: then the ratio is that of this pose."""
+    through: JointName
+    """The joint that ties them: a higher pair or a screw."""
+    status: str
+    """determined or ambiguous."""
+    uncertainty: float
+    """Of the ratio; nan where it is not known."""
+
+
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """All of it."""
@@ -245,6 +263,7 @@ class Kinematics:
     """What can leave the assembly, ground held; sorted by bodies."""
     separations_reason: str = ""
     """Why it is not known, or not known of all bodies, whether they can leave."""
+    couplings: tuple[Coupling, ...] = ()
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -242,6 +242,7 @@ def _mobility(design: Design) -> dict[str, Any]:
         "misaligned": [
             {"joint": joint, "angle": angle, "offset": offset} for joint, angle, offset in kinematics.misaligned
         ],
+        "couplings": [asdict(coupling) for coupling in kinematics.couplings],
     }
 
 
