@@ -11,7 +11,7 @@ from kinform.contacts.bvh import MeshStore
 from kinform.contacts.coaxial import cone_mates, cylinder_mates
 from kinform.contacts.edges import edge_contacts
 from kinform.contacts.freeform import freeform_patches
-from kinform.contacts.higher import higher_pairs
+from kinform.contacts.higher import higher_pairs, pins_in_slots
 from kinform.contacts.interference import find_interference
 from kinform.contacts.mates import EDGE, Mate, box_overlap
 from kinform.contacts.onesided import one_sided_mates, without_continuations
@@ -76,6 +76,8 @@ def pair_contacts(
     patches = [*_beside(patches, screwed), *screwed]
     patches = without_continuations(patches, a, b)
     patches = _with_higher(a, b, near, patches, tolerance, tolerances)
+    if not any(patch.kind in ("line", "point") for patch in patches):
+        patches += pins_in_slots(a, b, near, patches, tolerance, tolerances)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     found = find_interference(a, b, patches, solids, tolerance)
     if found is not None:

@@ -163,6 +163,8 @@ class NearSurfaces:
     highs: Array
     facets: tuple[Ints, ...]
     """Near facets of each surface."""
+    minor_radii: Array
+    """(s,) m: of the tube of a torus."""
 
     def of_kind(self, *kinds: str) -> Ints:
         """Positions of the surfaces of these kinds."""
@@ -206,4 +208,5 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
+        minor_radii=table.minor_radii[ids],
     )

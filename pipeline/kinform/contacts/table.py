@@ -41,6 +41,8 @@ class SurfaceTable:
     """(s,) m² of the whole surface."""
     pitches: Array
     """(s,) m a turn of helicoids."""
+    minor_radii: Array
+    """(s,) m, of tori."""
     slack: float
     """The greatest of `slacks`."""
     radius: float
@@ -74,6 +76,7 @@ class SurfaceTable:
             extents=stacked("extent", 2),
             areas=column("area"),
             pitches=column("pitch"),
+            minor_radii=column("minor_radius"),
             slack=float(slacks.max(initial=0.0)),
             radius=float(radii.max(initial=0.0)),
         )

@@ -23,7 +23,7 @@ from kinform.kinematics.mobility import body_twists, close
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.screws import twist_at_origin
 from kinform.kinematics.separations import links_between, separations
-from kinform.kinematics.snapping import snap
+from kinform.kinematics.snapping import snap, uncertainties
 from kinform.model.assembly import Assembly, Assumption
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
@@ -43,7 +43,6 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function].
     """
-    del surfaces  # the patches carry the analytic geometry already
     merger, extents = Merger(assembly), Extents(assembly)
     decided = _decide_all(assembly, contacts, merger, extents)
     if fasten(assembly, contacts, merger):
@@ -71,7 +70,7 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     closed = agree(bodies, snapped, contacts.patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
         assembly, bodies, closed, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
-        _clusters(assembly, contacts),
+        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches),
     )  # fmt: skip
 
 
@@ -231,15 +230,17 @@ def _finish(
     misaligned: tuple[tuple[str, float, float], ...],
     size: float,
     clusters: tuple[Body, ...],
+    balls: Mapping[tuple[int, PartName], Array] | None = None,
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     ground = next(k for k, body in enumerate(bodies) if body.ground)
     spaces = [joint.twists for joint in joints]
-    closure = close(len(bodies), edges, spaces, ground, size)
+    doubts = uncertainties(joints, patches)
+    closure = close(len(bodies), edges, spaces, ground, size, doubts)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
-    blocked = close(len(bodies), edges, hard, ground, size).mobility if strict else closure.mobility
-    idle = _idle(assembly, bodies, joints, patches, size)
+    blocked = close(len(bodies), edges, hard, ground, size, doubts).mobility if strict else closure.mobility
+    idle = _idle(assembly, bodies, joints, patches, size, balls or {})
     count = closure.mobility
     finite = finite_mobility(edges, joints, len(bodies), count, size)
     mobility = Mobility(
@@ -276,7 +277,12 @@ def _orthonormal(twists: Array) -> Array:
 
 
 def _idle(
-    assembly: Assembly, bodies: tuple[Body, ...], joints: tuple[Joint, ...], patches: tuple[Patch, ...], size: float
+    assembly: Assembly,
+    bodies: tuple[Body, ...],
+    joints: tuple[Joint, ...],
+    patches: tuple[Patch, ...],
+    size: float,
+    balls: Mapping[tuple[int, PartName], Array],
 ) -> dict[BodyName, int]:
     """Idle freedoms of each body."""
     of_part = {part: body.name for body in bodies for part in body.parts}
@@ -292,9 +298,31 @@ def _idle(
     out: dict[BodyName, int] = {}
     for body in bodies:
         mine = around[body.name]
-        carried = [patches[k] for j in mine for k in j.patches]
+        indices = [k for j in mine for k in j.patches]
+        carried = [patches[k] for k in indices]
         if any(not j.patches for j in mine):
             continue
+        own = {}
+        if len(mine) > 1:
+            # a ball between others rolls; what lies on one other body only is there to move on it
+            own = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
         named = [w for j in mine for w in intended[j.bodies]]
-        out[body.name] = idle_freedoms(body, mine, carried, named, size)
+        out[body.name] = idle_freedoms(body, mine, carried, named, size, own)
+    return out
+
+
+def _balls(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], patches: Sequence[Patch]
+) -> dict[tuple[int, PartName], Array]:
+    """Centres (3,) of the spheres that touch at points or along lines, by patch and part."""
+    parts = {part.name: part for part in assembly.parts}
+    out = {}
+    for k, patch in enumerate(patches):
+        if patch.kind not in ("point", "line"):
+            continue
+        for name, number in zip(patch.parts, patch.surfaces, strict=True):
+            mesh, X_WP = parts[name].mesh, parts[name].X_WP
+            surface = None if mesh is None or number < 0 else surfaces[mesh.digest].surfaces[number]
+            if surface is not None and surface.kind == "sphere":
+                out[k, name] = X_WP[:3, :3] @ surface.point + X_WP[:3, 3]
     return out

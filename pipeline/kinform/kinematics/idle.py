@@ -7,7 +7,8 @@ that slides on a table leaves its place, a bolt that spins does not.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,17 +33,24 @@ def idle_freedoms(
     patches: Sequence[Patch],
     intended: Sequence[IntendedJoint],
     size: float,
+    balls: Mapping[int, Array] | None = None,
 ) -> int:
     """How many independent idle turns the body has.
 
     `joints`: all joints of the body; `patches`: the contacts that carry them; `intended`: intended
-    joints between this body and its neighbours in `joints`; `size` of the assembly (m).
+    joints between this body and its neighbours in `joints`; `size` of the assembly (m); `balls`: by
+    position in `patches`, the centre (3,) of the body's own surface where that is a sphere that touches at points
+    or along a line.
     """
     if not joints or not patches or body.ground:
         return 0
     frame = Frame.of(np.concatenate([p.points for p in patches]))
+    patches = [
+        replace(p, kind="sphere", point=balls[k]) if balls is not None and k in balls else p
+        for k, p in enumerate(patches)
+    ]
     found = []
-    for axis, point in _candidates(patches):
+    for axis, point in _candidates(patches, size):
         twist = rotation(axis, point, frame)
         if not all(_contains(joint, twist, frame) for joint in joints):
             continue
@@ -53,14 +61,14 @@ def idle_freedoms(
     return span(np.array(found).T).shape[1] if found else 0
 
 
-def _candidates(patches: Sequence[Patch]) -> list[tuple[Array, Array]]:
+def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Array]]:
     """Axes of revolution: of coaxial patches, through two centres, and three at a single centre."""
     lines = [(p.axis, p.point) for p in patches if p.kind in COAXIAL]
     centres = [p.point for p in patches if p.kind == "sphere"]
     for k, a in enumerate(centres):
         for b in centres[:k]:
             far = float(np.linalg.norm(b - a))
-            if far > 0.0:
+            if far > 1e-4 * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
         lines = [(e, centres[0]) for e in np.eye(3)]

@@ -24,6 +24,10 @@ CLOSED = 1e-7
 been made exactly parallel and coaxial before, so true zeros are rounding."""
 SLIDE = 1e-9
 """A twist whose axis is farther away than the size of the assembly over this is a slide."""
+SIGMAS = 3.0
+"""Loops whose axes are in no such relation (Bennett's) close to this many times the uncertainty of the axes, ..."""
+LOOSEST = 1e-4
+"""... but to no more than this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,17 +49,19 @@ class Closure:
 
 
 def close(
-    nodes: int, edges: Sequence[tuple[int, int]], spaces: Sequence[Array], ground: int, size: float = 1.0
-) -> Closure:
+    nodes: int, edges: Sequence[tuple[int, int]], spaces: Sequence[Array], ground: int, size: float = 1.0,
+    doubts: Array | None = None,
+) -> Closure:  # fmt: skip
     """Closure of joints between bodies 0 … nodes−1; `spaces[k]` is the (f, 6) twist basis of joint k,
-    of its second body relative to its first, at the world's origin; `size` of the assembly (m)."""
+    of its second body relative to its first, at the world's origin; `size` of the assembly (m);
+    `doubts` (joints, 2): uncertainty of the directions (rad) and places (m) of the joints."""
     offset = np.concatenate([[0], np.cumsum([len(s) for s in spaces])]).astype(int)
     tree = forest(nodes, edges, ground)
     loose = sorted({r for r in tree.root if r != tree.root[ground]})
     total = int(offset[-1]) + 6 * len(loose)
     rates: list[Array] = []
     for block in blocks(nodes, edges):
-        for solution in _close_block(edges, spaces, block, size):
+        for solution in _close_block(edges, spaces, block, size, doubts):
             row, at = np.zeros(total), 0
             for k in block:
                 row[offset[k] : offset[k + 1]] = solution[at : at + len(spaces[k])]
@@ -68,7 +74,9 @@ def close(
     return Closure(np.array(rates).reshape(len(rates), total), tree, tuple(int(o) for o in offset), tuple(loose))
 
 
-def _close_block(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], size: float) -> Array:
+def _close_block(
+    edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], size: float, doubts: Array | None
+) -> Array:
     """Null space (k, rates of the block) of the closure of all its independent loops."""
     count = sum(len(spaces[k]) for k in block)
     if count == 0:
@@ -96,7 +104,11 @@ def _close_block(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], bloc
                 matrix[here, columns[e] : columns[e + 1]] += sign * forward * twists[e]
                 node = tree.parent[node]
     _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > CLOSED * max(values[0], 1e-300))) if len(values) else 0
+    closed = CLOSED
+    if doubts is not None:
+        own = doubts[list(block)]
+        closed = max(CLOSED, min(LOOSEST, SIGMAS * float((own[:, 0] + own[:, 1] / frame.length).max())))
+    rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
     null: Array = right[rank:] / norms
     return null
 
@@ -107,8 +119,13 @@ def _frame(spaces: Sequence[Array], size: float) -> Frame:
     turns = np.array([t for space in spaces for t in space if _turns(t, size)]).reshape(-1, 6)
     if not len(turns):
         return Frame(np.zeros(3), size)
-    centre = _feet(turns, np.zeros(3)).mean(axis=0)
-    # the point of an axis nearest to the origin may be far away: take that nearest to the centre
+    # the point of an axis nearest to the origin may be far away: take those nearest to the middle of all axes
+    feet = _feet(turns, np.zeros(3))
+    axes = turns[:, :3] / np.linalg.norm(turns[:, :3], axis=1)[:, None]
+    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    start = feet.mean(axis=0)
+    missing = np.einsum("nij,nj->i", across, feet - start)
+    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=1e-6)[0]
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
     return Frame(frame.centre, max(frame.length, 0.05 * size))
 

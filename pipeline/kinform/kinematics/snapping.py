@@ -21,7 +21,7 @@ from kinform.kinematics.screws import canonical, perpendicular
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Misfit
 
-__all__ = ["snap"]
+__all__ = ["snap", "uncertainties"]
 
 Array = NDArray[np.float64]
 
@@ -93,6 +93,17 @@ def snap(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tup
         for member in line.members:
             out[member.joint], misfit = _moved(out[member.joint], member, line, misfit)
     return tuple(out), misfit
+
+
+def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
+    """(joints, 2): of the direction (rad) and of the place (m) of each joint, by its best patch; 0 where it has none.
+    Patches on facets of no known surface have no say."""
+    out = np.zeros((len(joints), 2))
+    for k, joint in enumerate(joints):
+        own = [patches[p] for p in joint.patches if not patches[p].one_sided]
+        carriers = [p for p in own if p.kind in ("cylinder", "cone", "sphere")] or own
+        out[k] = [min((p.uncertainty[n] for p in carriers), default=0.0) for n in (0, 1)]
+    return out
 
 
 def _lines(axes: Sequence[_Axis]) -> list[_Line]:
