@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.kinematics.motions import Motions
 from kinform.kinematics.releases import direction_words
 from kinform.kinematics.screws import Frame, rows, scaled, span
 from kinform.kinematics.ways import Attempt, attempt, pair_ways
@@ -177,7 +178,10 @@ def _in_assembly(design: Design, first: str, second: str, twist: Array, frame: F
     assert design.kinematics is not None
     index = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
     freedoms = design.kinematics.mobility.freedoms
-    relative = freedoms[:, index[second]] - freedoms[:, index[first]]
+    if len(freedoms) < design.kinematics.mobility.instantaneous:
+        relative = Motions.of(design.kinematics).relative(first, second)
+    else:
+        relative = freedoms[:, index[second]] - freedoms[:, index[first]]
     size = np.linalg.norm(relative, axis=1) if len(relative) else np.zeros(0)
     return _outside(twist, relative[size > 1e-9], frame)
 
