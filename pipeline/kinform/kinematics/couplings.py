@@ -38,20 +38,21 @@ def couplings(
     closure: Closure,
 ) -> tuple[Coupling, ...]:
     """All couplings of two joints through a higher pair or a screw, in the order of those; `closure` of all joints."""
-    rates = [
-        closure.rates[:, closure.offset[k] : closure.offset[k + 1]][:, 0] if joint.type in SINGLE else None
-        for k, joint in enumerate(joints)
-    ]
+    ties = [k for k, joint in enumerate(joints) if joint.type == "screw" or is_higher(joint, patches)]
+    if not ties:
+        return ()
+    rates = closure.sparse_rates
     around: dict[str, list[int]] = {body.name: [] for body in bodies}
     for k, joint in enumerate(joints):
         for name in joint.bodies:
             around[name].append(k)
     out = []
-    for k, through in enumerate(joints):
-        if through.type != "screw" and not is_higher(through, patches):
-            continue
+    for k in ties:
+        through = joints[k]
         for a, b in _sides(through, joints, around, k):
-            found = _ratio(rates[a], rates[b])
+            columns = rates[:, [closure.offset[a], closure.offset[b]]].tocoo()
+            moving = np.unique(columns.row)
+            found = _ratio(*rates[moving][:, [closure.offset[a], closure.offset[b]]].toarray().T)
             if found is not None:
                 pair = (joints[a], joints[b])
                 unsure = any(j.status in ("ambiguous", "blocked") for j in (through, *pair))
@@ -80,9 +81,9 @@ def _sides(through: Joint, joints: Sequence[Joint], around: Mapping[str, list[in
     return sorted(found)
 
 
-def _ratio(a: Array | None, b: Array | None) -> float | None:
+def _ratio(a: Array, b: Array) -> float | None:
     """a over b where all motions have one ratio, and both move at all."""
-    if a is None or b is None or not len(a):
+    if not len(a):
         return None
     size = np.array([np.abs(a).max(), np.abs(b).max()])
     if (size <= FIXED * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), 1e-300)).any():

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from kinform.kinematics.graph import Forest, blocks, forest
 from kinform.kinematics.loops import FEW, Block, Solution, close_block
@@ -39,6 +40,16 @@ class Closure:
     def mobility(self) -> int:
         """Dimension of the null space of the bilateral constraints, relative to ground."""
         return len(self.solutions)
+
+    @property
+    def sparse_rates(self) -> csr_array:
+        """(k, n) the solutions as a sparse matrix."""
+        counts = [len(s.columns) for s in self.solutions]
+        rows = np.repeat(np.arange(len(counts)), counts)
+        columns = np.concatenate([np.zeros(0, np.int64), *(s.columns for s in self.solutions)])
+        values = np.concatenate([np.zeros(0), *(s.rates for s in self.solutions)])
+        shape = (len(counts), self.offset[-1] + 6 * len(self.loose))
+        return csr_array((values, (rows, columns)), shape=shape)
 
     @property
     def rates(self) -> Array:
