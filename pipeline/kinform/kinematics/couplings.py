@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.certainty import TOUCHING
 from kinform.kinematics.higher import is_higher
 from kinform.kinematics.mobility import Closure
+from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint
@@ -102,7 +103,7 @@ def _uncertainty(ratio: float, through: Joint, pair: tuple[Joint, Joint], patche
         total = 0.0
         for joint in pair:
             twist = joint.twists[0]
-            velocity = twist[3:] + np.cross(twist[:3], point)
+            velocity = twist[3:] + cross(twist[:3], point)
             along = abs(float(velocity @ normal))
             aside = float(np.linalg.norm(velocity - normal * float(velocity @ normal)))
             off = patch.uncertainty[0] * aside + patch.uncertainty[1] * float(np.linalg.norm(twist[:3]))
@@ -140,7 +141,7 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     side = height[faces] > 0.0
     faces = faces[side.any(axis=1) & ~side.all(axis=1)]
     corners = mesh.vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
     first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
     owner = np.tile(np.arange(len(faces)), 3)
@@ -152,6 +153,6 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     twin = np.flatnonzero((key[1:] == key[:-1]) & (forward[1:] != forward[:-1]))
     one, two = normals[owner[twin]], normals[owner[twin + 1]]
     edge = mesh.vertices[key[twin] % len(height)] - mesh.vertices[key[twin] // len(height)]
-    sense = np.where(forward[twin], 1.0, -1.0) * np.einsum("ij,ij->i", np.cross(one, two), edge)
+    sense = np.where(forward[twin], 1.0, -1.0) * np.einsum("ij,ij->i", cross(one, two), edge)
     angle = np.arccos(np.clip(np.einsum("ij,ij->i", one, two), -1.0, 1.0))
     return float(angle[sense > 0.0].sum()) / (2.0 * np.pi)
