@@ -104,16 +104,20 @@ def simulate(
     *,
     level: str | None = None,
     progress: Progress | None = None,
+    say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
 ) -> Design:
-    """Motion at the level that is known, or at `level`. Raises StageError without mass properties."""
+    """Motion at the level that is known, or at `level`. Raises StageError without mass properties.
+
+    `say` is told what takes long besides the steps that `progress` counts.
+    """
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
 
     def run(view: Assembly) -> Any:
         from kinform import simulation
 
-        return simulation.simulate(view, kinematics, masses, level=level, progress=progress)
+        return simulation.simulate(view, kinematics, masses, level=level, progress=progress, say=say)
 
     return _advance("simulation", design, run, ledger, level)
 

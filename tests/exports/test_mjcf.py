@@ -78,20 +78,14 @@ def test_prescribed_motions_need_the_same_efforts(tmp_path):
     """A law is no part of MJCF: our motion is put in, and MuJoCo says what effort it takes."""
     found = known("seeker")
     mujoco, model, data = loaded(found, tmp_path)
-    from kinform.exports.model import export_model
-    from kinform.simulation.actuation import Actuation
-    from kinform.simulation.dynamics import Dynamics
-
-    exported, run = export_model(found), found.simulation
-    acting = Actuation(exported.mechanism, exported.system, with_mass=True)
-    dynamics = Dynamics(exported.mechanism, exported.system, exported.gravity, acting, 0)
+    run = found.simulation
     names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, k) for k in range(model.njnt)]
     order = [run.joint_names.index(name) for name in names]
     # Joints that the tree runs through backwards have reversed axes and the same values.
     for k in range(len(run.time)):
         q, v = run.joint_position[k], run.joint_velocity[k]
         data.qpos[:], data.qvel[:] = q[order], v[order]
-        data.qacc[:] = dynamics.motion(float(run.time[k]), q, v).acceleration[order]
+        data.qacc[:] = run.joint_acceleration[k][order]
         data.ctrl[:] = 0.0
         mujoco.mj_inverse(model, data)
         driven = [n for n, name in enumerate(names) if name != "camera~inner"]

@@ -53,7 +53,8 @@ def simulate(
 
     design = files.read(source)
     with files.needing(source), Working("simulation") as progress:
-        design = stages.simulate(design, level=None if level is None else level.value, progress=progress)
+        wanted = None if level is None else level.value
+        design = stages.simulate(design, level=wanted, progress=progress, say=console.say)
     results.write(design, output)
     found = design.simulation
     assert found is not None

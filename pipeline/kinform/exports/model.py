@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour import Behaviour, JointComponent, RigidBody, System, build
+from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
+from kinform.behaviour.components import DcMotor, EndStop, Servo, SpringDamper, VoltageController, VoltageSource
 from kinform.errors import StageError
 from kinform.function import resolve
 from kinform.model.assembly import Assembly
@@ -166,9 +167,25 @@ def _ranges(
     return dict(sorted(out.items()))
 
 
+_ELSEWHERE: dict[type[Component], str] = {
+    Servo: "a servo",
+    DcMotor: "a DC motor",
+    VoltageSource: "the voltage of a motor",
+    VoltageController: "the controller of a motor",
+    EndStop: "end stops with impacts",
+    SpringDamper: "a spring between two points",
+}
+"""What the equations of the other formats are not written for."""
+
+
 def _lost(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:
     out = [f"{subject}: {why}" for subject, why in (*behaviour.failures, *behaviour.forces_missing)]
     out += [f"{body.subject}: its mass is not known" for body in _weightless(behaviour.system)]
+    out += [
+        f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
+        for component in behaviour.system.components
+        if type(component) in _ELSEWHERE
+    ]
     out += [f"{name}: no joints connect this body with the ground; it is free" for name in sorted(adrift)]
     return tuple(out)
 

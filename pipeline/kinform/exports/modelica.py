@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour import Component, EffortDrive, Ground, MotionDrive, RigidBody, Spring
+from kinform.behaviour import Component, Damper, EffortDrive, Ground, MotionDrive, RigidBody, Spring
 from kinform.behaviour.primitives import Ball, OneFreedom
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
 from kinform.exports.exported import Exported
@@ -251,8 +251,10 @@ def _actors(
             elif isinstance(actor, Spring):
                 values = f"k={number(actor.stiffness)}, rest={number(actor.rest)}"
                 built.instances.append(("Spring", name, values, actor.subject))
-            else:
+            elif isinstance(actor, Damper):
                 built.instances.append(("Damper", name, f"d={number(actor.damping)}", actor.subject))
+            else:
+                continue
             built.connections.append((f"{name}.shaft", f"{names[joint.name]}.shaft"))
     for gear, held in zip(system.gears, found.gears, strict=True):
         if not held:

@@ -6,6 +6,7 @@ Numbers are doubles in shortest decimal form, so that reading gives an equal mod
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
@@ -29,7 +30,16 @@ from kinform.behaviour import (
     System,
     count,
 )
-from kinform.behaviour.components import Gear
+from kinform.behaviour.components import (
+    Controller,
+    DcMotor,
+    EndStop,
+    Gear,
+    Servo,
+    SpringDamper,
+    VoltageController,
+    VoltageSource,
+)
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.signals import Ramp, Sine, Table
 from kinform.errors import InputError, Problem
@@ -148,6 +158,67 @@ class DamperData(_Named):
     damping: float
 
 
+class EndStopData(_Named):
+    """The value stays between the limits, a null side is free; impacts are without rebound. Port: shaft."""
+
+    kind: Literal["end_stop"] = "end_stop"
+    lower: float | None
+    upper: float | None
+
+
+class ControllerData(_Strict):
+    """kp · e + ki · ∫e + kd · ė, within ±limit (null: any)."""
+
+    kp: float
+    ki: float
+    kd: float
+    limit: float | None
+
+
+class ServoData(_Named):
+    """The effort is the controller's output for the target. Port: shaft."""
+
+    kind: Literal["servo"] = "servo"
+    target: LawData
+    controller: ControllerData
+
+
+class DcMotorData(_Named):
+    """L di/dt = V − R i − k g ω, effort = k g i. Ports: shaft, terminals."""
+
+    kind: Literal["dc_motor"] = "dc_motor"
+    resistance: float
+    inductance: float
+    constant: float
+    gear: float
+
+
+class VoltageData(_Named):
+    """The voltage across the terminals follows the law. Port: terminals."""
+
+    kind: Literal["voltage_source"] = "voltage_source"
+    law: LawData
+
+
+class VoltageControllerData(_Named):
+    """The voltage is the controller's output for the target of the shaft's value. Ports: shaft, terminals."""
+
+    kind: Literal["voltage_controller"] = "voltage_controller"
+    target: LawData
+    controller: ControllerData
+
+
+class SpringDamperData(_Named):
+    """stiffness · (length − rest) + damping · d(length)/dt between two points. Ports: a, b."""
+
+    kind: Literal["spring_damper"] = "spring_damper"
+    point: Vector
+    other: Vector
+    stiffness: float
+    damping: float
+    rest: float
+
+
 class GearData(_Named):
     """value at a = ratio · value at b. Ports: a, b."""
 
@@ -166,7 +237,21 @@ class LoadData(_Named):
 
 
 ComponentData = Annotated[
-    GroundData | BodyData | JointData | MotionData | EffortData | SpringData | DamperData | GearData | LoadData,
+    GroundData
+    | BodyData
+    | JointData
+    | MotionData
+    | EffortData
+    | SpringData
+    | DamperData
+    | GearData
+    | LoadData
+    | EndStopData
+    | ServoData
+    | DcMotorData
+    | VoltageData
+    | VoltageControllerData
+    | SpringDamperData,
     Field(discriminator="kind"),
 ]
 
@@ -293,11 +378,37 @@ _WRITERS: dict[type[Component], Callable[[Any], dict[str, Any]]] = {
     Spring: lambda c: {"kind": "spring", "stiffness": c.stiffness, "rest": c.rest},
     Damper: lambda c: {"kind": "damper", "damping": c.damping},
     Gear: lambda c: {"kind": "gear", "ratio": c.ratio},
+    EndStop: lambda c: {"kind": "end_stop", "lower": _finite(c.lower), "upper": _finite(c.upper)},
+    Servo: lambda c: {"kind": "servo", "target": _law(c.target), "controller": _controller(c.controller)},
+    DcMotor: lambda c: {
+        "kind": "dc_motor", "resistance": c.resistance, "inductance": c.inductance, "constant": c.constant,
+        "gear": c.gear,
+    },
+    VoltageSource: lambda c: {"kind": "voltage_source", "law": _law(c.signal)},
+    VoltageController: lambda c: {
+        "kind": "voltage_controller", "target": _law(c.target), "controller": _controller(c.controller),
+    },
+    SpringDamper: lambda c: {
+        "kind": "spring_damper", "point": _list(c.point), "other": _list(c.other), "stiffness": c.stiffness,
+        "damping": c.damping, "rest": c.rest,
+    },
     LoadComponent: lambda c: {
         "kind": "load", "force": _list(c.force), "torque": _list(c.torque), "point": _list(c.point),
         "turning": c.turning,
     },
 }  # fmt: skip
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _controller(controller: Controller) -> dict[str, Any]:
+    return {"kp": controller.kp, "ki": controller.ki, "kd": controller.kd, "limit": _finite(controller.limit)}
+
+
+def _control(data: ControllerData) -> Controller:
+    return Controller(data.kp, data.ki, data.kd, math.inf if data.limit is None else data.limit)
 
 
 def _component(component: Component) -> dict[str, Any]:
@@ -344,4 +455,17 @@ def _read(data: Any) -> Component:
         return Damper(*named, data.damping)
     if isinstance(data, GearData):
         return Gear(*named, data.ratio)
+    if isinstance(data, EndStopData):
+        lower = -math.inf if data.lower is None else data.lower
+        return EndStop(*named, lower, math.inf if data.upper is None else data.upper)
+    if isinstance(data, ServoData):
+        return Servo(*named, _signal(data.target), _control(data.controller))
+    if isinstance(data, DcMotorData):
+        return DcMotor(*named, data.resistance, data.inductance, data.constant, data.gear)
+    if isinstance(data, VoltageData):
+        return VoltageSource(*named, _signal(data.law))
+    if isinstance(data, VoltageControllerData):
+        return VoltageController(*named, _signal(data.target), _control(data.controller))
+    if isinstance(data, SpringDamperData):
+        return SpringDamper(*named, _array(data.point), _array(data.other), data.stiffness, data.damping, data.rest)
     return LoadComponent(*named, _array(data.force), _array(data.torque), _array(data.point), data.turning)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour import (
+    Damper,
     EffortDrive,
     Ground,
     JointComponent,
@@ -240,8 +241,10 @@ def _actors(writer: Writer, found: Loops, held: frozenset[int], lost: list[str],
                 entity, values = _law(writer, "effort", name, actor.signal)
             elif isinstance(actor, Spring):
                 entity, values = "spring", {"stiffness": actor.stiffness, "rest": actor.rest}
-            else:
+            elif isinstance(actor, Damper):
                 entity, values = "damper", {"damping": actor.damping}
+            else:
+                continue
             _on_shaft(writer, home, name, entity, actor.subject, values, value)
         for k, (coordinate, _) in enumerate(joint.kind.coordinates):
             if slots[joint.subject].v.start + k in held and joint.kind.name != "spherical":

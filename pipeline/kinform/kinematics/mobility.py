@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from kinform.kinematics.graph import Forest, blocks, forest
 from kinform.kinematics.loops import FEW, Block, Solution, close_block
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 __all__ = ["Closure", "body_twists", "close"]
 
@@ -44,6 +47,8 @@ class Closure:
     @property
     def sparse_rates(self) -> csr_array:
         """(k, n) the solutions as a sparse matrix."""
+        from scipy.sparse import csr_array
+
         counts = [len(s.columns) for s in self.solutions]
         rows = np.repeat(np.arange(len(counts)), counts)
         columns = np.concatenate([np.zeros(0, np.int64), *(s.columns for s in self.solutions)])

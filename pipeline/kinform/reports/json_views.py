@@ -295,6 +295,8 @@ def _simulation(design: Design) -> dict[str, Any]:
         "bodies": run.body_names,
         "joints": [_course(run, *coordinate) for coordinate in coordinates(run)] if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
+        "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
+        "drives": [_fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
         "assumptions": run.assumptions,
         "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
     }
