@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
 from kinform.collisions.invariant import Allowed, Extent, extents, sliding_on_themselves
+from kinform.contacts.bvh import MeshIndex, MeshStore
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
@@ -30,6 +31,10 @@ SurfacePair = tuple[int, int]
 
 PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
+SAMPLES = 16
+"""Ends of crossing segments between which the depth is looked for."""
+INSIDE = 40
+"""Places between them that are asked whether they are inside both parts, the deepest first."""
 MOST = 200_000
 """Crossing facets that one question may return."""
 
@@ -39,11 +44,13 @@ class Crossing:
     """Facets that cross at one pose."""
 
     surfaces: frozenset[SurfacePair]
-    places: dict[SurfacePair, Array]
-    """(n, 3) middles of the segments of each pair of surfaces, in the frame of the first part."""
+    segments: Array
+    """(n, 2, 3) m, shared by the facets that cross, in the frame of the first part."""
+    slack: float
+    """m: chord errors of the surfaces that cross; less deep, it may be no crossing of what the facets stand for."""
 
 
-NONE = Crossing(frozenset(), {})
+NONE = Crossing(frozenset(), np.zeros((0, 2, 3)), 0.0)
 
 
 def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
@@ -66,8 +73,10 @@ class Shapes:
     body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
     """Parts of each body that have a mesh."""
     _extents: dict[str, Extent] = field(default_factory=dict)
+    _invariant: dict[tuple[str, bytes, Allowed], Flags] = field(default_factory=dict)
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
+    _store: MeshStore = field(default_factory=MeshStore)
     _patches: dict[tuple[str, str], list[int]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
 
@@ -95,6 +104,12 @@ class Shapes:
 
     def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
+        key = (name, twists.tobytes(), allowed)
+        if key not in self._invariant:
+            self._invariant[key] = self._find_invariant(name, twists, allowed)
+        return self._invariant[key]
+
+    def _find_invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         mesh, surfaces = self.mesh(name), self.surfaces_of(name)
         if mesh.digest not in self._extents:
             self._extents[mesh.digest] = extents(mesh, surfaces)
@@ -120,6 +135,15 @@ class Shapes:
             self._borders[mesh.digest] = near
         return self._borders[mesh.digest]
 
+    def overlapping(self, first: str, second: str) -> bool:
+        """Whether the solids of two parts overlap at the pose of the meshes, other than where they mate."""
+        found = self.contacts.interferences if self.contacts is not None else ()
+        return any(set(item.parts) == {first, second} and not item.mated for item in found)
+
+    def index(self, name: str) -> MeshIndex:
+        """Its facets, to be asked for insides and distances."""
+        return self._store.index(self.mesh(name))
+
     def model(self, name: str, facets: Ints | None = None) -> fcl.BVHModel:
         """FCL's model of some facets of a part (m, part frame)."""
         mesh = self.mesh(name)
@@ -142,6 +166,9 @@ class PairTest:
 
     def __init__(self, shapes: Shapes, first: str, second: str, facets: tuple[Ints, Ints], mates: Sequence[Patch]):
         self.names = (first, second)
+        self._shapes = shapes
+        self.overlapping = shapes.overlapping(first, second)
+        """Whether the solids overlap at the pose of the meshes, other than where they mate."""
         self.facets = facets
         self.X_WA, self.X_WB = shapes.part(first).X_WP, shapes.part(second).X_WP
         self._meshes = (shapes.mesh(first), shapes.mesh(second))
@@ -208,12 +235,31 @@ class PairTest:
         pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
+        slack = 0.0
         for pair in sorted({(int(a), int(b)) for a, b in pairs}):
             own = segments[(pairs == pair).all(axis=1)]
             own = own[~self._along_mate(pair, own)]
             if len(own):
-                out[pair] = own.mean(axis=1)
-        return Crossing(frozenset(out), out)
+                out[pair] = own
+                slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
+        return Crossing(frozenset(out), np.concatenate(list(out.values())), slack) if out else NONE
+
+    def depth(self, D: Array, crossing: Crossing) -> float:
+        """m: how deep the parts go into each other between the places where they cross; 0 where no such place is inside."""
+        points = crossing.segments.reshape(-1, 3)
+        points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
+        a, b = np.triu_indices(len(points), 1)
+        middles = 0.5 * (points[a] + points[b])
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        other = (middles - X[:3, 3]) @ X[:3, :3]
+        own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
+        away, _ = own.whole().depths(middles)
+        away_other, _ = far.whole().depths(other)
+        total = away + away_other
+        for n in np.argsort(-total, kind="stable")[:INSIDE]:
+            if own.contains(middles[n : n + 1])[0] and far.contains(other[n : n + 1])[0]:
+                return float(total[n])
+        return 0.0
 
     def _along_mate(self, pair: SurfacePair, segments: Array) -> Flags:
         """(n,) which segments (n, 2, 3) lie on a mate that both surfaces belong to or border."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.collisions.pairs import NONE, Crossing, PairTest, SurfacePair
+from kinform.collisions.pairs import NONE, Crossing, PairTest
 
 __all__ = ["Course", "First", "first_crossing"]
 
@@ -37,23 +37,23 @@ class Course:
 
 @dataclass(frozen=True, eq=False)
 class First:
-    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `left_out`: surfaces that cross from the
-    start and never part. `exhausted`: how far the motion is known to be free, where the work allowed was not enough."""
+    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `overlaps`: the parts cross from the start
+    and never part, so nothing is known. `exhausted`: how far it is free, where the work allowed was not enough."""
 
     at: float | None
     hit: float | None
     place: Array | None
-    left_out: frozenset[SurfacePair]
+    overlaps: bool = False
     exhausted: float | None = None
 
 
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
-        return First(None, None, None, frozenset())
+        return First(None, None, None)
     search = _Search(test, course)
-    begin = search.state(start)
-    search.muted = begin.crossing.surfaces
+    search.muted = bool(search.state(start).crossing.surfaces)
+    search.overlaps = search.muted and (test.overlapping or search.too_deep(start))
     resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
     left, stack = start, [end]
     while stack:
@@ -65,14 +65,16 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
             continue
         if way > resolution and right - left > fine:
             if search.tried > WORK:
-                return First(None, None, None, search.muted, exhausted=left)
+                return First(None, None, None, search.overlaps, left)
             stack.append(0.5 * (left + right))
             continue
         if search.crosses(right):
-            return search.narrow(left, right, fine)
+            if search.muted or search.real(right, end, resolution):
+                return search.narrow(left, right, fine)
+            search.muted = True
         left = stack.pop()
         search.pass_(left)
-    return First(None, None, None, search.muted)
+    return First(None, None, None, search.overlaps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,9 @@ class _State:
 class _Search:
     def __init__(self, test: PairTest, course: Course):
         self.test, self.course = test, course
-        self.muted: frozenset[SurfacePair] = frozenset()
+        self.muted = False
+        """Overlapping since the start, or by no more than chord errors."""
+        self.overlaps = False
         self.tried = 0
         self._known: dict[float, _State] = {}
 
@@ -97,12 +101,46 @@ class _Search:
         return self._known[s]
 
     def crosses(self, s: float) -> bool:
-        return bool(self.state(s).crossing.surfaces - self.muted)
+        if not self.muted:
+            return bool(self.state(s).crossing.surfaces)
+        return not self.overlaps and self.too_deep(s)
 
     def pass_(self, s: float) -> None:
-        """Surfaces that crossed so far, and have parted at s, count from here on."""
-        self.muted &= self.state(s).crossing.surfaces
+        """Parts that overlapped so far, and have parted at s, count from here on."""
+        self.muted = self.muted and bool(self.state(s).crossing.surfaces)
+        self.overlaps = self.overlaps and self.muted
         self._known = {key: state for key, state in self._known.items() if key >= s}
+
+    def too_deep(self, s: float) -> bool:
+        """Whether the parts go deeper into each other at s than chord errors explain."""
+        crossing = self.state(s).crossing
+        if not crossing.surfaces:
+            return False
+        if crossing.slack <= 0.0:
+            return True
+        return self.test.depth(self.course.displacement(s), crossing) > crossing.slack
+
+    def real(self, s: float, end: float, step: float) -> bool:
+        """Whether what crosses at s comes to be deeper than chord errors before it parts, or before the end."""
+        while self.state(s).crossing.surfaces:
+            if self.too_deep(s):
+                return True
+            further = self._after(s, step, end)
+            if further <= s:
+                return False
+            s = further
+        return False
+
+    def _after(self, s: float, way: float, end: float) -> float:
+        """The parameter after s by which points have travelled `way` (m), no more than `end`."""
+        goal = self.course.travel(s) + way
+        if self.course.travel(end) <= goal:
+            return end
+        low, high = s, end
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.course.travel(middle) < goal else (low, middle)
+        return high
 
     def narrow(self, left: float, right: float, fine: float) -> First:
         while right - left > fine:
@@ -113,7 +151,5 @@ class _Search:
                 right = middle
             else:
                 left = middle
-        places = self.state(right).crossing.places
-        met = np.concatenate([places[pair] for pair in sorted(places) if pair not in self.muted])
-        at = np.append(met.mean(axis=0), 1.0)
-        return First(left, right, (self.test.X_WA @ at)[:3], self.muted)
+        at = np.append(self.state(right).crossing.segments.mean(axis=(0, 1)), 1.0)
+        return First(left, right, (self.test.X_WA @ at)[:3])

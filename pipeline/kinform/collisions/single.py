@@ -145,7 +145,7 @@ def _end(
         if reach <= start:
             break
         found = first_crossing(candidate.test, course, reach, fine, start=start)
-        if found.left_out:
+        if found.overlaps:
             left_out.append(_sorted(candidate.test.names))
         if found.exhausted is not None:
             exhausted = candidate.test.names
