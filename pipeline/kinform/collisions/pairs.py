@@ -244,8 +244,8 @@ class PairTest:
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(frozenset(out), np.concatenate(list(out.values())), slack) if out else NONE
 
-    def depth(self, D: Array, crossing: Crossing) -> float:
-        """m: how deep the parts go into each other between the places where they cross; 0 where no such place is inside."""
+    def depth(self, D: Array, crossing: Crossing, least: float = 0.0) -> float:
+        """m: how deep the parts go into each other between the places where they cross; 0 where it is not above `least`."""
         points = crossing.segments.reshape(-1, 3)
         points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)
@@ -257,6 +257,8 @@ class PairTest:
         away_other, _ = far.whole().depths(other)
         total = away + away_other
         for n in np.argsort(-total, kind="stable")[:INSIDE]:
+            if total[n] <= least:
+                break
             if own.contains(middles[n : n + 1])[0] and far.contains(other[n : n + 1])[0]:
                 return float(total[n])
         return 0.0

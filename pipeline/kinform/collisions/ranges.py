@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-import numpy as np
-
+from kinform.collisions.linkage import drive_loops
 from kinform.collisions.pairs import Shapes
 from kinform.collisions.single import drive_alone
 from kinform.kinematics.graph import UnionFind, blocks
@@ -51,7 +50,11 @@ def ranges(
         if reason:
             out[k] = unknown(joint, reason)
         elif k in looped:
-            out[k] = unknown(joint, "it is in a closed loop")
+            found = drive_loops(shapes, kinematics, edges, looped[k])
+            for n in looped[k]:
+                if _refused(joints[n], kinematics, shapes):
+                    continue
+                out[n] = unknown(joints[n], found) if isinstance(found, str) else found[n]
         else:
             still, moving = _sides(kinematics, edges, k, shapes)
             out[k] = drive_alone(shapes, joint, still, moving)

@@ -118,7 +118,7 @@ class _Search:
             return False
         if crossing.slack <= 0.0:
             return True
-        return self.test.depth(self.course.displacement(s), crossing) > crossing.slack
+        return self.test.depth(self.course.displacement(s), crossing, crossing.slack) > crossing.slack
 
     def real(self, s: float, end: float, step: float) -> bool:
         """Whether what crosses at s comes to be deeper than chord errors before it parts, or before the end."""
