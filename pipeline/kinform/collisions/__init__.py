@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from kinform.collisions.along import along, clearance, part_poses
 from kinform.collisions.ranges import ranges
 
-__all__ = ["CODE_VERSION", "ranges"]
+__all__ = ["CODE_VERSION", "along", "clearance", "part_poses", "ranges"]
 
 CODE_VERSION: int = 1

@@ -38,6 +38,10 @@ RANK = 1e-4
 SINGULAR = 2e-3
 
 
+CLOSED = 1e-6
+"""rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
+
+
 class _Linkage:
     """One block of joints, with the assembly's bodies hanging on it."""
 
@@ -87,8 +91,8 @@ class _Linkage:
             residual = found.residual[0]
             if np.abs(residual).max() < 1e-12:
                 return q
-            q = q - np.linalg.lstsq(found.jacobian[0], residual, rcond=1e-6)[0]
-        return q if np.abs(self.system.close(q[None]).residual).max() < 1e-9 else None
+            q = q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0]
+        return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
 
     def tangent(self, q: Array) -> tuple[Array, bool] | None:
         """Unit null vector at q, and whether it is the only one; None where there is none."""
@@ -198,7 +202,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
     """The values that one joint takes along what is free to both sides."""
     unit = linkage.unit[column] * _sense(joint, linkage.twists[column])
     values = [end.q[:, column] * unit for end in ends]
-    low, high = min(v.min() for v in values), max(v.max() for v in values)
+    low, high = (min(_least(sign * v) for v in values) * sign for sign in (1.0, -1.0))
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     returned = any(end.why == "returned" for end in ends)
     if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
@@ -206,7 +210,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
         return JointRange(joint.name, free, free, left_out)
     sides = []
     for value in (low, high):
-        n = min(range(2), key=lambda k: float(np.abs(values[k] - value).min()))
+        n = min(range(2), key=lambda k: abs(float(values[k][-1]) - value))
         at_end = abs(float(values[n][-1]) - value) < 1e-9
         end = ends[n]
         if at_end and end.parts:
@@ -218,6 +222,16 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
         else:
             sides.append(RangeEnd("found", float(value), reason="the linkage turns back"))
     return JointRange(joint.name, sides[0], sides[1], left_out)
+
+
+def _least(values: Array) -> float:
+    """The least of values at even steps, between them where it is not at an end: of the parabola through three."""
+    n = int(np.argmin(values))
+    if n == 0 or n >= len(values) - 2:
+        return float(values[n])
+    a, b, c = (float(v) for v in values[n - 1 : n + 2])
+    bend = a - 2.0 * b + c
+    return b - (a - c) ** 2 / (8.0 * bend) if bend > 0.0 else b
 
 
 def _overlap(pairs: Sequence[tuple[str, str]]) -> str:

@@ -20,6 +20,7 @@ from kinform.contacts.bvh import MeshIndex, MeshStore
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
+from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 __all__ = ["Crossing", "PairTest", "Shapes"]
@@ -184,6 +185,12 @@ class PairTest:
             self._objects = tuple(
                 fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
             )
+
+    @property
+    def part_names(self) -> tuple[PartName, PartName]:
+        """Names of the parts, sorted."""
+        first, second = sorted(PartName(name) for name in self.names)
+        return first, second
 
     @property
     def size(self) -> float:
