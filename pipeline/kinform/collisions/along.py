@@ -72,9 +72,7 @@ def along(
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
 
 
-def clearance(
-    assembly: Assembly, pairs: Sequence[tuple[str, str]], poses: Mapping[str, Array]
-) -> tuple[Array, Array]:
+def clearance(assembly: Assembly, pairs: Sequence[tuple[str, str]], poses: Mapping[str, Array]) -> tuple[Array, Array]:
     """Distances (T, pairs) m between parts at displacements `poses` (T, 4, 4) of each part from the pose of the meshes
     (`part_poses`), 0 where they touch or cross; and the places (T, pairs, 2, 3) m in the world that are nearest.
 

@@ -140,7 +140,9 @@ def drive_loops(
     shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
 ) -> dict[int, JointRange] | str:
     """The ranges of the joints of one block; or why they are not known."""
-    doubtful = [k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"]
+    doubtful = [
+        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
+    ]
     if doubtful:
         return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
     linkage = _Linkage(kinematics, edges, block)

@@ -7,6 +7,7 @@ are driven together. Of other joints the range is not known, and it is said why.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from kinform.collisions.linkage import drive_loops
 from kinform.collisions.pairs import Shapes
@@ -60,7 +61,7 @@ def ranges(
             out[k] = drive_alone(shapes, joint, still, moving)
     if progress is not None:
         progress(len(driven), len(driven))
-    return tuple(out[k] for k in driven)
+    return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
 
 
 def shapes_of(

@@ -114,5 +114,3 @@ def course(test: PairTest, a: int, b: int, nodes: Nodes) -> Course:
         return np.asarray(np.linalg.solve(poses[a], poses[b]))
 
     return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)))
-
-

@@ -42,7 +42,9 @@ class JointRange:
     lower: RangeEnd
     upper: RangeEnd
     left_out: tuple[tuple[PartName, PartName], ...] = ()
-    """Pairs of parts that overlap from the start, whose overlapping surfaces could not be tested."""
+    """Pairs of parts that overlap from the start, of which nothing is known."""
+    slides: bool = False
+    """Whether its values are lengths."""
 
     @property
     def status(self) -> str:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.collisions import Collision, JointRange
+
 __all__ = ["Simulation"]
 
 Array = NDArray[np.float64]
@@ -49,3 +51,9 @@ class Simulation:
     """Every value that was assumed, in sentences."""
     failures: tuple[tuple[str, str], ...] = ()
     """(subject, what cannot be simulated and why)."""
+    ranges: tuple[JointRange, ...] | None = None
+    """How far joints go until something stops them; None: not computed."""
+    collisions: tuple[Collision, ...] | None = None
+    """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
+    uncollided: tuple[tuple[str, str, str], ...] = ()
+    """(part, part, why it is not known whether they collide)."""
