@@ -58,7 +58,7 @@ def along(
             progress(done, len(pairs))
         way = course(test, a, b, nodes)
         found = first_crossing(test, way, end, TIME * step, start=float(simulation.time[0]))
-        first, second = sorted(test.names)
+        first, second = test.part_names
         if found.overlaps:
             untested.append((first, second, "they overlap from the start"))
         if found.exhausted is not None:
@@ -66,7 +66,7 @@ def along(
         if found.hit is not None and found.place is not None:
             place = (nodes.between(found.hit)[a] @ np.append(found.place, 1.0))[:3]
             depth = _depth(test, way, simulation.time, found.hit)
-            out.append(Collision((test.part_names[0], test.part_names[1]), found.hit, place, depth))
+            out.append(Collision(test.part_names, found.hit, place, depth))
     if progress is not None:
         progress(len(pairs), len(pairs))
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))

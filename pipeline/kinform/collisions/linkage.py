@@ -23,6 +23,7 @@ from kinform.kinematics.motion import LoopSystem, loop_system
 from kinform.kinematics.screws import Frame
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.names import PartName
 
 __all__ = ["drive_loops"]
 
@@ -91,7 +92,7 @@ class _Linkage:
             residual = found.residual[0]
             if np.abs(residual).max() < 1e-12:
                 return q
-            q = q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0]
+            q = np.asarray(q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0], float)
         return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
 
     def tangent(self, q: Array) -> tuple[Array, bool] | None:
@@ -165,9 +166,9 @@ class _Travelled:
     q: Array
     """(T, n) of what is free."""
     why: str
-    parts: tuple[str, ...]
+    parts: tuple[PartName, ...]
     place: Array | None
-    left_out: tuple[tuple[str, str], ...]
+    left_out: tuple[tuple[PartName, PartName], ...]
 
 
 def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: _Path) -> _Travelled:
@@ -178,23 +179,24 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
     def at(x: float) -> Array:
         n = min(int(x), len(path.q) - 1)
         if x == n:
-            return path.q[n]
+            return np.asarray(path.q[n])
         guess = path.q[n] + (x - n) * (path.q[n + 1] - path.q[n])
         found = linkage.closed(guess)
-        return guess if found is None else found
+        return np.asarray(guess) if found is None else found
 
     nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), lambda x: linkage.poses(at(x)))
     pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
-    end, why, parts, place = float(s[-1]), path.why, (), None
+    end, why, place = float(s[-1]), path.why, None
+    parts: tuple[PartName, ...] = ()
     left_out = set(rolling)
     for test, a, b in pairs:
         found = first_crossing(test, course(test, a, b, nodes), end, 1e-3)
         if found.overlaps:
-            left_out.add((min(test.names), max(test.names)))
+            left_out.add(test.part_names)
         if found.exhausted is not None:
             end, why, parts, place = found.exhausted, f"{' and '.join(test.names)} stay too close", (), None
         elif found.at is not None and found.place is not None:
-            end, why, parts = found.at, "", (min(test.names), max(test.names))
+            end, why, parts = found.at, "", test.part_names
             place = (nodes.between(found.at)[a] @ np.append(found.place, 1.0))[:3]
     q = np.concatenate([path.q[: int(end) + 1], at(end)[None]])
     return _Travelled(q, why, parts, place, tuple(sorted(left_out)))

@@ -159,7 +159,7 @@ class Shapes:
             self._patches = {}
             for n, patch in enumerate(self.contacts.patches if self.contacts is not None else ()):
                 self._patches.setdefault(patch.parts, []).append(n)
-        return self._patches.get((min(first, second), max(first, second)), [])  # type: ignore[call-overload,no-any-return]
+        return self._patches.get((min(first, second), max(first, second)), [])
 
 
 class PairTest:
@@ -292,13 +292,13 @@ def _distance(surface: Surface, points: Array) -> Array | None:
     """(n,) m distance of points (n, 3) from a plane, cylinder, cone or sphere; None for other kinds."""
     away = points - surface.point
     if surface.kind == "plane":
-        return np.abs(away @ surface.axis)
+        return np.asarray(np.abs(away @ surface.axis))
     if surface.kind == "sphere":
-        return np.abs(np.linalg.norm(away, axis=1) - surface.radius)
+        return np.asarray(np.abs(np.linalg.norm(away, axis=1) - surface.radius))
     if surface.kind not in ("cylinder", "cone"):
         return None
     height = away @ surface.axis
     across = np.linalg.norm(away - height[:, None] * surface.axis, axis=1)
     if surface.kind == "cylinder":
-        return np.abs(across - surface.radius)
-    return np.abs(across * np.cos(surface.half_angle) - height * np.sin(surface.half_angle))
+        return np.asarray(np.abs(across - surface.radius))
+    return np.asarray(np.abs(across * np.cos(surface.half_angle) - height * np.sin(surface.half_angle)))

@@ -12,6 +12,7 @@ from kinform.collisions.pairs import PairTest, Shapes
 from kinform.collisions.scan import Course
 from kinform.collisions.single import preserved
 from kinform.model.kinematics import Joint
+from kinform.model.names import PartName
 
 __all__ = ["HIGHER", "Nodes", "course", "moving_pairs"]
 
@@ -37,16 +38,16 @@ class Nodes:
 
 def moving_pairs(
     shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], nodes: Nodes
-) -> tuple[list[tuple[PairTest, int, int]], list[tuple[str, str]]]:
+) -> tuple[list[tuple[PairTest, int, int]], list[tuple[PartName, PartName]]]:
     """Pairs of parts of bodies (`names`, in the order of the poses) that move relative to each other and may come near,
     with their bodies; and pairs that cannot be tested, as they roll or mesh."""
-    joined = {frozenset(joint.bodies): joint for joint in joints}
+    joined = {frozenset(map(str, joint.bodies)): joint for joint in joints}
     out: list[tuple[PairTest, int, int]] = []
-    rolling: list[tuple[str, str]] = []
+    rolling: list[tuple[PartName, PartName]] = []
     for a, first in enumerate(names):
         for b in range(a + 1, len(names)):
             second = names[b]
-            relative = np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b])
+            relative = np.asarray(np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b]), float)
             if np.abs(relative - relative[0]).max() < 1e-9:
                 continue
             joint = joined.get(frozenset((first, second)))
@@ -55,7 +56,7 @@ def moving_pairs(
                 if found is not None:
                     out.append((found, a, b))
                 elif joint is not None and joint.type not in LOWER:
-                    rolling.append((min(one, other), max(one, other)))
+                    rolling.append((PartName(min(one, other)), PartName(max(one, other))))
     return out, sorted(rolling)
 
 

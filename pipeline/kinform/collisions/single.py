@@ -16,11 +16,12 @@ from kinform.kinematics.screws import cross
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
+from kinform.model.names import PartName
 
 __all__ = ["drive_alone", "exponential", "preserved"]
 
 Array = NDArray[np.float64]
-Pair = tuple[str, str]
+Pair = tuple[PartName, PartName]
 
 ANGLE = math.radians(2e-4)
 """rad: to which a stop of a turn is found."""
@@ -146,23 +147,19 @@ def _end(
             break
         found = first_crossing(candidate.test, course, reach, fine, start=start)
         if found.overlaps:
-            left_out.append(_sorted(candidate.test.names))
+            left_out.append(candidate.test.part_names)
         if found.exhausted is not None:
-            exhausted = candidate.test.names
+            exhausted = candidate.test.part_names
         if found.at is not None and found.place is not None:
             reach, best = found.at, (found.at, candidate.test, found.place)
     if exhausted is not None:
-        return RangeEnd("unknown", reason=f"{' and '.join(_sorted(exhausted))} stay too close to be followed"), left_out
+        return RangeEnd("unknown", reason=f"{' and '.join(exhausted)} stay too close to be followed"), left_out
     if best is not None:
-        return RangeEnd("found", sign * best[0], _sorted(best[1].names), best[2]), left_out
+        return RangeEnd("found", sign * best[0], best[1].part_names, best[2]), left_out
     if left_out:
         few = ", ".join(" and ".join(pair) for pair in sorted(left_out)[:3])
         return RangeEnd("unknown", reason=f"overlap from the start: {few}"), left_out
     return RangeEnd("unbounded"), left_out
-
-
-def _sorted(names: tuple[str, str]) -> tuple[str, str]:
-    return (min(names), max(names))
 
 
 def _guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
