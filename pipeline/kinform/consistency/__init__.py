@@ -24,4 +24,4 @@ __all__ = [
     "verdict",
 ]
 
-CODE_VERSION: int = 4
+CODE_VERSION: int = 5

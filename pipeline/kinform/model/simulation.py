@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.collisions import Collision, JointRange
+
 __all__ = ["DriveUse", "Simulation"]
 
 Array = NDArray[np.float64]
@@ -79,3 +81,9 @@ class Simulation:
     """What acts on the shafts of joints, in order."""
     balance: Array = field(default_factory=lambda: np.zeros(0))
     """(T,) greatest error of the balance of a body or a node over the greatest wrench then."""
+    ranges: tuple[JointRange, ...] | None = None
+    """How far joints go until something stops them; None: not computed."""
+    collisions: tuple[Collision, ...] | None = None
+    """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
+    uncollided: tuple[tuple[str, str, str], ...] = ()
+    """(part, part, why it is not known whether they collide)."""

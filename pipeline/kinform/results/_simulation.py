@@ -9,6 +9,7 @@ import numpy as np
 
 from kinform.model.assembly import freeze
 from kinform.model.simulation import DriveUse, Simulation
+from kinform.results import _collisions
 from kinform.results._table import (
     TEXT,
     read_array,
@@ -62,6 +63,7 @@ def write(group: h5py.Group, simulation: Simulation) -> None:
     write_texts(group, "assumptions", simulation.assumptions)
     failures = [{"subject": subject, "reason": reason} for subject, reason in simulation.failures]
     write_rows(group, "failures", _FAILURES, failures)
+    _collisions.write(group, simulation)
 
 
 def read(group: h5py.Group) -> Simulation:
@@ -85,4 +87,5 @@ def read(group: h5py.Group) -> Simulation:
         rank=freeze(monitors["rank"].copy()),
         assumptions=read_texts(group, "assumptions"),
         failures=tuple((row["subject"], row["reason"]) for row in read_rows(group, "failures", _FAILURES)),
+        **_collisions.read(group),
     )
