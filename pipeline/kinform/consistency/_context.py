@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.consistency._compare import Comparison, bodies_of, compare
+from kinform.consistency._control import Unused
 from kinform.consistency._plausibility import Doubt, doubts
 from kinform.consistency._rule import Outcome, inconclusive, skipped
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -57,6 +58,8 @@ class Context:
     """One design under check."""
 
     design: Design
+    unused_settings: tuple[Unused, ...] | None = None
+    """Entries of `[check]` without effect; None before the other rules have run."""
 
     @property
     def assembly(self) -> Assembly:

@@ -15,6 +15,7 @@ from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
 from kinform.model.assembly import Assumption
+from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (
     Coupling,
     Drive,
@@ -292,6 +293,20 @@ class Purposes:
         }
         converted = convert[kind](value)
         return None if converted is None else converted.tolist()
+
+    def check(self) -> CheckSettings:
+        """`[check]` of the top manifest."""
+        table = self.scope.manifest.check
+        if table is None:
+            return CheckSettings()
+        ignore = tuple(
+            Ignore(entry.code, entry.subject, entry.reason, self.scope.file, self.scope.line("check", "ignore", k))
+            for k, entry in enumerate(table.ignore)
+        )
+        return CheckSettings(
+            tuple(table.select), tuple(sorted(table.severity.items())), ignore,
+            self.scope.file, self.scope.line("check"),
+        )  # fmt: skip
 
     def simulation(self) -> SimulationRequest | None:
         """`[simulation]` of the top manifest."""
