@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
+from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.schema.common import Quantity
+from kinform.form.tables import rows_of
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
 from kinform.model.assembly import Assumption
@@ -217,6 +219,37 @@ class Purposes:
             self.scope.problems.add("the table has fewer than two rows", shown, 1, "give rows of time and value")
         return tuple(times), tuple(values)
 
+    def _path(self, name: str, *path: str | int) -> list[list[float]]:
+        """Rows of time, point (m) and perhaps quaternion wxyz, in the world, of a CSV file."""
+        scope = self.scope
+        found = self.sources.find(name, scope.folder, scope.file, scope.line(*path), "the path")
+        if found is None:
+            return []
+        shown = self.sources.shown(found)
+        out: list[list[float]] = []
+        R = scope.X_WF[:3, :3]
+        turn = Rotation.from_matrix(R)
+        for number, row in rows_of(found):
+            if len(row) not in (4, 8) or (out and len(row) != len(out[0])):
+                scope.problems.add("the row is not time, x, y, z, or these with a quaternion", shown, number,
+                                   "give 4 numbers a row, or 8")  # fmt: skip
+                continue
+            if out and row[0] <= out[-1][0]:
+                scope.problems.add(f"time {row[0]:g} does not follow {out[-1][0]:g}", shown, number,
+                                   "sort the rows by time")  # fmt: skip
+            point = scope.point(row[1:4])
+            assert point is not None
+            pose: list[float] = []
+            if len(row) == 8:
+                if not np.linalg.norm(row[4:]) > 0.0:
+                    scope.problems.add("the quaternion is zero", shown, number, "give qw, qx, qy, qz")
+                    continue
+                pose = (turn * Rotation.from_quat(row[4:], scalar_first=True)).as_quat(scalar_first=True).tolist()
+            out.append([row[0], *point.tolist(), *pose])
+        if len(out) < 2:
+            scope.problems.add("the path has fewer than two rows", shown, 1, "give rows of time, x, y, z")
+        return out
+
     def loads(self) -> list[Load]:
         """`[[function.load]]`."""
         function = self.scope.manifest.function
@@ -264,6 +297,8 @@ class Purposes:
                 out[key] = value
             else:
                 out[key] = self._converted(quantity.kind, value, table, *path, key)
+                if quantity.kind == "path":
+                    out["rows"] = self._path(value, *path)
                 if quantity.kind == "frame":
                     out["X_WF"] = self.scope.X_WF.tolist()
         return out
