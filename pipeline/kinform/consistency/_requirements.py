@@ -46,9 +46,7 @@ def met(message: str, *, found: str | None = None, intended: str | None = None) 
     return Answer("met", message, found, intended)
 
 
-def violated(
-    message: str, *, found: str, intended: str, remedy: str, place: Iterable[float] | None = None
-) -> Answer:
+def violated(message: str, *, found: str, intended: str, remedy: str, place: Iterable[float] | None = None) -> Answer:
     """The requirement does not hold."""
     return Answer("violated", message, found, intended, _triple(place), remedy)
 

@@ -47,7 +47,9 @@ def compared(
     if low is None and high is None:
         return undecided("it states neither minimum nor maximum", "State one of them.")
     if (low is not None and value + error < low) or (high is not None and value - error > high):
-        return violated(f"{text}, required is {wanted}", found=shown(value), intended=wanted, remedy=remedy, place=place)
+        return violated(
+            f"{text}, required is {wanted}", found=shown(value), intended=wanted, remedy=remedy, place=place
+        )
     if (low is not None and value - error < low) or (high is not None and value + error > high):
         return undecided(
             f"{text}, give or take {shown(error)} {cause}: too near to the bound",

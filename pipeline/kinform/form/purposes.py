@@ -13,9 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.schema.common import Quantity
-from kinform.form.tables import rows_of
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
+from kinform.form.tables import rows_of
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (

@@ -40,7 +40,9 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     if path.ndim != 2 or len(path) < 2:
         return undecided("the path has no rows", "Give a CSV file of time, x, y, z.")
     if values.get("angle_tolerance") is not None and path.shape[1] != 8:
-        return undecided("angle_tolerance is stated, but the path has no orientation", "Add qw, qx, qy, qz to its rows.")
+        return undecided(
+            "angle_tolerance is stated, but the path has no orientation", "Add qw, qx, qy, qz to its rows."
+        )
     early = path[:, 0] <= simulation.time[-1] * (1.0 + 1e-9)
     found = _deviation(simulation, body, values["point"], path[early])
     if found is not None and (worse := _violation(context, requirement, found)) is not None:
