@@ -113,7 +113,7 @@ def _images(chain: Chain, tip: int, own: Array, q: Array, directions: bool) -> A
 
 def _distance(a: Array, b: Array, directions: bool) -> Array:
     apart = np.linalg.norm(a - b, axis=-1)
-    return 2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)) if directions else apart
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)) if directions else apart)
 
 
 def _seeds(aims: Array, images: Array) -> NDArray[np.intp]:
