@@ -75,6 +75,21 @@ class Chain:
         """Joints of which no range is known."""
         return tuple(dict.fromkeys(c.joint for c in self.coordinates if not c.known))
 
+    def undetermined(self, body: str) -> tuple[str, ...]:
+        """Joints without a known range that can move the body, in the pose of the meshes, while all joints with one
+        stand still."""
+        rows = self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0]
+        held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
+        _, values, right = np.linalg.svd(np.concatenate([rows, held]))
+        rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+        tip = self.system.reach[self.index(body)]
+        moved = [
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > 1e-6]
+            for loose in right[rank:]
+            if np.abs((tip * loose) @ self.system.screws).max() > 1e-9
+        ]
+        return tuple(dict.fromkeys(name for names in moved for name in names))
+
     def local(self, points: Array) -> Array:
         """World points (…, 3) m in the system's coordinates."""
         return np.asarray((points - self.frame.centre) / self.frame.length)

@@ -62,9 +62,10 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     if len(missed):
         return _missed(context, targets, found.distance, missed, near, found.samples)
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
-    if chain.unknown:
+    unknown = chain.undetermined(body)
+    if unknown:
         return undecided(
-            f"{text}, but only if {quoted(chain.unknown)} may turn freely: no range is known",
+            f"{text}, but only if {quoted(unknown)} may turn freely: no range is known",
             "State the `range` of the [[function.joint]].",
         )
     return met(text)
