@@ -3,7 +3,7 @@
 Mating surfaces touch or nearly do wherever the pair is, and so do the edges beside them. Left out of a pair are the
 facets of the surfaces that have a patch with the other part, and pairs of other facets that are both within the
 contact tolerance of the other part at the pose of the meshes. Each facet that is near there still meets all that
-is not. A part that lies wholly inside another is not told from one outside: surfaces are compared, not solids.
+is not. Where two parts overlap beyond their mating surfaces nothing else is left out. A part that lies wholly inside another is not told from one outside: surfaces are compared, not solids.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from kinform.model.surfaces import MeshSurfaces
 __all__ = ["Apart", "Nearest", "apart"]
 
 Array = NDArray[np.float64]
+_GRID = np.array([[i, j, 8 - i - j] for i in range(9) for j in range(9 - i)]) / 8.0
 Flags = NDArray[np.bool_]
 
 
@@ -34,7 +35,7 @@ class Nearest:
     """m; 0 where they collide."""
     parts: tuple[str, str]
     place: Array
-    """(3,) m, in the world of the first body: the middle of the nearest facet."""
+    """(3,) m, in the world at the pose of the meshes of the first group: about where they are nearest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +45,8 @@ class _Side:
     model: fcl.BVHModel
     corners: Array
     """(8, 3) of their box, in the part frame."""
-    centres: Array
-    """(f, 3) of the facets."""
+    triangles: Array
+    """(f, 3, 3) corners of the facets, in the part frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,17 +75,18 @@ class Apart:
         best = Nearest(np.inf, ("", ""), np.zeros(3))
         for pair in self.pairs:
             X_second = X @ pair.second.X_WP
+            names = (pair.first.name, pair.second.name)
             for a, b in pair.tests:
                 low = _boxes_apart(a.corners, pair.first.X_WP, b.corners, X_second)
-                if low >= min(best.distance, enough):
-                    best = (
-                        best if best.distance <= low else Nearest(low, (pair.first.name, pair.second.name), best.place)
-                    )
+                if low >= best.distance:
                     continue
-                distance, facet = _distance(a, pair.first.X_WP, b, X_second)
+                if low > enough:
+                    best = Nearest(low, names, best.place)
+                    continue
+                distance, facets = _distance(a, pair.first.X_WP, b, X_second)
                 if distance < best.distance:
-                    middle = pair.first.X_WP[:3, :3] @ a.centres[facet] + pair.first.X_WP[:3, 3]
-                    best = Nearest(distance, (pair.first.name, pair.second.name), middle)
+                    place = _between(_placed(a, facets[0], pair.first.X_WP), _placed(b, facets[1], X_second))
+                    best = Nearest(distance, names, place)
         return best
 
 
@@ -127,7 +129,8 @@ def _pair(
     mates = [p.surfaces for p in contacts.patches if p.parts == names]
     keep_a = _without(a.mesh, surfaces, {s[1 if swapped else 0] for s in mates})
     keep_b = _without(b.mesh, surfaces, {s[0 if swapped else 1] for s in mates})
-    if names not in contacts.tolerance:
+    overlapping = any(i.parts == names and not i.mated for i in contacts.interferences)
+    if names not in contacts.tolerance or overlapping:
         tests = [(keep_a, keep_b)]
     else:
         near_a, near_b = _near(a, keep_a, b, keep_b, contacts.tolerance[names])
@@ -188,7 +191,7 @@ def _side(mesh: Mesh, keep: Flags, shared: dict[tuple[str, bytes], _Side]) -> _S
         corners = mesh.vertices[mesh.faces[keep]]
         points = corners.reshape(-1, 3)
         model = _model(points, np.arange(len(points)).reshape(-1, 3))
-        shared[key] = _Side(model, _corners(points, np.eye(4)), corners.mean(axis=1))
+        shared[key] = _Side(model, _corners(points, np.eye(4)), corners)
     return shared[key]
 
 
@@ -214,9 +217,24 @@ def _boxes_apart(a: Array, X_a: Array, b: Array, X_b: Array) -> float:
     return float(np.linalg.norm(np.maximum(gap, 0.0)))
 
 
-def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, int]:
+def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, tuple[int, int]]:
+    """Distance (0 where they cross), and the facets between which it is."""
     result = fcl.DistanceResult()
-    objects = [fcl.CollisionObject(side.model, fcl.Transform(X[:3, :3], X[:3, 3])) for side, X in ((a, X_a), (b, X_b))]
+    objects = [
+        fcl.CollisionObject(side.model, fcl.Transform(X[:3, :3], X[:3, 3])) for side, X in ((a, X_a), (b, X_b))
+    ]
     distance = fcl.distance(*objects, fcl.DistanceRequest(), result)
-    facet = int(result.b1)
-    return max(float(distance), 0.0), facet if 0 <= facet < len(a.centres) else 0
+    facets = [k if 0 <= k < len(side.triangles) else 0 for k, side in ((int(result.b1), a), (int(result.b2), b))]
+    return max(float(distance), 0.0), (facets[0], facets[1])
+
+
+def _placed(side: _Side, facet: int, X: Array) -> Array:
+    return np.asarray(side.triangles[facet] @ X[:3, :3].T + X[:3, 3])
+
+
+def _between(first: Array, second: Array) -> Array:
+    """A place between two triangles (3, 3), to about a tenth of their size: for people to look at."""
+    a, b = _GRID @ first, _GRID @ second
+    apart = np.linalg.norm(a[:, None] - b[None], axis=2)
+    i, j = np.unravel_index(int(apart.argmin()), apart.shape)
+    return np.asarray(0.5 * (a[i] + b[j]))

@@ -10,7 +10,7 @@ centre of the second group moves straight and it turns evenly.
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +76,7 @@ def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
         share = (at - way[k]) / moved[k] if len(moved) and moved[k] > 0.0 else 0.0
         near = groups.at(pose(k, min(share, 1.0)), enough=required + way[-1] - at)
         if near.distance < worst.distance:
+            near = replace(near, place=first[k, :3, :3] @ near.place + first[k, :3, 3])
             worst, where = near, k + share
         if near.distance < required or near.distance <= 0.0:
             return Swept(near, k + share, (), True, floor, count)
