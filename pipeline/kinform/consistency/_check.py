@@ -10,7 +10,7 @@ from kinform.consistency._rule import Rule, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.model.design import Design
-from kinform.model.findings import SEVERITIES, CheckReport, Finding
+from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
 
 __all__ = ["check", "verdict"]
 
@@ -26,12 +26,14 @@ def check(design: Design) -> CheckReport:
     used = [entry for one in applied.values() for entry in one.used]
     used += [entry for entry in settings.ignore if entry.code.casefold() in (CONTROL.code.casefold(), CONTROL.name)]
     alone = all(one.outcome.outcome in ("skipped", "ignored") for one in applied.values())
-    applied[CONTROL.code] = _run(CONTROL, replace(context, unused_settings=unused(RULES, settings, used)))
+    applied[CONTROL.code] = apply(
+        CONTROL, CONTROL.check(replace(context, unused_settings=unused(RULES, settings, used))), settings
+    )
     rules = [applied[rule.code].outcome for rule in RULES]
     if alone:
-        rules = [
-            replace(r, outcome="skipped") if r.code == CONTROL.code and r.outcome == "passed" else r for r in rules
-        ]
+        # a rule about the rules verifies nothing of the design
+        nothing = RuleOutcome(CONTROL.code, CONTROL.name, "skipped", "no other rule ran")
+        rules = [nothing if rule.code == CONTROL.code else rule for rule in rules]
     return CheckReport(
         findings=tuple(sorted((f for one in applied.values() for f in one.findings), key=_order)),
         rules=tuple(rules),
