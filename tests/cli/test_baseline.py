@@ -40,14 +40,12 @@ def test_a_written_baseline_turns_the_gate_green(
     assert "1 finding ignored" in capsys.readouterr().out
 
 
-def test_what_is_no_longer_found_is_told(
-    overlapping: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_no_longer_found_is_told(overlapping: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     baseline = tmp_path / "b.json"
     entry = {"code": "KF101", "subject": ["a <b>\n[c]"], "severity": "error", "count": 1}
     baseline.write_text(json.dumps({"schema": "kinform/baseline/1", "findings": [entry]}))
     assert main(["check", str(overlapping), "--baseline", str(baseline)]) == 1
-    assert "no longer found: KF101" in capsys.readouterr().err
+    assert "no longer found: KF101 a <b>\\n[c]" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", [None, "no json", "{}"])

@@ -92,6 +92,9 @@ WRONG = {
     "KF402": lambda d: changed_intent(d, type="prismatic", point=None),
     "KF403": lambda d: changed_intent(d, axis=tilted(d.assembly.function.joints[0].axis, 0.5)),
     "KF404": lambda d: changed_intent(d, point=d.assembly.function.joints[0].point + np.array([0.002, 0.001, -0.003])),
+    "KF434": lambda d: changed_intent(
+        changed_joint(d, range_lower=-0.5, range_upper=2.0, range_status="found"), range=(-1.0, 1.0)
+    ),
     "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),
 }
 UNDECIDED = {

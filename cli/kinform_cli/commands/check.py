@@ -91,6 +91,7 @@ def check(
 def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
     """The report without what the baseline adopts; says on stderr what of it is gone."""
     from kinform.consistency import read_baseline, with_baseline
+    from kinform.reports.words import one_line
 
     try:
         text = baseline.read_text(encoding="utf-8")
@@ -101,5 +102,5 @@ def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
     left, gone = with_baseline(report, read_baseline(text, str(baseline)))
     console.say(f"{count(len(left.ignored) - len(report.ignored), 'finding')} of the baseline {baseline.name}")
     for code, subject in gone:
-        console.say(f"no longer found: {code} {', '.join(subject)}: write the baseline anew")
+        console.say(f"no longer found: {code} {one_line(', '.join(subject))}: write the baseline anew")
     return left

@@ -220,9 +220,7 @@ def _boxes_apart(a: Array, X_a: Array, b: Array, X_b: Array) -> float:
 def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, tuple[int, int]]:
     """Distance (0 where they cross), and the facets between which it is."""
     result = fcl.DistanceResult()
-    objects = [
-        fcl.CollisionObject(side.model, fcl.Transform(X[:3, :3], X[:3, 3])) for side, X in ((a, X_a), (b, X_b))
-    ]
+    objects = [fcl.CollisionObject(side.model, fcl.Transform(X[:3, :3], X[:3, 3])) for side, X in ((a, X_a), (b, X_b))]
     distance = fcl.distance(*objects, fcl.DistanceRequest(), result)
     facets = [k if 0 <= k < len(side.triangles) else 0 for k, side in ((int(result.b1), a), (int(result.b2), b))]
     return max(float(distance), 0.0), (facets[0], facets[1])
