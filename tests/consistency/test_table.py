@@ -13,7 +13,7 @@ from test_requirements import (
     CODES,
     THIN,
     WALL,
-    O,
+    ORIGIN,
     WithReactions,
     X,
     Y,
@@ -100,8 +100,8 @@ def threaded(made, pitch):
 
 def triangle(kind=None):
     """Three bodies in a row, and perhaps a third joint that nobody wants."""
-    joints = [joint("base", "one", "revolute", Y, O), joint("one", "two", "revolute", Y, X)]
-    wanted = [intended("a", "base", "one", "revolute", Y, O), intended("b", "one", "two", "revolute", Y, X)]
+    joints = [joint("base", "one", "revolute", Y, ORIGIN), joint("one", "two", "revolute", Y, X)]
+    wanted = [intended("a", "base", "one", "revolute", Y, ORIGIN), intended("b", "one", "two", "revolute", Y, X)]
     more = [] if kind is None else [joint("base", "two", kind, Y, (2.0, 0, 0))]
     return design([body("one"), body("two")], [*joints, *more], wanted=wanted)
 
@@ -132,7 +132,7 @@ def fixture(folder, name):
 def apart(derive):
     made = fixture("pairs", "free_apart")(derive)
     first, second = (p.name for p in made.assembly.parts)
-    return with_function(made, Function(joints=(intended("j", first, second, "revolute", Z, O),)))
+    return with_function(made, Function(joints=(intended("j", first, second, "revolute", Z, ORIGIN),)))
 
 
 RUN = sine(30.0, 0.5)
@@ -173,7 +173,7 @@ OF_THEIR_OWN = {
     "KF401": (apart, fixture("pairs", "revolute_collars")),
     "KF406": (lambda _: triangle("revolute"), lambda _: triangle("planar")),
     "KF407": (lambda _: triangle("planar"), lambda _: triangle("revolute")),
-    "KF408": (lambda _: design([body("one")], [joint("base", "one", "revolute", Z, O)],
+    "KF408": (lambda _: design([body("one")], [joint("base", "one", "revolute", Z, ORIGIN)],
                                wanted=[intended("a", "base", "base", "fixed")]), lambda _: triangle()),
     "KF421": (
         lambda _: requiring(gimbal(), "reach", part="inner", direction=[1.0, 0, 0],

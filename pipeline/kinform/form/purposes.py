@@ -304,7 +304,7 @@ class Purposes:
         return out
 
     def _converted(self, kind: str, value: Any, table: BaseModel, *path: str | int) -> Any:
-        if kind in ("point", "direction", "vector") and value and isinstance(value[0], list):
+        if kind in ("point", "direction", "vector") and (not value or isinstance(value[0], list)):
             return [self._converted(kind, item, table, *path) for item in value]
         if kind in ("place", "part", "joint"):
             resolve = self.joint if kind == "joint" else self.place
