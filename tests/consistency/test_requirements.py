@@ -385,7 +385,8 @@ def bar(wall, reach=30.0, law=None, **request):
 
 
 WALL = box(30, 40, -60, 60, -10, 10)
-THIN = box(30, 30.05, -60, 60, -10, 10)
+THIN = box(-0.025, 0.025, 35, 60, -10, 10)
+"""A foil in the middle of the swing."""
 
 
 def nearest(degrees):
@@ -418,7 +419,7 @@ def test_the_clearance_along_a_motion_and_where_it_is_lost():
 
 
 def test_no_thin_wall_is_jumped_over():
-    # samples 120° apart: none of them touches a wall of 0.05 mm
+    # samples 120° apart, on either side of a foil of 0.05 mm
     law = sine(60.0, 1.0, phase=-90.0)
     made = bar(THIN, law=law, duration=0.5, step=0.5, level="kinematic")
     ends = np.degrees(made.simulation.joint_position[:, 0])

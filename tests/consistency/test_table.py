@@ -11,9 +11,9 @@ from known import FIXTURES
 from test_control import ignore
 from test_requirements import (
     CODES,
+    ORIGIN,
     THIN,
     WALL,
-    ORIGIN,
     WithReactions,
     X,
     Y,

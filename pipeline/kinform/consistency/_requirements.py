@@ -137,7 +137,8 @@ def shown_value(value: float, joint: Joint, units: str) -> str:
 
 
 def effort(value: float, joint: Joint) -> str:
-    """A joint's effort."""
+    """A joint's effort; rounding is shown as nothing."""
+    value = 0.0 if abs(value) < 1e-12 else value
     return f"{number(value)} {'N' if kind_of_value(joint) == 'length' else 'N·m'}"
 
 

@@ -3,8 +3,8 @@
 Along a motion (conservative advancement): a pose in which the distance exceeds what is required by e certifies all
 poses up to which no point moves by more than e. Over ranges (branch and bound): the middle of a cell certifies it
 if no point moves by more than e from there; else the cell is halved. Both stop at the first pose that falls short.
-Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion the
-centre of the second group moves straight and it turns evenly.
+Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion
+the second group moves along the screw that leads from one to the other.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 BUDGET = 4000
 """Poses that are measured before giving up."""
 FLOOR = 1e-4
-"""Shortest step, of the size of the smaller group."""
+"""Shortest step, of the size of the smaller group; ten times that where several joints move at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,28 +47,14 @@ class Swept:
 
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     """Along displacements (T, 4, 4) of both groups from the pose of the meshes."""
-    from scipy.spatial.transform import Rotation
-
-    turned = np.swapaxes(first[:, :3, :3], 1, 2)
-    R = turned @ second[:, :3, :3]
-    p = (turned @ (second[:, :3, 3] - first[:, :3, 3])[..., None])[..., 0]
-    centres = R @ groups.centre + p
-    turns = (Rotation.from_matrix(R[:-1]).inv() * Rotation.from_matrix(R[1:])).as_rotvec() if len(R) > 1 else []
-    moved = np.array(
-        [np.linalg.norm(b - a) + groups.radius * np.linalg.norm(w) for a, b, w in zip(centres, centres[1:], turns)]  # noqa: B905
-    )
+    relative = _inverse(first) @ second
+    twists = [_twist(X) for X in _inverse(relative[:-1]) @ relative[1:]]
+    moved = np.array([_speed(twist, groups) for twist in twists])
     way = np.concatenate([[0.0], np.cumsum(moved)])
     floor = FLOOR * groups.size
 
     def pose(k: int, share: float) -> Array:
-        X = np.eye(4)
-        X[:3, :3] = R[k]
-        centre = centres[k]
-        if share > 0.0:
-            X[:3, :3] = R[k] @ Rotation.from_rotvec(share * turns[k]).as_matrix()
-            centre = (1.0 - share) * centres[k] + share * centres[k + 1]
-        X[:3, 3] = centre - X[:3, :3] @ groups.centre
-        return X
+        return relative[k] @ _displacement(share * twists[k]) if share > 0.0 else relative[k]
 
     at, worst, where = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0
     for count in range(1, BUDGET + 1):
@@ -90,7 +76,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     """Over all values of the coordinates (n,) of a chain without loops between `low` and `high`."""
     a, b = chain.index(first), chain.index(second)
     lever = _levers(chain, groups, b, low, high)
-    floor = FLOOR * groups.size
+    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else 10.0)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     cells: list[tuple[float, int, Array, Array]] = [(0.0, 0, middle, half)]
     worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle
@@ -119,6 +105,51 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
             shifted[k] += side * smaller[k]
             heapq.heappush(cells, (near.distance - reach, number, shifted, smaller))
     return Swept(worst, 0.0, _named(chain, values), True, floor, count)
+
+
+def _inverse(X: Array) -> Array:
+    out = np.zeros_like(X)
+    turned = np.swapaxes(X[:, :3, :3], 1, 2)
+    out[:, :3, :3] = turned
+    out[:, :3, 3] = -(turned @ X[:, :3, 3, None])[..., 0]
+    out[:, 3, 3] = 1.0
+    return out
+
+
+def _twist(X: Array) -> Array:
+    """(6,) twist (ω; v at the origin) whose exponential is the displacement X (4, 4), by less than half a turn."""
+    from scipy.spatial.transform import Rotation
+
+    omega = Rotation.from_matrix(X[:3, :3]).as_rotvec()
+    return np.concatenate([omega, np.linalg.solve(_slide(omega), X[:3, 3])])
+
+
+def _displacement(twist: Array) -> Array:
+    """(4, 4) exponential of a twist."""
+    from scipy.spatial.transform import Rotation
+
+    X = np.eye(4)
+    X[:3, :3] = Rotation.from_rotvec(twist[:3]).as_matrix()
+    X[:3, 3] = _slide(twist[:3]) @ twist[3:]
+    return X
+
+
+def _slide(omega: Array) -> Array:
+    """(3, 3): what v becomes of a shift under the rotation vector ω (the left Jacobian of rotations)."""
+    angle = float(np.linalg.norm(omega))
+    x, y, z = omega
+    hat = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    if angle < 1e-6:
+        return np.eye(3) + 0.5 * hat
+    return np.asarray(
+        np.eye(3) + (1.0 - np.cos(angle)) / angle**2 * hat + (angle - np.sin(angle)) / angle**3 * hat @ hat
+    )
+
+
+def _speed(twist: Array, groups: Apart) -> float:
+    """How far a point of the second group moves at most."""
+    centre = twist[3:] + np.cross(twist[:3], groups.centre)
+    return float(np.linalg.norm(centre) + groups.radius * np.linalg.norm(twist[:3]))
 
 
 def _levers(chain: Chain, groups: Apart, tip: int, low: Array, high: Array) -> Array:

@@ -96,7 +96,7 @@ def _bound(context: Context, targets: Targets) -> str:
     if targets.gap == 0.0:
         return ""
     size = angle(targets.gap) if targets.directions else length(targets.gap, context.units)
-    return f"; holes within {size} of none of them can be missed"
+    return f"; between them holes of up to {size} in radius can be missed"
 
 
 def _missed(

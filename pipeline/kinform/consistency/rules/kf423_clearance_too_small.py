@@ -3,7 +3,8 @@
 Distances are those of the surfaces, by FCL, without the surfaces by which a pair mates and the edges that touch beside
 them. Along the motion steps are as long as the distance allows, so that nothing is passed over; between output times
 poses are interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
-Distances are certain up to 1e-4 of the size of the smaller part. A simulation that did not run, a range that is not
+Distances are certain up to 1e-4 of the size of the smaller part, 1e-3
+where several joints move at once. A simulation that did not run, a range that is not
 known, a loop between the two (over ranges), or too many cells make the requirement inconclusive (KF902).
 
 Why it matters: what collides does not move there, and breaks.
