@@ -148,6 +148,28 @@ def test_what_no_rule_can_decide_is_not_a_pass(hinge, code):
     assert verdict(report) != 0
 
 
+@pytest.mark.parametrize(
+    "lower, upper, status, turned, short",
+    [
+        (-1.0, 1.0, "found", False, False),
+        (-1.0, 0.97, "found", False, True),
+        (-0.97, 2.0, "found", False, True),
+        # the designer's axis points the other way: what stops it above stops him below
+        (-0.5, 2.0, "found", True, True),
+        (-1.0, 0.5, "found", True, False),
+        (None, None, "unbounded", False, False),
+        (None, 3.0, "found", False, False),
+    ],
+)
+def test_a_found_range_is_compared_in_the_designers_sign(hinge, lower, upper, status, turned, short):
+    bounds = (-0.5, 1.0) if turned else (-1.0, 1.0)
+    axis = hinge.assembly.function.joints[0].axis * (-1.0 if turned else 1.0)
+    made = changed_joint(hinge, range_lower=lower, range_upper=upper, range_status=status)
+    report = check(changed_intent(made, range=bounds, axis=axis))
+    assert ("KF434" in {f.code for f in report.findings}) == short
+    assert next(r.outcome for r in report.rules if r.code == "KF904") == "passed"
+
+
 def test_a_part_that_touches_nothing_is_found(derive_design, hinge):
     apart = derive_design(FIXTURES / "pairs" / "free_apart" / "free_apart.toml")
     assert "KF203" in codes(apart)

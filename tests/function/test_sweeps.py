@@ -80,11 +80,11 @@ def test_ranges_come_in_the_sign_of_the_chain():
     assert chain.unknown == ()
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0])
 def test_what_is_certified_over_ranges_no_sample_contradicts(seed):
     rng = np.random.default_rng(seed)
     X, chain, groups = crane(rng, low=(-0.4, -0.01, -0.3), high=(0.5, 0.002, 0.2))
-    samples = rng.uniform(chain.lower, chain.upper, (600, 3))
+    samples = rng.uniform(chain.lower, chain.upper, (250, 3))
     # corners of the box of ranges too
     for k in range(8):
         samples[k] = [(chain.lower, chain.upper)[(k >> d) & 1][d] for d in range(3)]

@@ -73,20 +73,22 @@ class Apart:
         """The least distance when the second group is displaced by X (4, 4) relative to the first. Where it is more
         than `enough`, a bound from below will do."""
         best = Nearest(np.inf, ("", ""), np.zeros(3))
+        tests = []
         for pair in self.pairs:
             X_second = X @ pair.second.X_WP
-            names = (pair.first.name, pair.second.name)
             for a, b in pair.tests:
-                low = _boxes_apart(a.corners, pair.first.X_WP, b.corners, X_second)
-                if low >= best.distance:
-                    continue
-                if low > enough:
-                    best = Nearest(low, names, best.place)
-                    continue
-                distance, facets = _distance(a, pair.first.X_WP, b, X_second)
-                if distance < best.distance:
-                    place = _between(_placed(a, facets[0], pair.first.X_WP), _placed(b, facets[1], X_second))
-                    best = Nearest(distance, names, place)
+                tests.append((_boxes_apart(a.corners, pair.first.X_WP, b.corners, X_second), pair, a, b, X_second))
+        # the nearest boxes first: most of the others need not be asked
+        for low, pair, a, b, X_second in sorted(tests, key=lambda test: test[0]):
+            names = (pair.first.name, pair.second.name)
+            if low >= best.distance:
+                break
+            if low > enough:
+                return Nearest(low, names, best.place)
+            distance, facets = _distance(a, pair.first.X_WP, b, X_second)
+            if distance < best.distance:
+                place = _between(_placed(a, facets[0], pair.first.X_WP), _placed(b, facets[1], X_second))
+                best = Nearest(distance, names, place)
         return best
 
 

@@ -54,7 +54,7 @@ def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     floor = FLOOR * groups.size
 
     def pose(k: int, share: float) -> Array:
-        return relative[k] @ _displacement(share * twists[k]) if share > 0.0 else relative[k]
+        return np.asarray(relative[k] @ _displacement(share * twists[k]) if share > 0.0 else relative[k])
 
     at, worst, where = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0
     for count in range(1, BUDGET + 1):

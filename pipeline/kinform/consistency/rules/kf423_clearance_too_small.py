@@ -3,9 +3,9 @@
 Distances are those of the surfaces, by FCL, without the surfaces by which a pair mates and the edges that touch beside
 them. Along the motion steps are as long as the distance allows, so that nothing is passed over; between output times
 poses are interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
-Distances are certain up to 1e-4 of the size of the smaller part, 1e-3
-where several joints move at once. A simulation that did not run, a range that is not
-known, a loop between the two (over ranges), or too many cells make the requirement inconclusive (KF902).
+Distances are certain up to 1e-4 of the size of the smaller part, 1e-3 where several joints move at once. A simulation
+that did not run, a range that is not known, a loop between the two (over ranges), or too many cells make the
+requirement inconclusive (KF902).
 
 Why it matters: what collides does not move there, and breaks.
 
@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,13 +60,13 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     simulation = simulated(context) if motion else None
     if isinstance(simulation, Answer):
         return simulation
-    answers = []
-    for pair in _pairs(context, kinematics, requirement.values.get("between")):
-        found = _one(context, kinematics, requirement, pair, simulation)
-        if found is not None and found.state == "violated":
-            return found
-        answers.append(found)
+    pairs = _pairs(context, kinematics, requirement.values.get("between"))
+    answers = [_one(context, kinematics, requirement, pair, simulation) for pair in pairs]
     known = [one for one in answers if one is not None]
+    short = [one for one in known if one.state == "violated"]
+    if short:
+        more = f"; {counted(len(short) - 1, 'more pair')} of bodies too" if len(short) > 1 else ""
+        return replace(short[0], message=short[0].message + more)
     if not known:
         return undecided("none of the parts have meshes", "Give the parts meshes.")
     open_ = [one for one in known if one.state == "undecided"]
