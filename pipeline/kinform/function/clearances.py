@@ -15,7 +15,6 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.proximity import near_boxes
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -158,15 +157,22 @@ def _near(a: Part, keep_a: Flags, b: Part, keep_b: Flags, tolerance: float) -> t
     """Facets that come within the tolerance of a kept facet of the other part, at the pose of the meshes."""
     near_a, near_b = np.zeros_like(keep_a), np.zeros_like(keep_b)
     tri_a, tri_b = _triangles(a), _triangles(b)
-    ia, ib = np.flatnonzero(keep_a), np.flatnonzero(keep_b)
-    flags_a, flags_b = near_boxes(
-        tri_a[ia].min(axis=1), tri_a[ia].max(axis=1), tri_b[ib].min(axis=1), tri_b[ib].max(axis=1), tolerance
-    )
-    if not flags_a.any() or not flags_b.any():
-        return near_a, near_b
-    near_a[ia[flags_a]] = _within(tri_a[ia[flags_a]], tri_b[ib[flags_b]], tolerance)
-    near_b[ib[flags_b]] = _within(tri_b[ib[flags_b]], tri_a[ia[flags_a]], tolerance)
+    for _ in range(2):
+        # what is out of the box of the others need not be asked
+        keep_a = keep_a & _inside(tri_a, tri_b[keep_b], tolerance)
+        keep_b = keep_b & _inside(tri_b, tri_a[keep_a], tolerance)
+    if keep_a.any() and keep_b.any():
+        near_a[keep_a] = _within(tri_a[keep_a], tri_b[keep_b], tolerance)
+        near_b[keep_b] = _within(tri_b[keep_b], tri_a[keep_a], tolerance)
     return near_a, near_b
+
+
+def _inside(triangles: Array, others: Array, tolerance: float) -> Flags:
+    """Which triangles (n, 3, 3) come within the tolerance of the box around the others."""
+    if not len(others):
+        return np.zeros(len(triangles), dtype=np.bool_)
+    low, high = others.min(axis=(0, 1)) - tolerance, others.max(axis=(0, 1)) + tolerance
+    return np.asarray(((triangles.max(axis=1) >= low) & (triangles.min(axis=1) <= high)).all(axis=1))
 
 
 def _within(triangles: Array, others: Array, tolerance: float) -> Flags:
