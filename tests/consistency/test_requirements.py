@@ -366,6 +366,8 @@ def test_reach_along_a_closed_loop_is_decided_by_the_range_of_the_crank():
     made = parallelogram((-math.pi / 3, math.pi / 3))
     assert state(made, "reach", region=places(on(0), on(-50), on(59)), **middle)[0] == "met"
     assert state(made, "reach", region=places(on(65)), **middle)[0] == "violated"
+    # the middle of the circle
+    assert state(made, "reach", region=places((0.15, 0, 0.0)), **middle)[0] == "violated"
     assert state(parallelogram(), "reach", region=places(on(50)), **middle)[0] == "undecided"
 
 

@@ -61,6 +61,12 @@ class Chain:
         return len(self.system.chords[0]) > 0
 
     @property
+    def freedoms(self) -> int:
+        """Freedoms of first order in the pose of the meshes."""
+        values = np.linalg.svd(self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0], compute_uv=False)
+        return len(self.coordinates) - int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+
+    @property
     def lower(self) -> Array:
         """(n,) least coordinates."""
         return np.array([min(c.unit * c.lower, c.unit * c.upper) for c in self.coordinates])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.function.configurations import Chain, close
 
-__all__ = ["STARTS", "Coverage", "cover"]
+__all__ = ["Coverage", "cover"]
 
 Array = NDArray[np.float64]
 
@@ -24,8 +24,12 @@ WALK = 600
 """Configurations in the box of ranges, and along closed loops."""
 STARTS = 6
 """Samples from which each target is approached."""
+AGAIN, MORE = 40, 48
+"""How many of the farthest targets are approached again, and from how many samples."""
 TURNS = 60
 CLOSED = 1e-8
+FAR = 1.0
+"""Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not counted."""
 STIFF = 10.0
 """Weight of a loop that is open beside a target that is missed."""
 
@@ -41,33 +45,40 @@ class Coverage:
     samples: int
 
 
-def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions: bool) -> Coverage:
-    """`carried` (3,): the point (m) or unit direction of the body at the pose of the meshes; `targets` (k, 3)."""
+def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions: bool, near: float = 0.0) -> Coverage:
+    """`carried` (3,): the point (m) or unit direction of the body at the pose of the meshes; `targets` (k, 3).
+
+    Those of the farthest targets that stay beyond `near` (m or rad) are approached again from many more samples.
+    """
     tip = chain.index(body)
     own = carried if directions else chain.local(carried)
     aims = targets if directions else chain.local(targets)
+    enough = near if directions else near / chain.frame.length
     q = _sampled(chain)
     images = _images(chain, tip, own, q, directions)
-    best, where = np.full(len(aims), np.inf), np.zeros((len(aims), 3))
-    for start in range(0, len(aims), 64):
-        chunk = slice(start, min(start + 64, len(aims)))
-        seeds = _seeds(aims[chunk], images)
-        many = seeds.shape[1]
-        solved, image, valid = _approach(
-            chain, tip, own, q[seeds.ravel()], np.repeat(aims[chunk], many, axis=0), directions
-        )
-        del solved
-        miss = _distance(image, np.repeat(aims[chunk], many, axis=0), directions)
-        miss = np.where(valid, miss, np.inf).reshape(-1, many)
-        pick = miss.argmin(axis=1)
-        best[chunk] = miss[np.arange(len(pick)), pick]
-        where[chunk] = image.reshape(-1, many, 3)[np.arange(len(pick)), pick]
     # a sample itself is an answer too
     gaps = _distance(images[:, None], aims[None], directions)
     first = gaps.argmin(axis=0)
-    sampled = gaps[first, np.arange(len(aims))]
-    better = sampled < best
-    best[better], where[better] = sampled[better], images[first[better]]
+    best, where = gaps[first, np.arange(len(aims))], images[first]
+
+    def attempt(which: NDArray[np.intp], starts: int) -> None:
+        size = max(1, 400 // starts)
+        for chunk in (which[k : k + size] for k in range(0, len(which), size)):
+            seeds = _seeds(aims[chunk], images, starts)
+            repeated = np.repeat(aims[chunk], seeds.shape[1], axis=0)
+            solved, image, valid = _approach(chain, tip, own, q[seeds.ravel()], repeated, directions)
+            if chain.looped:
+                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < FAR
+            miss = np.where(valid, _distance(image, repeated, directions), np.inf).reshape(seeds.shape)
+            pick = miss.argmin(axis=1)
+            found = miss[np.arange(len(chunk)), pick]
+            better = found < best[chunk]
+            best[chunk[better]] = found[better]
+            where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
+
+    attempt(np.arange(len(aims)), STARTS)
+    missed = np.flatnonzero(best > enough)
+    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], MORE)
     if not directions:
         best, where = best * chain.frame.length, where * chain.frame.length + chain.frame.centre
     return Coverage(best, where, len(q))
@@ -116,11 +127,12 @@ def _distance(a: Array, b: Array, directions: bool) -> Array:
     return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)) if directions else apart)
 
 
-def _seeds(aims: Array, images: Array) -> NDArray[np.intp]:
-    """(k, s) samples to start from: the nearest, and some of those after them that differ."""
-    order = np.argsort(np.linalg.norm(aims[:, None] - images[None], axis=-1), axis=1)
-    picks = [0, 1, 3, 8, 20, 50][:STARTS]
-    return order[:, [min(p, images.shape[0] - 1) for p in picks]]
+def _seeds(aims: Array, images: Array, starts: int) -> NDArray[np.intp]:
+    """(k, starts) samples to start from: the nearest, and ever sparser ones after it, to the farthest."""
+    order = np.argsort(np.linalg.norm(aims[:, None] - images[None], axis=-1), axis=1, kind="stable")
+    last = len(images) - 1
+    picks = np.unique(np.round(np.geomspace(1, last + 1, starts)).astype(np.int64) - 1)
+    return order[:, np.minimum(picks, last)]
 
 
 def _approach(

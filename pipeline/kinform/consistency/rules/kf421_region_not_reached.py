@@ -5,7 +5,8 @@ them) are approached from sampled configurations within the ranges of the joints
 were found. A place that is reached is proved by its configuration; a hole between two places can be missed, and the
 report says how large. One that is not reached was not found from any start, and its distance is given. Near enough is
 the tolerance, by default a thousandth of the assembly's size, or 0.1°. Collisions are another requirement: `clear`.
-Joints whose range is not known may turn freely for a "no"; for a "yes" they make the requirement inconclusive (KF902).
+Joints whose range is not known may turn freely for a "no"; for a "yes" they make the requirement inconclusive (KF902),
+as closed loops with more than two freedoms do for a "no".
 
 Why it matters: the tool, the beam or the camera does not get where the task is.
 
@@ -33,6 +34,8 @@ from kinform.model.function import Requirement
 __all__ = ["RULE", "judge"]
 
 NEAR = 1e-3
+SAMPLED = 2
+"""Freedoms of closed loops up to which sampling is dense enough for a "no"."""
 NEAR_ANGLE = math.radians(0.1)
 REMEDY = "Widen a range, lengthen a link, or move the base."
 
@@ -52,13 +55,17 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     body = context.body(values["part"]) or ""
     if not chain.looped and not _finite(chain):
         return undecided(_endless(chain), "State the `range` of its [[function.joint]].")
-    found = cover(
-        chain, body, np.array(values["direction" if pointing else "point"]), targets.values, directions=pointing
-    )
     near = values.get("angle_tolerance" if pointing else "tolerance")
     if near is None:
         near = NEAR_ANGLE if pointing else NEAR * (extent(context.assembly) or 1.0)
+    carried = np.array(values["direction" if pointing else "point"])
+    found = cover(chain, body, carried, targets.values, directions=pointing, near=near)
     missed = np.flatnonzero(~(found.distance <= near))
+    if len(missed) and chain.looped and chain.freedoms > SAMPLED:
+        return undecided(
+            f"{len(missed)} of {len(targets.values)} places were not reached, but {chain.freedoms} freedoms in closed "
+            "loops are too many to be sampled densely", "Require single poses, or follow a path by simulation.",
+        )  # fmt: skip
     if len(missed):
         return _missed(context, targets, found.distance, missed, near, found.samples)
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
