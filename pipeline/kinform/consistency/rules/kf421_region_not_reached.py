@@ -64,7 +64,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     if len(missed) and chain.looped and chain.freedoms > SAMPLED:
         return undecided(
             f"{len(missed)} of {len(targets.values)} places were not reached, but {chain.freedoms} freedoms in closed "
-            "loops are too many to be sampled densely", "Require single poses, or follow a path by simulation.",
+            "loops are too many to be sampled densely", "Check it by other means, or require `follow` of a simulated motion.",
         )  # fmt: skip
     if len(missed):
         return _missed(context, targets, found.distance, missed, near, found.samples)
