@@ -91,12 +91,12 @@ class ExportModel:
 
 def export_model(design: Design) -> ExportModel:
     """The model of a design. Raises StageError before joints are derived."""
-    if design.kinematics is None:
+    if design.ranged is None:
         raise StageError("`kinform export`", "joints")
     assembly, run = design.assembly, design.simulation
     if run is not None and run.status not in ("done", "stopped"):
         run = None
-    kinematics, gears = design.kinematics, all(part.mesh is None for part in assembly.parts)
+    kinematics, gears = design.ranged, all(part.mesh is None for part in assembly.parts)
     if run is not None and run.level == "functional":
         from kinform.kinematics import functional
 

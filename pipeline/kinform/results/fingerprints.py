@@ -35,7 +35,7 @@ _CODE = {
 
 _ASSEMBLY_FIELDS = (
     "name", "units", "parts", "groups", "assumptions", "ground", "tolerances", "infer_fasteners", "function",
-    "simulation", "subassemblies", "source", "files", "notes",
+    "simulation", "subassemblies", "source", "files", "notes", "check",
 )  # fmt: skip
 
 
