@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 import typer
@@ -13,12 +16,20 @@ from kinform_cli.text import count
 
 if TYPE_CHECKING:
     from kinform.model.design import Design
+    from kinform.model.findings import Finding
 
 __all__ = ["conclude"]
 
 
-def conclude(design: Design, format: FindingsFormat, fail_on: Severity) -> NoReturn:
-    """Print the findings of a design that was checked, and leave with the exit code of the gate."""
+def conclude(
+    design: Design, format: FindingsFormat, fail_on: Severity, manifest_folder: Path | None = None
+) -> NoReturn:
+    """Print the findings of a design that was checked, and leave with the exit code of the gate.
+
+    Formats that a repository's host reads name files as seen from here: `manifest_folder` goes before them.
+    """
+    if manifest_folder is not None and format in (FindingsFormat.sarif, FindingsFormat.github):
+        design = _seen_from_here(design, manifest_folder)
     from kinform import reports
     from kinform.consistency import verdict
     from kinform.model.findings import SEVERITIES
@@ -30,10 +41,28 @@ def conclude(design: Design, format: FindingsFormat, fail_on: Severity) -> NoRet
 
         console.out(findings.render(design))
     else:
-        console.emit(reports.render(report, design, format.value))
+        console.emit(reports.render(report, design, format.value, fail_on=fail_on.value))
     code = verdict(report, fail_on.value)
     if code == FINDINGS and fail_on is not Severity.error:
         counted = SEVERITIES[SEVERITIES.index(fail_on.value) :]
         many = sum(finding.severity in counted for finding in report.findings)
         console.say(f"{count(many, 'finding')} at or above {fail_on.value}")
     raise typer.Exit(code)
+
+
+def _seen_from_here(design: Design, folder: Path) -> Design:
+    """The design with every file of its findings named from the present folder."""
+    report, assembly = design.report, design.assembly
+    assert report is not None
+
+    def place(file: str) -> str:
+        return Path(os.path.relpath(folder / file)).as_posix()
+
+    def moved(finding: Finding) -> Finding:
+        return finding if finding.file is None else dataclasses.replace(finding, file=place(finding.file))
+
+    if assembly.source.file:
+        source = dataclasses.replace(assembly.source, file=place(assembly.source.file))
+        assembly = dataclasses.replace(assembly, source=source)
+    report = dataclasses.replace(report, findings=tuple(map(moved, report.findings)))
+    return dataclasses.replace(design, assembly=assembly, report=report)

@@ -21,6 +21,7 @@ __all__ = [
     "FindingsFormat",
     "Group",
     "Jobs",
+    "ManifestFolder",
     "Output",
     "Quiet",
     "Results",
@@ -46,6 +47,10 @@ class FindingsFormat(StrEnum):
     full = "full"
     concise = "concise"
     json = "json"
+    sarif = "sarif"
+    junit = "junit"
+    github = "github"
+    md = "md"
 
 
 class TableFormat(StrEnum):
@@ -149,6 +154,15 @@ Depfile = Annotated[
         metavar="FILE",
         show_default=False,
         help="Also write a Make rule: the output depends on every file that was read.",
+    ),
+]
+ManifestFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--manifest-folder",
+        metavar="DIR",
+        show_default=False,
+        help="Folder of the manifest: sarif and github then name files as seen from here.",
     ),
 ]
 FailOn = Annotated[

@@ -9,7 +9,7 @@ import typer
 
 from kinform_cli import files
 from kinform_cli.gate import conclude
-from kinform_cli.options import Debug, FailOn, FindingsFormat, Quiet, Results, Severity, examples
+from kinform_cli.options import Debug, FailOn, FindingsFormat, ManifestFolder, Quiet, Results, Severity, examples
 from kinform_cli.progress import Working
 
 __all__ = ["EXAMPLES", "check"]
@@ -18,6 +18,7 @@ EXAMPLES = examples(
     "kinform check e.h5",
     "kinform check e.h5 --format concise --fail-on warning",
     "kinform check e.h5 --format json > findings.json",
+    "kinform check e.h5 --format sarif --manifest-folder designs > findings.sarif",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
 )
 
@@ -38,6 +39,7 @@ def check(
         FindingsFormat.full
     ),
     fail_on: FailOn = Severity.error,
+    manifest_folder: ManifestFolder = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -56,4 +58,4 @@ def check(
         design = stages.check(design)
     if output is not None:
         results.write(design, output)
-    conclude(design, format, fail_on)
+    conclude(design, format, fail_on, manifest_folder)

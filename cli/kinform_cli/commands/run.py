@@ -97,7 +97,7 @@ def run(
     from kinform_cli.views.joints import ground_note
 
     console.say(ground_note(design))
-    conclude(design, format, fail_on)
+    conclude(design, format, fail_on, sources[0].parent if manifest else None)
 
 
 def _show(working: Working, stage: str, done: int, total: int) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from kinform.model.design import Design
 from kinform.model.findings import CheckReport
-from kinform.reports import as_json, concise, full
+from kinform.reports import as_json, concise, full, github, junit, markdown, sarif
 from kinform.reports.json_views import joint_evidence, joint_json, summary, summary_json
 
 __all__ = ["FORMATS", "joint_evidence", "joint_json", "render", "summary", "summary_json"]
@@ -14,12 +14,21 @@ __all__ = ["FORMATS", "joint_evidence", "joint_json", "render", "summary", "summ
 FORMATS: dict[str, Callable[[CheckReport, Design], str]] = {
     "concise": concise.render,
     "full": full.render,
+    "github": github.render,
     "json": as_json.render,
+    "junit": junit.render,
+    "md": markdown.render,
+    "sarif": sarif.render,
 }
 
 
-def render(report: CheckReport, design: Design, format: str) -> str:
-    """The report in that format, ending in a newline; ValueError for an unknown format."""
+def render(report: CheckReport, design: Design, format: str, *, fail_on: str = "error") -> str:
+    """The report in that format, ending in a newline; ValueError for an unknown format.
+
+    `fail_on` is the least severity that fails the gate: what JUnit calls a failure.
+    """
+    if format == "junit":
+        return junit.render(report, design, fail_on)
     try:
         renderer = FORMATS[format]
     except KeyError:
