@@ -55,7 +55,7 @@ def chain(folder, links=LINKS, changed=None):
     for k in range(links):
         x, z = LENGTH * k, THICK * (k % 2)
         radius = 3.0 + 0.01 * k
-        bar = Manifold.cube((LENGTH + WIDTH + 0.1 * k, WIDTH, THICK)).translate((x - WIDTH / 2, -WIDTH / 2, z))
+        bar = Manifold.cube((LENGTH + WIDTH + 0.02 * k, WIDTH, THICK)).translate((x - WIDTH / 2, -WIDTH / 2, z))
         places = [(x, 0.0, radius - 0.01), (x + LENGTH, 0.0, radius)]
         for j in range(3):
             places.append((x + 15.0 + 15.0 * j, 0.0, 2.0 + 0.003 * (3 * k + j)))

@@ -31,8 +31,7 @@ def conclude(
     if manifest_folder is not None and format in (FindingsFormat.sarif, FindingsFormat.github):
         design = _seen_from_here(design, manifest_folder)
     from kinform import reports
-    from kinform.consistency import verdict
-    from kinform.model.findings import SEVERITIES
+    from kinform.model.findings import SEVERITIES, verdict
 
     report = design.report
     assert report is not None

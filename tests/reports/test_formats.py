@@ -21,7 +21,9 @@ FILES = {
     "concise": "findings.concise.txt", "full": "findings.full.txt", "github": "findings.github", "json": "findings.json",
     "junit": "findings.xml", "md": "findings.md", "sarif": "findings.sarif",
 }  # fmt: skip
-DOCUMENTED = Rule("KF402", "joint-wrong-type", "error", "A joint is wrong.\n\nWhat to do: repair {it}.\n", lambda _: None)
+DOCUMENTED = Rule(
+    "KF402", "joint-wrong-type", "error", "A joint is wrong.\n\nWhat to do: repair {it}.\n", lambda _: None
+)
 
 
 def test_every_format_has_a_golden_file():

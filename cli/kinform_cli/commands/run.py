@@ -85,7 +85,7 @@ def run(
             allow_outside=allow_outside,
             units=units,
         )
-    design = outcome.design
+    design = outcome.gist
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
     for sentence in outcome.reused:
@@ -94,7 +94,7 @@ def run(
         console.say(f"computed: {sentence}")
     for note in design.assembly.notes:
         console.say(f"note: {note}")
-    from kinform_cli.views.joints import ground_note
+    from kinform_cli.notes import ground_note
 
     console.say(ground_note(design))
     conclude(design, format, fail_on, sources[0].parent if manifest else None)

@@ -21,6 +21,7 @@ from kinform.model.assembly import (
     Subassembly,
     freeze,
 )
+from kinform.model.function import Function
 from kinform.model.tolerances import Tolerances
 from kinform.results import _function
 from kinform.results._table import (
@@ -42,7 +43,7 @@ from kinform.results._table import (
     write_texts,
 )
 
-__all__ = ["read", "write"]
+__all__ = ["read", "read_header", "write"]
 
 _SOURCE = (text("source_file"), integer("source_line", optional=True))
 _HEADER = (text("name"), text("units"), text("ground"), flag("infer_fasteners"), *_SOURCE)
@@ -115,6 +116,23 @@ def read(group: h5py.Group) -> Assembly:
         subassemblies=tuple(
             Subassembly(**_with_source(row)) for row in read_rows(group, "subassemblies", _SUBASSEMBLIES)
         ),
+        files=read_texts(group, "files"),
+        notes=read_texts(group, "notes"),
+    )
+
+
+def read_header(group: h5py.Group) -> Assembly:
+    """The assembly without parts, groups and function: its name, source, files and notes."""
+    (header,) = read_rows(group, "header", _HEADER)
+    return Assembly(
+        **_with_source(header),
+        parts=(),
+        groups=(),
+        assumptions=(),
+        tolerances=Tolerances(),
+        function=Function(),
+        simulation=None,
+        subassemblies=(),
         files=read_texts(group, "files"),
         notes=read_texts(group, "notes"),
     )
