@@ -1,13 +1,15 @@
 """What a change costs: `python benchmarks/change.py [FOLDER] [--links N]`.
 
 A chain of bars that are hinged on pins, with bolts in bores of their own: 200 parts, every one another shape, so that no
-part is a copy of another. Runs `kinform run` as a user does, in processes of their own: from nothing, again with
+part is a copy of another, with dimples and grooves that touch nothing, as real parts have. Runs `kinform run` as a user does, in processes of their own: from nothing, again with
 nothing changed, and after the mesh of one bolt changed; then from nothing with the changed mesh, whose bytes the
 incremental run must have given. Prints seconds, and the share of the first run. No simulation is requested.
 """
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -17,7 +19,7 @@ import numpy as np
 
 LINKS = 40
 """Bars; each brings a pin to the next one, and three bolts."""
-SEGMENTS = 96
+SEGMENTS = 160
 LENGTH, WIDTH, THICK = 60.0, 20.0, 6.0
 
 
@@ -36,7 +38,15 @@ def bolt(radius, length, head, segments, profile=1.6):
     from manifold3d import Manifold
 
     shank = Manifold.cylinder(length, radius, radius, segments).translate((0, 0, -length))
-    return shank + Manifold.cylinder(head, profile * radius, profile * radius, segments)
+    rings = [
+        Manifold.cylinder(0.1, 9, 9, 8)
+        - Manifold.cylinder(0.1, 0.95 * profile * radius, 0.95 * profile * radius, segments)
+        for _ in range(5)
+    ]
+    capped = Manifold.cylinder(head, profile * radius, profile * radius, segments)
+    for n, ring in enumerate(rings):
+        capped -= ring.translate((0, 0, 0.2 + 0.3 * n))
+    return shank + capped
 
 
 def chain(folder, links=LINKS, changed=None):
@@ -56,19 +66,22 @@ def chain(folder, links=LINKS, changed=None):
         x, z = LENGTH * k, THICK * (k % 2)
         radius = 3.0 + 0.01 * k
         bar = Manifold.cube((LENGTH + WIDTH + 0.02 * k, WIDTH, THICK)).translate((x - WIDTH / 2, -WIDTH / 2, z))
-        places = [(x, 0.0, radius - 0.01), (x + LENGTH, 0.0, radius)]
+        bores = [(x, 0.0, radius - 0.01), (x + LENGTH, 0.0, radius)]
         for j in range(3):
-            places.append((x + 15.0 + 15.0 * j, 0.0, 2.0 + 0.003 * (3 * k + j)))
+            bores.append((x + 15.0 + 15.0 * j, 0.0, 2.0 + 0.003 * (3 * k + j)))
         holes = [
             Manifold.cylinder(3 * THICK, r + 0.02, r + 0.02, SEGMENTS + k % 7).translate((u, v, z - THICK))
-            for u, v, r in places
+            for u, v, r in bores
         ]
+        dimple = Manifold.sphere(1.2, 40)
+        places = [(x - 6 + 4.0 * n, side * 7.5, z + THICK * (n % 2)) for n in range(18) for side in (-1, 1)]
+        holes += [dimple.translate(place) for place in places]
         part(f"bar{k:03d}", bar - Manifold.batch_boolean(holes, OpType.Add))
         if k + 1 < links:
             pin = bolt(radius, 2 * THICK + 1, 2.0 + 0.01 * k, SEGMENTS + 1)
             part(f"pin{k:03d}", pin.translate((x + LENGTH, 0.0, 2 * THICK)))
         for j in range(3):
-            u, v, r = places[2 + j]
+            u, v, r = bores[2 + j]
             name = f"bolt{k:03d}_{j}"
             head = 2.0 + 0.01 * j + 0.003 * k + (0.5 if name == changed else 0.0)
             part(name, bolt(r, THICK + 1, head, SEGMENTS + j).translate((u, v, z + THICK)))
@@ -78,11 +91,11 @@ def chain(folder, links=LINKS, changed=None):
 
 def run(manifest, output):
     """Seconds of `kinform run` in a process of its own."""
-    import subprocess
-
     command = [sys.executable, "-m", "kinform_cli", "run", str(manifest), "-o", str(output), "-f", "concise"]
+    compiled = {"PYTHONPYCACHEPREFIX": str(output.parent / "pycache")}  # as an installed package has it
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"} | compiled
     start = time.perf_counter()
-    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    ran = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     seconds = time.perf_counter() - start
     if not output.exists():
         sys.exit(ran.stderr)

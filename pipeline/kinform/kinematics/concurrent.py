@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.graph import UnionFind
-from kinform.kinematics.screws import perpendicular
+from kinform.kinematics.screws import cross_product, perpendicular
 
 __all__ = ["Locus", "meeting_shifts"]
 
@@ -111,7 +111,7 @@ def _neighbours(loci: Sequence[Locus]) -> list[tuple[int, int]]:
 
 def _distance(locus: Locus, place: Array) -> float:
     arm = place - locus.point
-    return float(np.linalg.norm(arm if locus.axis is None else np.cross(arm, locus.axis)))
+    return float(np.linalg.norm(arm if locus.axis is None else cross_product(arm, locus.axis)))
 
 
 def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
@@ -121,13 +121,13 @@ def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
         arm = centre.point - other.point
         foot = other.point if other.axis is None else other.point + other.axis * float(other.axis @ arm)
         return 0.5 * (centre.point + foot), 1.0
-    normal = np.cross(a.axis, b.axis)
+    normal = cross_product(a.axis, b.axis)
     sine = float(np.linalg.norm(normal))
     if sine < SKEW:
         return None, sine
     apart = b.point - a.point
-    along_a = float(np.cross(apart, b.axis) @ normal) / sine**2
-    along_b = float(np.cross(apart, a.axis) @ normal) / sine**2
+    along_a = float(cross_product(apart, b.axis) @ normal) / sine**2
+    along_b = float(cross_product(apart, a.axis) @ normal) / sine**2
     return 0.5 * (a.point + along_a * a.axis + b.point + along_b * b.axis), sine
 
 

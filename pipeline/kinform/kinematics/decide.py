@@ -16,6 +16,7 @@ from kinform.kinematics.certainty import certainty
 from kinform.kinematics.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.freedoms import INDEPENDENT, fits, freedoms
 from kinform.kinematics.hypotheses import Motion, motions
+from kinform.kinematics.screws import cross_product
 from kinform.kinematics.subspace import JointForm, name_space
 from kinform.model.tolerances import Tolerances
 
@@ -115,7 +116,7 @@ def _frees_thrust(evidence: Evidence, motion: Motion, keep: NDArray[np.bool_]) -
         return False
 
     def along(item: Item) -> bool:
-        return float(np.linalg.norm(np.cross(item.patch.axis, motion.axis))) < 0.01
+        return float(np.linalg.norm(cross_product(item.patch.axis, motion.axis))) < 0.01
 
     shaft = any(item.patch.kind in COAXIAL and along(item) for item, k in zip(evidence.items, keep, strict=True) if k)
     faces = (item for item, k in zip(evidence.items, keep, strict=True) if not k)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.evidence import Evidence
-from kinform.kinematics.screws import span
+from kinform.kinematics.screws import cross_product, span
 from kinform.kinematics.subspace import name_space, nearest_pair
 from kinform.model.tolerances import Tolerances
 
@@ -30,7 +30,7 @@ RESIDUAL = 2.0
 def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> NDArray[np.bool_]:
     """(items, motions): does the patch slide on itself, within `slack` times its tolerances?"""
     length = evidence.frame.length
-    velocity = twists[3:].T[None] + np.cross(twists[:3].T[None], evidence.arms[:, None])
+    velocity = twists[3:].T[None] + cross_product(twists[:3].T[None], evidence.arms[:, None])
     speed = np.linalg.norm(velocity, axis=2)
     turning = np.linalg.norm(twists[:3], axis=0)
     allowed = evidence.angle[:, None] * speed + evidence.position[:, None] / length * turning

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.screws import canonical, perpendicular, rotation, translation
+from kinform.kinematics.screws import canonical, cross_product, perpendicular, rotation, translation
 
 __all__ = ["Line", "Motion", "describe", "motions"]
 
@@ -84,7 +84,7 @@ def _axes(evidence: Evidence, alignment: float) -> list[Line]:
 
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
-    cross = float(np.linalg.norm(np.cross(a.patch.axis, b.patch.axis)))
+    cross = float(np.linalg.norm(cross_product(a.patch.axis, b.patch.axis)))
     if cross > np.sin(max(a.angle, b.angle, alignment)):
         return False
     middle = b.points.mean(axis=0)
@@ -152,7 +152,7 @@ def _directions(candidates: list[tuple[Array, float]], alignment: float) -> list
     merged: list[tuple[Array, float]] = []
     for axis, weight in sorted(candidates, key=lambda c: -c[1]):
         for n, (other, total) in enumerate(merged):
-            if np.linalg.norm(np.cross(axis, other)) <= np.sin(alignment):
+            if np.linalg.norm(cross_product(axis, other)) <= np.sin(alignment):
                 signed = axis if axis @ other > 0.0 else -axis
                 merged[n] = ((other * total + signed * weight) / (total + weight), total + weight)
                 merged[n] = (merged[n][0] / np.linalg.norm(merged[n][0]), merged[n][1])
@@ -171,20 +171,20 @@ def _slides(
 
     def add(direction: Array, curved: bool) -> None:
         direction = _refined(direction, planes, alignment)
-        if all(np.linalg.norm(np.cross(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+        if all(np.linalg.norm(cross_product(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
             found.append((direction, curved))
 
     heavy = normals[: MOST_DIRECTIONS // 2]
     for k, (a, _) in enumerate(heavy):
         for b, _ in heavy[:k]:
-            cross = np.cross(a, b)
+            cross = cross_product(a, b)
             if np.linalg.norm(cross) > 0.1:
                 add(canonical(cross), False)
     for normal, _ in heavy[:6]:
         for axis in perpendicular(normal):
             add(canonical(axis), False)
         for line in lines:
-            cross = np.cross(normal, line.axis)
+            cross = cross_product(normal, line.axis)
             if np.linalg.norm(cross) > 0.1:
                 add(canonical(cross), False)
     return found[: 3 * MOST_DIRECTIONS]
@@ -209,7 +209,7 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     members = [
         i
         for i in evidence.items
-        if i.patch.kind == "plane" and np.linalg.norm(np.cross(i.patch.axis, normal)) <= np.sin(alignment)
+        if i.patch.kind == "plane" and np.linalg.norm(cross_product(i.patch.axis, normal)) <= np.sin(alignment)
     ]
     points = np.concatenate([i.points for i in members])
     return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))

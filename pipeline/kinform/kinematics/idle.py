@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.evidence import COAXIAL
-from kinform.kinematics.screws import Frame, perpendicular, rotation, scaled, span
+from kinform.kinematics.screws import Frame, cross_product, perpendicular, rotation, scaled, span
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint
@@ -76,13 +76,13 @@ def _contains(joint: Joint, twist: Array, frame: Frame) -> bool:
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the patch, as bounded as it is, turn onto itself?"""
     if patch.kind in COAXIAL:
-        parallel = float(np.linalg.norm(np.cross(patch.axis, axis))) < 1e-3
-        away = np.cross(patch.point - point, axis)
+        parallel = float(np.linalg.norm(cross_product(patch.axis, axis))) < 1e-3
+        away = cross_product(patch.point - point, axis)
         return parallel and float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
     if patch.kind == "sphere":
-        away = np.cross(patch.point - point, axis)
+        away = cross_product(patch.point - point, axis)
         return float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
-    if patch.kind != "plane" or float(np.linalg.norm(np.cross(patch.axis, axis))) > 1e-3:
+    if patch.kind != "plane" or float(np.linalg.norm(cross_product(patch.axis, axis))) > 1e-3:
         return False
     u, v = perpendicular(axis)
     arm = patch.points - point
@@ -100,5 +100,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = float(np.linalg.norm(np.cross(wanted.axis, axis))) < 0.02
-    return parallel and float(np.linalg.norm(np.cross(wanted.point - point, axis))) < 1e-2 * size
+    parallel = float(np.linalg.norm(cross_product(wanted.axis, axis))) < 0.02
+    return parallel and float(np.linalg.norm(cross_product(wanted.point - point, axis))) < 1e-2 * size

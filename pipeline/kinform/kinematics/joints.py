@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.decide import Decision
 from kinform.kinematics.evidence import COAXIAL, Evidence
 from kinform.kinematics.hypotheses import describe
-from kinform.kinematics.screws import canonical, perpendicular, twist_at_origin
+from kinform.kinematics.screws import canonical, cross_product, perpendicular, twist_at_origin
 from kinform.model.kinematics import Blocker, Joint
 from kinform.model.names import BodyName, JointName
 
@@ -34,7 +34,7 @@ def twists_of(
 
     def turn(about: Array, lead: float = 0.0) -> Array:
         assert point is not None
-        return np.concatenate([about, np.cross(point, about) + lead * about])
+        return np.concatenate([about, cross_product(point, about) + lead * about])
 
     if kind == "spherical":
         return np.array([turn(e) for e in np.eye(3)])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.graph import Forest, blocks, forest
-from kinform.kinematics.screws import Frame, scaled
+from kinform.kinematics.screws import Frame, cross_product, scaled
 
 __all__ = ["Closure", "body_twists", "close"]
 
@@ -114,8 +114,8 @@ def _frame(spaces: Sequence[Array], size: float) -> Frame:
 def _feet(turns: Array, centre: Array) -> Array:
     """(n, 3) points of the axes of the twists (n, 6) nearest to `centre`."""
     omega = turns[:, :3]
-    velocity = turns[:, 3:] + np.cross(omega, centre)
-    feet: Array = centre + np.cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
+    velocity = turns[:, 3:] + cross_product(omega, centre)
+    feet: Array = centre + cross_product(omega, velocity) / (omega**2).sum(axis=1)[:, None]
     return feet
 
 

@@ -10,11 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Frame",
     "canonical",
+    "cross_product",
     "perpendicular",
     "rotation",
     "rows",
@@ -41,6 +42,21 @@ class Frame:
         return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
 
 
+def cross_product(a: ArrayLike, b: ArrayLike) -> Array:
+    """a × b along the last axis, which has three entries: bit for bit numpy's, without its cost for few vectors."""
+    first, second = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    if first.ndim == 1 and second.ndim == 1:
+        ax, ay, az = first.tolist()
+        bx, by, bz = second.tolist()
+        return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    out = np.empty(np.broadcast_shapes(first.shape, second.shape))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        np.multiply(first[..., i], second[..., j], out=out[..., k])
+        out[..., k] -= first[..., j] * second[..., i]
+    return out
+
+
 def canonical(axis: Array) -> Array:
     """Unit vector along `axis` whose largest component is positive; among components within 1e-3 of
     the largest the first of x, y, z decides."""
@@ -53,19 +69,19 @@ def canonical(axis: Array) -> Array:
 
 def perpendicular(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
-    u = np.cross(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
+    u = cross_product(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
     u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)
+    return u, cross_product(axis, u)
 
 
 def rows(points: Array, normals: Array, frame: Frame) -> Array:
     """Constraint rows (n, 6) [((p − c)/L) × n, n] against scaled twists."""
-    return np.hstack([np.cross((points - frame.centre) / frame.length, normals), normals])
+    return np.hstack([cross_product((points - frame.centre) / frame.length, normals), normals])
 
 
 def rotation(axis: Array, point: Array, frame: Frame) -> Array:
     """Scaled unit twist (6,) of a rotation about the line (unit axis, point)."""
-    twist = np.concatenate([axis, np.cross(axis, frame.centre - point) / frame.length])
+    twist = np.concatenate([axis, cross_product(axis, frame.centre - point) / frame.length])
     unit: Array = twist / np.linalg.norm(twist)
     return unit
 
@@ -78,13 +94,13 @@ def translation(direction: Array) -> Array:
 def twist_at_origin(scaled: Array, frame: Frame) -> Array:
     """Twists (ω; v at the world's origin), columns (6, k), of scaled twists (6, k)."""
     omega = scaled[:3] / frame.length
-    return np.vstack([omega, scaled[3:] + np.cross(frame.centre[:, None], omega, axis=0)])
+    return np.vstack([omega, scaled[3:] + cross_product(frame.centre, omega.T).T])
 
 
 def scaled(twists: Array, frame: Frame) -> Array:
     """Scaled twists (6, k) of twists (ω; v at the world's origin), columns (6, k)."""
     omega = twists[:3]
-    at_centre = twists[3:] + np.cross(omega, frame.centre[:, None], axis=0)
+    at_centre = twists[3:] + cross_product(omega.T, frame.centre).T
     return np.vstack([omega * frame.length, at_centre])
 
 

@@ -8,7 +8,8 @@ differ by more than the uncertainty of their fits are the designer's error and s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.concurrent import Locus, meeting_shifts
 from kinform.kinematics.joints import twists_of
-from kinform.kinematics.screws import canonical, perpendicular
+from kinform.kinematics.screws import canonical, cross_product, perpendicular
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Misfit
 
@@ -101,7 +102,8 @@ def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     means = [_mean_direction(bundle) for bundle in bundles]
     found = []
     for bundle, direction in zip(bundles, _squared(means, [b[0].angle for b in bundles]), strict=True):
-        for group in _cluster(bundle, partial(_coaxial, direction)):
+        feet = {a.joint: a.foot(direction) for a in bundle}
+        for group in _cluster(bundle, partial(_coaxial, feet)):
             foot = None
             if len(group) > 1:
                 foot = _mean_foot(group, direction)
@@ -143,11 +145,12 @@ def _cluster(members: Sequence[_Axis], agree: Callable[[_Axis, _Axis], bool]) ->
 
 
 def _parallel(a: _Axis, b: _Axis) -> bool:
-    return float(np.linalg.norm(np.cross(a.direction, b.direction))) <= SIGMAS * (a.angle + b.angle)
+    return float(np.linalg.norm(cross_product(a.direction, b.direction))) <= SIGMAS * (a.angle + b.angle)
 
 
-def _coaxial(direction: Array, a: _Axis, b: _Axis) -> bool:
-    apart = float(np.linalg.norm(a.foot(direction) - b.foot(direction)))
+def _coaxial(feet: Mapping[int, Array], a: _Axis, b: _Axis) -> bool:
+    between = feet[a.joint] - feet[b.joint]
+    apart = math.sqrt(float(between @ between))
     return a.line and b.line and apart <= SIGMAS * (a.position + b.position)
 
 
@@ -199,7 +202,7 @@ def _moved(joint: Joint, old: _Axis, line: _Line, misfit: Misfit) -> tuple[Joint
     """The joint on its snapped line, and the misfit with what that moved."""
     direction, point = line.direction, joint.point
     if direction is not None:
-        angle = float(np.linalg.norm(np.cross(old.direction, direction)))
+        angle = float(np.linalg.norm(cross_product(old.direction, direction)))
         if angle > max(misfit.angle, EXACT):
             misfit = replace(misfit, angle=angle, angle_at=old.name)
     if line.foot is not None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import stat
 from pathlib import Path
 
@@ -66,7 +65,7 @@ def _holds(target: Path, data: bytes) -> bool:
 
 
 def _swap(target: Path, data: bytes) -> None:
-    temporary = target.parent / f".kinform-{secrets.token_hex(8)}.tmp"
+    temporary = target.parent / f".kinform-{os.urandom(8).hex()}.tmp"
     try:
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
         with open(os.open(temporary, flags, 0o666), "wb") as stream:
