@@ -27,6 +27,7 @@ __all__ = [
     "Results",
     "Severity",
     "TableFormat",
+    "Tolerances",
     "Units",
     "cores",
     "examples",
@@ -163,6 +164,15 @@ ManifestFolder = Annotated[
         metavar="DIR",
         show_default=False,
         help="Folder of the manifest: sarif and github then name files as seen from here.",
+    ),
+]
+Tolerances = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tolerance",
+        metavar="VALUE",
+        show_default=False,
+        help="Changes up to this are none: 0.1mm, 0.2deg, 1g, 0.5% (of masses); may be given once for each.",
     ),
 ]
 FailOn = Annotated[

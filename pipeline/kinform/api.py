@@ -164,11 +164,14 @@ class Outcome(Results):
         reused: tuple[str, ...] = (),
         recomputed: tuple[str, ...] = (),
         *,
+        account: str = "",
         gist: Design | None = None,
     ):
         super().__init__(design)
         self.reused = reused
         self.recomputed = recomputed
+        self.account = account
+        """In a line: what changed, and what was computed for it."""
         self._gist = gist
 
     @property
@@ -197,7 +200,7 @@ class Outcome(Results):
             return found
 
         reused = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")
-        return cls(read, reused, gist=gist)
+        return cls(read, reused, account="nothing changed: everything is reused", gist=gist)
 
 
 def _describe_part(part: Part) -> str:

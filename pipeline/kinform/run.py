@@ -50,7 +50,8 @@ def run(
         from kinform import results
 
         results.write(design, output)
-    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed))
+    account = ledger.account(design.fingerprints.files)
+    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
 
 
 def _import(

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinform_cli import files
+from kinform_cli.errors import refuse
 from kinform_cli.gate import conclude
 from kinform_cli.options import Debug, FailOn, FindingsFormat, ManifestFolder, Quiet, Results, Severity, examples
 from kinform_cli.progress import Working
+
+if TYPE_CHECKING:
+    from kinform.model.design import Design
 
 __all__ = ["EXAMPLES", "check"]
 
@@ -19,6 +24,7 @@ EXAMPLES = examples(
     "kinform check e.h5 --format concise --fail-on warning",
     "kinform check e.h5 --format json > findings.json",
     "kinform check e.h5 --format sarif --manifest-folder designs > findings.sarif",
+    "kinform check e.h5 --lock behaviour.lock.json",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
 )
 
@@ -40,6 +46,12 @@ def check(
     ),
     fail_on: FailOn = Severity.error,
     manifest_folder: ManifestFolder = None,
+    lock: Annotated[
+        Path | None,
+        typer.Option(
+            "--lock", metavar="FILE", show_default=False, help="Also compare the behaviour with this lock (KF450)."
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -58,4 +70,22 @@ def check(
         design = stages.check(design)
     if output is not None:
         results.write(design, output)
+    if lock is not None:
+        design = _compared(design, lock)
     conclude(design, format, fail_on, manifest_folder)
+
+
+def _compared(design: Design, lock: Path) -> Design:
+    """The design with what differs from the lock among its findings."""
+    from kinform import changes
+
+    try:
+        text = lock.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        told = getattr(error, "strerror", None) or "is not UTF-8 text"
+        raise refuse(
+            f"the lock cannot be read: {told}", file=lock, remedy="write it first: kinform lock F.h5 -o FILE"
+        ) from None
+    assert design.report is not None
+    report = changes.with_lock(design.report, design, changes.read_lock(text, str(lock)))
+    return replace(design, report=report)

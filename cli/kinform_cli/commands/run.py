@@ -88,16 +88,12 @@ def run(
     design = outcome.gist
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
-    for sentence in outcome.reused:
-        console.say(f"reused: {sentence}")
-    for sentence in outcome.recomputed:
-        console.say(f"computed: {sentence}")
     for note in design.assembly.notes:
         console.say(f"note: {note}")
     from kinform_cli.notes import ground_note
 
     console.say(ground_note(design))
-    conclude(design, format, fail_on, sources[0].parent if manifest else None)
+    conclude(design, format, fail_on, sources[0].parent if manifest else None, outcome)
 
 
 def _show(working: Working, stage: str, done: int, total: int) -> None:

@@ -6,6 +6,7 @@ A renderer is imported when its format is asked for: a run that changes nothing 
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from kinform.model.design import Design
@@ -25,15 +26,19 @@ FORMATS = {
 _VIEWS = ("joint_evidence", "joint_json", "summary", "summary_json")
 
 
-def render(report: CheckReport, design: Design, format: str, *, fail_on: str = "error") -> str:
+def render(
+    report: CheckReport, design: Design, format: str, *, fail_on: str = "error", run: Mapping[str, Any] | None = None
+) -> str:
     """The report in that format, ending in a newline; ValueError for an unknown format.
 
-    `fail_on` is the least severity that fails the gate: what JUnit calls a failure.
+    `fail_on` is the least severity that fails the gate: what JUnit calls a failure. `run` is the
+    account of a run, which the JSON carries.
     """
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}")
     renderer = importlib.import_module(f"kinform.reports.{FORMATS[format]}")
-    text: str = renderer.render(report, design, fail_on) if format == "junit" else renderer.render(report, design)
+    extra = {"junit": (fail_on,), "json": (run,)}.get(format, ())
+    text: str = renderer.render(report, design, *extra)
     return text
 
 

@@ -35,7 +35,7 @@ from kinform.results import (
     lineage,
 )
 
-__all__ = ["SCHEMA", "check_output", "read", "read_if_current", "to_bytes", "write"]
+__all__ = ["SCHEMA", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
 SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"
@@ -177,6 +177,15 @@ def _read_contents(file: h5py.File) -> dict[str, str]:
 
 def _read_lineage(file: h5py.File) -> dict[str, str]:
     return {name: str(group.attrs["lineage"]) for name, group in file.items() if "lineage" in group.attrs}
+
+
+def files_of(path: str | Path) -> tuple[str, ...]:
+    """The files that were read for these results, relative to the manifest; () where there are no such results."""
+    try:
+        with _opened(path) as file:
+            return _table.read_texts(file["assembly"], "files")
+    except (ResultsError, *_DAMAGE):
+        return ()
 
 
 def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) -> Design | None:
