@@ -17,6 +17,7 @@ from kinform.ledger import Ledger
 from kinform.model.assembly import Assembly
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
+from kinform.model.mass import MassProperties
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
@@ -115,7 +116,8 @@ def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
         from kinform.mass import compile_mass
         from kinform.results import inputs
 
-        return compile_mass(view, inputs.only_bodies(found.bodies), design.surfaces)
+        earlier = _earlier_masses(design, view, ledger)
+        return compile_mass(view, inputs.only_bodies(found.bodies), design.surfaces, earlier)
 
     return _advance("mass", design, compile_, ledger)
 
@@ -214,6 +216,27 @@ def _advance(
         result = compute(inputs.assembly_for(stage, design.assembly))
     marks = replace(start.fingerprints, stages=start.fingerprints.stages | {stage: mark})
     return replace(start, **{_FIELDS[stage]: result}, fingerprints=_descended(marks, stage, level))
+
+
+def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> dict[str, MassProperties]:
+    """Of earlier results of the present code, the mass properties of parts that are the same to the last bit."""
+    from kinform.results import fingerprints, inputs
+    from kinform.results._digest import digest
+
+    before = None if ledger is None else ledger.previous
+    if before is None or before.mass is None or before.assembly.tolerances != view.tolerances:
+        return {}
+    if before.fingerprints.stages.get("mass") != fingerprints.mark("mass", _before("mass", before)):
+        return {}
+    known, now = before.fingerprints.meshes, design.fingerprints.meshes
+    old = {part.name: digest(part) for part in inputs.assembly_for("mass", before.assembly).parts}
+    same = {
+        str(part.name)
+        for part in view.parts
+        if old.get(part.name) == digest(part)
+        and (part.mesh is None or known.get(part.mesh.digest) == now.get(part.mesh.digest) is not None)
+    }
+    return {item.name: item for item in before.mass.parts if item.name in same}
 
 
 def _before(stage: str, previous: Design) -> dict[str, str]:

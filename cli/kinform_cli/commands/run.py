@@ -81,7 +81,7 @@ def run(
             sources[0] if manifest else sources,
             output,
             jobs=cores(jobs),
-            progress=lambda stage, done, total: _show(working, stage, done, total),
+            progress=working.step,
             allow_outside=allow_outside,
             units=units,
         )
@@ -94,9 +94,3 @@ def run(
 
     console.say(ground_note(design))
     conclude(design, format, fail_on, sources[0].parent if manifest else None, outcome)
-
-
-def _show(working: Working, stage: str, done: int, total: int) -> None:
-    """Progress of one stage on the one bar of the run."""
-    working.stage(stage)
-    working(done, total)

@@ -83,7 +83,7 @@ def _run(
                 manifest,
                 output,
                 jobs=jobs,
-                progress=lambda stage, done, total: (working.stage(stage), working(done, total))[1],
+                progress=working.step,
                 allow_outside=allow_outside,
             )
     except (kinform.KinformError, OSError) as error:

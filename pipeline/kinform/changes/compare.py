@@ -8,7 +8,7 @@ way their directions point.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -343,13 +343,13 @@ def _kg(kilograms: float | None) -> str | None:
     return None if kilograms is None else f"{kilograms:.6g} kg"
 
 
-def _signed(value: float, say: object) -> str:
-    text = say(value)  # type: ignore[operator]
+def _signed(value: float, say: Callable[[float], str]) -> str:
+    text = say(value)
     return text.replace("-", "−", 1) if value < 0 else f"+{text}"
 
 
-def _end(value: float, say: object) -> str:
-    return "unbounded" if math.isinf(value) else say(value)  # type: ignore[operator, no-any-return]
+def _end(value: float, say: Callable[[float], str]) -> str:
+    return "unbounded" if math.isinf(value) else say(value)
 
 
 def _or_unknown(value: int | None) -> str:

@@ -46,7 +46,9 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
             if element is suite or name != "skipped":
                 element.set(name, str(count))
     ElementTree.indent(whole, " ")
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(whole, "us-ascii").decode("ascii") + "\n"
+    text: str = ElementTree.tostring(whole, "unicode")
+    head = '<?xml version="1.0" encoding="UTF-8"?>\n'
+    return head + text.encode("ascii", "xmlcharrefreplace").decode("ascii") + "\n"
 
 
 def _case_of_finding(suite: ElementTree.Element, finding: Finding, fails: bool) -> None:
