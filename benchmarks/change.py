@@ -19,7 +19,7 @@ import numpy as np
 
 LINKS = 40
 """Bars; each brings a pin to the next one, and three bolts."""
-SEGMENTS = 160
+SEGMENTS = 128
 LENGTH, WIDTH, THICK = 60.0, 20.0, 6.0
 
 
@@ -73,7 +73,7 @@ def chain(folder, links=LINKS, changed=None):
             Manifold.cylinder(3 * THICK, r + 0.02, r + 0.02, SEGMENTS + k % 7).translate((u, v, z - THICK))
             for u, v, r in bores
         ]
-        dimple = Manifold.sphere(1.2, 40)
+        dimple = Manifold.sphere(1.2, 32)
         places = [(x - 6 + 4.0 * n, side * 7.5, z + THICK * (n % 2)) for n in range(18) for side in (-1, 1)]
         holes += [dimple.translate(place) for place in places]
         part(f"bar{k:03d}", bar - Manifold.batch_boolean(holes, OpType.Add))

@@ -9,7 +9,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 from commands import environment
@@ -171,7 +170,5 @@ def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
 
 def test_watch_leaves_after_so_many_runs_with_the_code_of_the_last(folder, capsys):
     assert main(["watch", "m.toml", "-o", "r.h5", "--max-runs", "1", "-q"]) == run("-q")
-    started_at = time.monotonic()
     (folder / "m.toml").write_text("schema = ")
     assert main(["watch", "m.toml", "-o", "r.h5", "--max-runs", "1", "-q"]) == 2
-    assert time.monotonic() >= started_at
