@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,7 +24,7 @@ EXAMPLES = examples(
     "kinform check e.h5",
     "kinform check e.h5 --format concise --fail-on warning",
     "kinform check e.h5 --format json > findings.json",
-    "kinform check e.h5 --format sarif --manifest-folder designs > findings.sarif",
+    "kinform check e.h5 -f sarif --manifest-folder designs > findings.sarif",
     "kinform check e.h5 --lock behaviour.lock.json",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
 )
@@ -71,12 +72,12 @@ def check(
     if output is not None:
         results.write(design, output)
     if lock is not None:
-        design = _compared(design, lock)
+        design = _compared(design, lock, manifest_folder)
     conclude(design, format, fail_on, manifest_folder)
 
 
-def _compared(design: Design, lock: Path) -> Design:
-    """The design with what differs from the lock among its findings."""
+def _compared(design: Design, lock: Path, manifest_folder: Path | None) -> Design:
+    """The design with what differs from the lock among its findings, which name it as they name other files."""
     from kinform import changes
 
     try:
@@ -87,5 +88,6 @@ def _compared(design: Design, lock: Path) -> Design:
             f"the lock cannot be read: {told}", file=lock, remedy="write it first: kinform lock F.h5 -o FILE"
         ) from None
     assert design.report is not None
-    report = changes.with_lock(design.report, design, changes.read_lock(text, str(lock)))
+    shown = str(lock) if manifest_folder is None else Path(os.path.relpath(lock, manifest_folder)).as_posix()
+    report = changes.with_lock(design.report, design, changes.read_lock(text, shown))
     return replace(design, report=report)

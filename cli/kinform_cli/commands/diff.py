@@ -18,7 +18,7 @@ __all__ = ["EXAMPLES", "DiffFormat", "diff", "tolerance"]
 
 EXAMPLES = examples(
     "kinform diff before.h5 after.h5",
-    "kinform diff before.h5 after.h5 --tolerance 0.1mm --tolerance 0.2deg --tolerance 1%",
+    "kinform diff before.h5 after.h5 --tolerance 0.1mm --tolerance 1%",
     "kinform diff before.h5 after.h5 --format md > change.md",
 )
 

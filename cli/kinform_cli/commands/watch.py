@@ -18,7 +18,7 @@ __all__ = ["EXAMPLES", "watch"]
 EXAMPLES = examples(
     "kinform watch arm.toml -o arm.h5",
     "kinform watch arm.toml -o arm.h5 --fail-on warning",
-    "kinform watch arm.toml -o arm.h5 --max-runs 1       # once, then leave with its exit code",
+    "kinform watch arm.toml -o arm.h5 --max-runs 1    # once",
 )
 
 Stamp = tuple[int, int, int] | None
