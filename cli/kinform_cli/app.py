@@ -10,23 +10,27 @@ from kinform_cli import console
 from kinform_cli.commands import (
     check,
     contacts,
+    diff,
     explain,
     export,
     import_,
     init,
     joints,
+    lock,
     mass,
     query,
     run,
     schema,
     show,
     simulate,
+    watch,
 )
 from kinform_cli.options import Command, Debug, Group, examples
 
 __all__ = ["COMMANDS", "app"]
 
 _WHOLE, _STAGES, _LOOK, _BEGIN = "The whole way", "Stage by stage", "Look", "Begin, and look up"
+_CHANGE = "Change"
 
 COMMANDS = (
     ("run", run.run, run.EXAMPLES, _WHOLE),
@@ -39,6 +43,9 @@ COMMANDS = (
     ("show", show.show, show.EXAMPLES, _LOOK),
     ("query", query.query, query.EXAMPLES, _LOOK),
     ("export", export.export, export.EXAMPLES, _LOOK),
+    ("diff", diff.diff, diff.EXAMPLES, _CHANGE),
+    ("lock", lock.lock, lock.EXAMPLES, _CHANGE),
+    ("watch", watch.watch, watch.EXAMPLES, _CHANGE),
     ("init", init.init, init.EXAMPLES, _BEGIN),
     ("explain", explain.explain, explain.EXAMPLES, _BEGIN),
     ("schema", schema.schema, schema.EXAMPLES, _BEGIN),
@@ -68,7 +75,7 @@ def _root(
     """Derive joints, mobility, mass and motion from meshes, and check them against the intended
     function.
 
-    Exit codes: 0 written, or verified. 1 findings (check, run). 2 not written, or not verified.
+    Exit codes: 0 written, or verified. 1 findings (check, run), differences (diff). 2 not written, or not verified.
     """
 
 

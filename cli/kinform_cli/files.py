@@ -7,7 +7,6 @@ checked here is what would make that last step fail, or destroy a file that kinf
 from __future__ import annotations
 
 import contextlib
-import os
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -99,15 +98,10 @@ def needing(path: Path) -> Iterator[None]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file in one step, as UTF-8."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with draft.open("w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
-        os.replace(draft, path)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+    """Write a text file in one step, as UTF-8; the same text keeps the file, with a new time."""
+    from kinform import results
+
+    results.replace_file(path, text.encode())
 
 
 def read_by(design: Design, sources: Sequence[Path]) -> list[Path]:

@@ -21,11 +21,13 @@ __all__ = [
     "FindingsFormat",
     "Group",
     "Jobs",
+    "ManifestFolder",
     "Output",
     "Quiet",
     "Results",
     "Severity",
     "TableFormat",
+    "Tolerances",
     "Units",
     "cores",
     "examples",
@@ -46,6 +48,10 @@ class FindingsFormat(StrEnum):
     full = "full"
     concise = "concise"
     json = "json"
+    sarif = "sarif"
+    junit = "junit"
+    github = "github"
+    md = "md"
 
 
 class TableFormat(StrEnum):
@@ -149,6 +155,24 @@ Depfile = Annotated[
         metavar="FILE",
         show_default=False,
         help="Also write a Make rule: the output depends on every file that was read.",
+    ),
+]
+ManifestFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--manifest-folder",
+        metavar="DIR",
+        show_default=False,
+        help="Folder of the manifest: sarif and github then name files as seen from here.",
+    ),
+]
+Tolerances = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tolerance",
+        metavar="VALUE",
+        show_default=False,
+        help="Changes up to this are none: 0.1mm, 0.2deg, 1g, 0.5% (of masses); may be given once for each.",
     ),
 ]
 FailOn = Annotated[

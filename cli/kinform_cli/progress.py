@@ -63,6 +63,11 @@ class Working:
         """This stage is under way now."""
         self._label = label
 
+    def step(self, label: str, done: int, total: int) -> None:
+        """As a run reports it: so many steps of this stage are done."""
+        self.stage(label)
+        self(done, total)
+
     def _draw(self) -> None:
         if self._over.wait(DELAY):
             return

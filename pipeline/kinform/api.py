@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
-from kinform.errors import StageError
+from kinform.errors import Problem, ResultsError, StageError
 from kinform.model.assembly import Assembly, Part
 from kinform.model.contacts import Contacts
 from kinform.model.design import Design
@@ -58,8 +59,15 @@ class Named(Mapping[str, Item], Generic[Item]):
 class Results:
     """Everything that is known of a design; what has not been computed yet raises StageError."""
 
-    def __init__(self, design: Design):
-        self.design = design
+    def __init__(self, design: Design | Callable[[], Design]):
+        self._design = design
+
+    @property
+    def design(self) -> Design:
+        """The design as the stages exchange it."""
+        if not isinstance(self._design, Design):
+            self._design = self._design()
+        return self._design
 
     @property
     def assembly(self) -> Assembly:
@@ -145,12 +153,54 @@ class Results:
 
 
 class Outcome(Results):
-    """Results of a run, with what it took over from earlier results and what it computed, in sentences."""
+    """Results of a run, with what it took over from earlier results and what it computed, in sentences.
 
-    def __init__(self, design: Design, reused: tuple[str, ...] = (), recomputed: tuple[str, ...] = ()):
+    Where nothing changed, the results are read from their file when they are first asked for.
+    """
+
+    def __init__(
+        self,
+        design: Design | Callable[[], Design],
+        reused: tuple[str, ...] = (),
+        recomputed: tuple[str, ...] = (),
+        *,
+        account: str = "",
+        gist: Design | None = None,
+    ):
         super().__init__(design)
         self.reused = reused
         self.recomputed = recomputed
+        self.account = account
+        """In a line: what changed, and what was computed for it."""
+        self._gist = gist
+
+    @property
+    def gist(self) -> Design:
+        """What findings are told with: perhaps without parts and joints, and then had without reading them."""
+        return self.design if self._gist is None else self._gist
+
+    @classmethod
+    def unchanged(cls, manifest: Path, output: Path, *, allow_outside: bool = False) -> Outcome | None:
+        """The results in `output`, if a run of the manifest would give these very bytes; their file gets a new time."""
+        from kinform import results
+
+        gist = results.read_if_current(output, manifest, allow_outside=allow_outside)
+        if gist is None:
+            return None
+        try:
+            results.check_output(output)
+            os.utime(output)
+        except (OSError, ResultsError):  # the run will say why it cannot be written
+            return None
+
+        def read() -> Design:
+            found = results.read(output)
+            if found.fingerprints.lineage != gist.fingerprints.lineage:
+                raise ResultsError(Problem("was replaced after the run that found it unchanged", str(output)))
+            return found
+
+        reused = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")
+        return cls(read, reused, account="nothing changed: everything is reused", gist=gist)
 
 
 def _describe_part(part: Part) -> str:

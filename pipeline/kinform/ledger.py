@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,6 +20,7 @@ class Ledger:
     """Sentences, in the order of the stages."""
     recomputed: list[str] = field(default_factory=list)
     """Sentences with the reason, in the order of the stages."""
+    _computed: list[str] = field(default_factory=list)
 
     @classmethod
     def of(cls, output: str | Path | None) -> Ledger:
@@ -41,3 +43,26 @@ class Ledger:
     def compute(self, what: str, why: str) -> None:
         """Note that `what` is computed, and why."""
         self.recomputed.append(f"{what}: {why}")
+        self._computed.append(what)
+
+    def account(self, files: Mapping[str, str]) -> str:
+        """What changed and what followed: "camera.stl changed → contacts of 2 pairs of parts, joints"; `files` are the
+        contents that were read now, by name."""
+        if not self._computed:
+            return "everything is reused: nothing changed that matters"
+        return f"{self._cause(files)} → {', '.join(self._computed)}"
+
+    def _cause(self, files: Mapping[str, str]) -> str:
+        from kinform.results.fingerprints import listed
+
+        if self.previous is None:
+            return "no earlier results"
+        before = self.previous.fingerprints.files
+        if not before or not files:
+            return "earlier results do not say which files they were made of"
+        changed = sorted(name for name in files if name in before and files[name] != before[name])
+        causes = [f"{listed(changed)} changed"] if changed else []
+        new, gone = sorted(set(files) - set(before)), sorted(set(before) - set(files))
+        causes += [f"{listed(new)} added"] if new else []
+        causes += [f"{listed(gone)} left out"] if gone else []
+        return ", ".join(causes) or "other settings, or another version of kinform"

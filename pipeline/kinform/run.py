@@ -36,8 +36,12 @@ def run(
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
+    if output is not None and units is None and isinstance(manifest, str | Path):
+        unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
+        if unchanged is not None:
+            return unchanged
     ledger = Ledger.of(output)
-    design = _import(manifest, units, allow_outside)
+    design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
     design = stages.joints(design, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
@@ -47,10 +51,13 @@ def run(
         from kinform import results
 
         results.write(design, output)
-    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed))
+    account = ledger.account(design.fingerprints.files)
+    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
 
 
-def _import(manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool) -> Design:
+def _import(
+    manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool, ledger: Ledger
+) -> Design:
     """The assembly of a manifest, or of meshes in place of one."""
     paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
     if units is not None:
@@ -58,7 +65,7 @@ def _import(manifest: str | Path | Sequence[str | Path], units: str | None, allo
     if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj"):
         problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
         raise InputError([problem])
-    return stages.import_(paths[0], allow_outside=allow_outside)
+    return stages.import_(paths[0], allow_outside=allow_outside, ledger=ledger)
 
 
 def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:

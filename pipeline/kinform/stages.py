@@ -18,6 +18,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
@@ -34,11 +35,30 @@ _FIELDS = {
 """Stages after the import in their order, and the field of Design that each fills."""
 
 
-def import_(manifest: str | Path, *, allow_outside: bool = False) -> Design:
-    """The assembly that a manifest describes, meshes included. Raises InputError with every problem."""
-    from kinform import form
+def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger | None = None) -> Design:
+    """The assembly that a manifest describes, meshes included. Raises InputError with every problem.
 
-    return _imported(form.load(Path(manifest), allow_outside=allow_outside))
+    Meshes of files that have not changed are taken from earlier results.
+    """
+    from kinform.form.read import load_with_contents
+    from kinform.results import lineage
+
+    before = None if ledger is None else ledger.previous
+    files = {} if before is None or not _current_import(before) else before.fingerprints.files
+    earlier = before.assembly if before is not None and files else None
+    assembly, contents = load_with_contents(Path(manifest), allow_outside=allow_outside, earlier=earlier, files=files)
+    design = _imported(assembly)
+    start = lineage.of_files(Path(manifest).name, contents)
+    marks = replace(design.fingerprints, files=contents, lineage={"assembly": start} if start else {})
+    return replace(design, fingerprints=marks)
+
+
+def _current_import(design: Design) -> bool:
+    """Whether the present code read this assembly."""
+    from kinform.results import fingerprints
+
+    mark = fingerprints.mark("assembly", fingerprints.of_assembly(design.assembly))
+    return design.fingerprints.stages.get("assembly") == mark
 
 
 def import_meshes(
@@ -71,7 +91,9 @@ def contacts(
     mark = fingerprints.mark("contacts", fingerprints.of_stage("contacts", start))
     found, pairs = touching.contacts(view, surfaces, mark, jobs, progress, ledger)
     marks = {"surfaces": fingerprints.mark("surfaces", meshes), "contacts": mark}
-    return replace(start, contacts=found, fingerprints=Fingerprints(start.fingerprints.stages | marks, meshes, pairs))
+    stages = start.fingerprints.stages | marks
+    marked = replace(start.fingerprints, stages=stages, meshes=meshes, pairs=pairs)
+    return replace(start, contacts=found, fingerprints=_descended(marked, "contacts"))
 
 
 def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
@@ -96,7 +118,8 @@ def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
         from kinform.mass import compile_mass
         from kinform.results import inputs
 
-        return compile_mass(view, inputs.only_bodies(found), design.surfaces)
+        earlier = _earlier_masses(design, view, ledger)
+        return compile_mass(view, inputs.only_bodies(found.bodies), design.surfaces, earlier)
 
     return _advance("mass", design, compile_, ledger)
 
@@ -177,9 +200,19 @@ def _without(design: Design, stage: str) -> Design:
     stages = {name: mark for name, mark in marks.stages.items() if name not in later}
     if stage == "contacts":
         stages.pop("surfaces", None)
-        marks, design = Fingerprints(), replace(design, surfaces={})
+        marks, design = replace(marks, meshes={}, pairs={}), replace(design, surfaces={})
+    lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}
     cleared: dict[str, Any] = {_FIELDS[name]: None for name in later}
-    return replace(design, **cleared, fingerprints=replace(marks, stages=stages))
+    return replace(design, **cleared, fingerprints=replace(marks, stages=stages, lineage=lineage))
+
+
+def _descended(marks: Fingerprints, stage: str, level: str | None = None) -> Fingerprints:
+    """The fingerprints with the lineage of this stage, where that of the stage before is known."""
+    from kinform.results import lineage
+
+    before = lineage.STAGES[lineage.STAGES.index(stage) - 1]
+    found = lineage.following(stage, marks.lineage.get(before, ""), level)
+    return replace(marks, lineage=marks.lineage | {stage: found}) if found else marks
 
 
 def _advance(
@@ -206,7 +239,28 @@ def _advance(
         ledger.compute(stage, fingerprints.changes(before, found))
         result = compute(inputs.assembly_for(stage, design.assembly))
     marks = replace(start.fingerprints, stages=start.fingerprints.stages | {stage: mark})
-    return replace(start, **{_FIELDS[stage]: result}, fingerprints=marks)
+    return replace(start, **{_FIELDS[stage]: result}, fingerprints=_descended(marks, stage, level))
+
+
+def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> dict[str, MassProperties]:
+    """Of earlier results of the present code, the mass properties of parts that are the same to the last bit."""
+    from kinform.results import fingerprints, inputs
+    from kinform.results._digest import digest
+
+    before = None if ledger is None else ledger.previous
+    if before is None or before.mass is None or before.assembly.tolerances != view.tolerances:
+        return {}
+    if before.fingerprints.stages.get("mass") != fingerprints.mark("mass", _before("mass", before)):
+        return {}
+    known, now = before.fingerprints.meshes, design.fingerprints.meshes
+    old = {part.name: digest(part) for part in inputs.assembly_for("mass", before.assembly).parts}
+    same = {
+        str(part.name)
+        for part in view.parts
+        if old.get(part.name) == digest(part)
+        and (part.mesh is None or known.get(part.mesh.digest) == now.get(part.mesh.digest) is not None)
+    }
+    return {item.name: item for item in before.mass.parts if item.name in same}
 
 
 def _before(stage: str, previous: Design) -> dict[str, str]:

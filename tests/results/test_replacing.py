@@ -5,7 +5,10 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import signal
 import stat
+import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -194,3 +197,69 @@ def test_writing_what_was_read_changes_no_byte(tmp_path: Path) -> None:
     before = (tmp_path / "r.h5").read_bytes()
     results.write(results.read(tmp_path / "r.h5"), tmp_path / "r.h5")
     assert (tmp_path / "r.h5").read_bytes() == before
+
+
+def test_what_a_killed_writer_left_is_removed_by_the_next_one(tmp_path: Path) -> None:
+    path = tmp_path / "r.h5"
+    code = (
+        "import os, signal, sys\n"
+        "from kinform.results import _store\n"
+        "_store.os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
+        "_store.replace(sys.argv[1], b'half')\n"
+    )
+    killed = subprocess.run([sys.executable, "-c", code, str(path)], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert [name.startswith(".kinform-") for name in _only(tmp_path)] == [True]
+    results.write(_design("one"), path)
+    assert _only(tmp_path) == ["r.h5"]
+
+
+def test_what_a_living_writer_is_writing_stays(tmp_path: Path) -> None:
+    mine, handle = _store._draft(tmp_path)
+    try:
+        results.write(_design("one"), tmp_path / "r.h5")
+        assert mine.exists()
+    finally:
+        os.close(handle)
+    results.write(_design("two"), tmp_path / "r.h5")
+    assert _only(tmp_path) == ["r.h5"]
+
+
+def test_many_writers_at_once_leave_one_whole_file(tmp_path: Path) -> None:
+    code = (
+        "import sys\n"
+        "from kinform.results import _store\n"
+        "for n in range(40):\n"
+        "    _store.replace(sys.argv[1], (sys.argv[2] * 100000 + str(n)).encode())\n"
+    )
+    path = tmp_path / "r.h5"
+    writers = [subprocess.Popen([sys.executable, "-c", code, str(path), letter]) for letter in "abc"]
+    assert [writer.wait(timeout=60) for writer in writers] == [0, 0, 0]
+    text = path.read_text()
+    assert text[:100000] == text[0] * 100000
+    assert text[100000:] == "39"
+    assert _only(tmp_path) == ["r.h5"]
+
+
+@pytest.mark.parametrize("limit", [1, 5000, 20000])
+def test_a_disk_that_is_full_loses_nothing_that_was_there(limit: int, tmp_path: Path) -> None:
+    """The operating system refuses every byte of a file beyond the limit, as a full disk does."""
+    path = tmp_path / "r.h5"
+    results.write(_design("old"), path)
+    before = path.read_bytes()
+    code = (
+        "import resource, sys\n"
+        "from kinform import ResultsError, results\n"
+        "design = results.read(sys.argv[1])\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]),) * 2)\n"
+        "import dataclasses\n"
+        "new = dataclasses.replace(design, assembly=dataclasses.replace(design.assembly, name='new' * 20000))\n"
+        "try:\n    results.write(new, sys.argv[1])\n"
+        "except ResultsError as error:\n    print(error)\n"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", code, str(path), str(limit)], capture_output=True, text=True, check=True
+    )
+    assert "cannot be written" in ran.stdout
+    assert path.read_bytes() == before
+    assert _only(tmp_path) == ["r.h5"]

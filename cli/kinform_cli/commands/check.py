@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,11 +12,12 @@ import typer
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
 from kinform_cli.gate import conclude
-from kinform_cli.options import Debug, FailOn, FindingsFormat, Quiet, Results, Severity, examples
+from kinform_cli.options import Debug, FailOn, FindingsFormat, ManifestFolder, Quiet, Results, Severity, examples
 from kinform_cli.progress import Working
 from kinform_cli.text import count
 
 if TYPE_CHECKING:
+    from kinform.model.design import Design
     from kinform.model.findings import CheckReport
 
 __all__ = ["EXAMPLES", "check"]
@@ -24,6 +26,8 @@ EXAMPLES = examples(
     "kinform check e.h5",
     "kinform check e.h5 --format concise --fail-on warning",
     "kinform check e.h5 --format json > findings.json",
+    "kinform check e.h5 -f sarif --manifest-folder designs > findings.sarif",
+    "kinform check e.h5 --lock behaviour.lock.json",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
     "kinform check e.h5 --write-baseline b.json",
     "kinform check e.h5 --baseline b.json     # only what is new counts",
@@ -56,6 +60,13 @@ def check(
             "--write-baseline", metavar="B.json", show_default=False, help="Write today's findings as a baseline."
         ),
     ] = None,
+    manifest_folder: ManifestFolder = None,
+    lock: Annotated[
+        Path | None,
+        typer.Option(
+            "--lock", metavar="FILE", show_default=False, help="Also compare the behaviour with this lock (KF450)."
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -85,7 +96,10 @@ def check(
         adopted = adopt(report)
         files.write_text(write_baseline, adopted.text())
         console.say(f"{count(len(adopted.keys), 'finding')} written to {write_baseline}")
-    conclude(replace(design, report=report), format, fail_on)
+    design = replace(design, report=report)
+    if lock is not None:
+        design = _compared(design, lock, manifest_folder)
+    conclude(design, format, fail_on, manifest_folder)
 
 
 def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
@@ -104,3 +118,20 @@ def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
     for code, subject in gone:
         console.say(f"no longer found: {code} {one_line(', '.join(subject))}: write the baseline anew")
     return left
+
+
+def _compared(design: Design, lock: Path, manifest_folder: Path | None) -> Design:
+    """The design with what differs from the lock among its findings, which name it as they name other files."""
+    from kinform import changes
+
+    try:
+        text = lock.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        told = getattr(error, "strerror", None) or "is not UTF-8 text"
+        raise refuse(
+            f"the lock cannot be read: {told}", file=lock, remedy="write it first: kinform lock F.h5 -o FILE"
+        ) from None
+    assert design.report is not None
+    shown = str(lock) if manifest_folder is None else Path(os.path.relpath(lock, manifest_folder)).as_posix()
+    report = changes.with_lock(design.report, design, changes.read_lock(text, shown))
+    return replace(design, report=report)

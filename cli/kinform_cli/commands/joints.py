@@ -25,7 +25,7 @@ def joints(source: Results, output: Output, quiet: Quiet = False, debug: Debug =
     with files.needing(source), Working("joints"):
         design = stages.joints(design)
     results.write(design, output)
-    from kinform_cli.views.joints import ground_note
+    from kinform_cli.notes import ground_note
 
     found = design.kinematics
     assert found is not None

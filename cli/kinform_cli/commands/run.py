@@ -81,27 +81,17 @@ def run(
             sources[0] if manifest else sources,
             output,
             jobs=cores(jobs),
-            progress=lambda stage, done, total: _show(working, stage, done, total),
+            progress=working.step,
             allow_outside=allow_outside,
             units=units,
             say=console.say,
         )
-    design = outcome.design
+    design = outcome.gist
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
-    for sentence in outcome.reused:
-        console.say(f"reused: {sentence}")
-    for sentence in outcome.recomputed:
-        console.say(f"computed: {sentence}")
     for note in design.assembly.notes:
         console.say(f"note: {note}")
-    from kinform_cli.views.joints import ground_note
+    from kinform_cli.notes import ground_note
 
     console.say(ground_note(design))
-    conclude(design, format, fail_on)
-
-
-def _show(working: Working, stage: str, done: int, total: int) -> None:
-    """Progress of one stage on the one bar of the run."""
-    working.stage(stage)
-    working(done, total)
+    conclude(design, format, fail_on, sources[0].parent if manifest else None, outcome)

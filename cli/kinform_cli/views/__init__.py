@@ -6,14 +6,15 @@ from rich.console import RenderableType
 
 from kinform.errors import StageError
 from kinform.model.design import Design
-from kinform_cli.views import joint, overview
-from kinform_cli.views.topics import TOPICS
 
 __all__ = ["render", "render_joint"]
 
 
 def render(design: Design, topic: str | None) -> RenderableType:
     """The topic for people, or an overview; raises StageError where its stage has not run."""
+    from kinform_cli.views import overview
+    from kinform_cli.views.topics import TOPICS
+
     if topic is None:
         return overview.render(design)
     _require(design, topic)
@@ -23,10 +24,14 @@ def render(design: Design, topic: str | None) -> RenderableType:
 
 def render_joint(design: Design, name: str) -> RenderableType:
     """All the evidence of one joint; raises StageError, or KeyError for a name that no joint has."""
+    from kinform_cli.views import joint
+
     _require(design, "joints")
     return joint.render(design, name)
 
 
 def _require(design: Design, topic: str) -> None:
+    from kinform_cli.views.topics import TOPICS
+
     if not TOPICS[topic].known(design):
         raise StageError(f"`kinform show {topic}`", TOPICS[topic].command)

@@ -9,10 +9,11 @@ from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics, Release
+from kinform_cli.notes import ground_note
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, count, number, vector
 
-__all__ = ["blockers", "ground_note", "leaves", "render", "sentence"]
+__all__ = ["blockers", "leaves", "render", "sentence"]
 
 
 def _known(design: Design) -> Kinematics:
@@ -109,14 +110,6 @@ def _leaving(kinematics: Kinematics) -> list[RenderableType]:
     if kinematics.separations_reason:
         lines.append(f"\n{kinematics.separations_reason}")
     return lines
-
-
-def ground_note(design: Design) -> str | None:
-    """Which body was taken as the ground, where the manifest does not say."""
-    if design.assembly.ground is not None:
-        return None
-    chosen = [body.name for body in _known(design).bodies if body.ground]
-    return f"note: no ground is stated: {', '.join(chosen)} is taken, as the heaviest (else the largest) body"
 
 
 def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:

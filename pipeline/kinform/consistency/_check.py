@@ -1,4 +1,4 @@
-"""Runs every rule on a design, and turns a report into an exit code."""
+"""Runs every rule on a design."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from kinform.consistency._rule import Rule, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.model.design import Design
-from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
+from kinform.model.findings import CheckReport, Finding, RuleOutcome, verdict
 
 __all__ = ["check", "verdict"]
 
@@ -46,20 +46,6 @@ def _run(rule: Rule, context: Context) -> Applied:
     settings = context.assembly.check
     outcome = rule.check(context) if selected(rule, settings) else skipped("not selected by [check]")
     return apply(rule, outcome, settings)
-
-
-def verdict(report: CheckReport, fail_on: str = "error") -> int:
-    """Exit code of the gate: 0 verified, 1 findings at or above `fail_on`, 2 not verified.
-
-    Not verified: no rule ran, or one was inconclusive. Where 1 and 2 both apply, 1. `fail_on`: note,
-    warning or error; ValueError otherwise.
-    """
-    if fail_on not in SEVERITIES:
-        raise ValueError(f"unknown severity {fail_on!r}: expected one of {', '.join(SEVERITIES)}")
-    level = SEVERITIES.index(fail_on)
-    if any(SEVERITIES.index(finding.severity) >= level for finding in report.findings):
-        return 1
-    return 2 if report.ran == 0 or report.inconclusive else 0
 
 
 def _order(finding: Finding) -> tuple[object, ...]:

@@ -44,9 +44,12 @@ def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array,
 
 def _border(mesh: Mesh, surfaces: MeshSurfaces, plane: int) -> list[tuple[int, NDArray[np.int64]]]:
     """(index of the surface beyond, (n, 2) vertices of the edges that it shares with the plane), by index."""
-    ends = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    on_plane = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    on_plane[mesh.faces[surfaces.labels == plane]] = True
+    near = np.flatnonzero(on_plane[mesh.faces].sum(axis=1) >= 2)
+    ends = np.sort(mesh.faces[near][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     keys = ends[:, 0] * len(mesh.vertices) + ends[:, 1]
-    owner = np.repeat(surfaces.labels, 3)
+    owner = np.repeat(surfaces.labels[near], 3)
     inside = owner == plane
     beyond = ~inside & np.isin(keys, keys[inside])
     return [(int(k), ends[beyond & (owner == k)]) for k in np.unique(owner[beyond])]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,36 +20,50 @@ from kinform.form.schema.common import Posed
 from kinform.form.schema.parts import Part as PartTable
 from kinform.form.schema.parts import TolerancesTable
 from kinform.form.scope import Scope, parse
-from kinform.form.sources import Sources
+from kinform.form.sources import Sources, earlier_meshes
 from kinform.form.units import metres_per
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Source, Subassembly
 from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["load"]
+__all__ = ["load", "load_with_contents"]
 
 Array = NDArray[np.float64]
 
 
 def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:
+    """As `load_with_contents`, without the contents."""
+    return load_with_contents(path, allow_outside=allow_outside)[0]
+
+
+def load_with_contents(
+    path: str | Path,
+    *,
+    allow_outside: bool = False,
+    earlier: Assembly | None = None,
+    files: Mapping[str, str] | None = None,
+) -> tuple[Assembly, dict[str, str]]:
     """The assembly that the manifest at `path` describes, meshes read and sub-assemblies flattened.
 
     Raises InputError with every problem that was found, each with file, line and remedy. Mesh and
-    sub-assembly files outside the manifest's folder need `allow_outside`.
+    sub-assembly files outside the manifest's folder need `allow_outside`. Also gives the SHA-256 (hex) of every file
+    that was read, by name, empty where one changed meanwhile. Meshes of files that are among the `files` of an
+    `earlier` assembly, which the present code read, are taken from it.
     """
     path = Path(path)
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
         raise InputError([Problem(f"the manifest {what}", str(path), None, "name a manifest (TOML); see kinform init")])
     problems = Problems()
-    sources = Sources(path.parent, problems, allow_outside)
+    known = {} if earlier is None else earlier_meshes(earlier, files or {})
+    sources = Sources(path.parent, problems, allow_outside, known)
     reader = _Reader(sources, problems)
     reader.scopes(path, path.name, "", np.eye(4), ())
     assembly = reader.assembly() if reader.found else None
     problems.raise_if_any()
     assert assembly is not None
-    return assembly
+    return assembly, sources.contents()
 
 
 class _Reader:
@@ -61,7 +76,7 @@ class _Reader:
 
     def scopes(self, path: Path, file: str, prefix: str, X_WF: Array, above: tuple[Path, ...]) -> None:
         """Read a manifest and all below it, depth first."""
-        self.sources.files.add(file)
+        self.sources.text(path)
         parsed = parse(path, file, self.problems)
         if parsed is None:
             return

@@ -2,38 +2,84 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from kinform.form.meshes.bodies import select_body
-from kinform.form.meshes.health import build_mesh
-from kinform.form.meshes.obj import read_obj
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
-from kinform.form.meshes.stl import read_stl
 from kinform.form.problems import Problems, did_you_mean
-from kinform.model.assembly import Mesh
+from kinform.form.units import metres_per
+from kinform.model.assembly import Assembly, Mesh
 
-__all__ = ["Sources", "read_raw"]
+__all__ = ["Sources", "content", "earlier_meshes", "read_raw"]
 
-READERS = {".stl": read_stl, ".obj": read_obj}
+_SUFFIXES = (".stl", ".obj")
+
+
+def content(data: bytes) -> str:
+    """SHA-256 (hex) of the content of a file."""
+    return hashlib.sha256(data).hexdigest()
 
 
 def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
+    return _parsed(path, b"" if path.suffix.lower() not in _SUFFIXES else path.read_bytes())
+
+
+def _parsed(path: Path, data: bytes) -> RawMesh:
+    if path.suffix.lower() not in _SUFFIXES:
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
-    return reader(path)
+    if path.suffix.lower() == ".stl":
+        from kinform.form.meshes.stl import read_stl
+
+        return read_stl(data)
+    from kinform.form.meshes.obj import read_obj
+
+    return read_obj(data)
+
+
+@dataclass(frozen=True)
+class _Request:
+    """Everything that decides what a mesh comes out as: equal requests, equal meshes."""
+
+    path: str
+    """As results show it."""
+    content: str
+    """SHA-256 (hex) of the file."""
+    body: str | None
+    metres: float
+    weld: float | None
+    solid: bool
+
+
+def earlier_meshes(assembly: Assembly, files: Mapping[str, str]) -> dict[_Request, Mesh]:
+    """The meshes of an assembly that the present code read, by what was asked for; `files` are the contents it read."""
+    weld = assembly.tolerances.weld
+    return {
+        _Request(
+            part.mesh.path, files[part.mesh.path], part.mesh.body, metres_per(part.units), weld, part.solid
+        ): part.mesh
+        for part in assembly.parts
+        if part.mesh is not None and part.mesh.path in files
+    }
 
 
 class Sources:
     """Files below the folder of the top manifest; meshes with the same content are one object."""
 
-    def __init__(self, top: Path, problems: Problems, allow_outside: bool):
+    def __init__(
+        self, top: Path, problems: Problems, allow_outside: bool, earlier: Mapping[_Request, Mesh] | None = None
+    ):
         self.top = top
         self.problems = problems
         self.files: set[str] = set()
         self._outside = allow_outside
+        self._earlier = earlier or {}
+        self._texts: dict[Path, str] = {}
+        self._data: dict[Path, tuple[bytes, str]] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
         self._built: dict[tuple[Path, str | None, float, float | None, bool], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
@@ -59,8 +105,27 @@ class Sources:
             message = f"{what} {stated} " + ("is a folder" if path.is_dir() else "does not exist")
             self.problems.add(message, file, line, remedy)
             return None
-        self.files.add(self.shown(path))
+        self.text(path)
         return path
+
+    def text(self, path: Path) -> None:
+        """Note a file that is read, with its content before it is read."""
+        self.files.add(self.shown(path))
+        if path.suffix.lower() not in _SUFFIXES and path not in self._texts:
+            with contextlib.suppress(OSError):
+                self._texts[path] = content(path.read_bytes())
+
+    def contents(self) -> dict[str, str]:
+        """SHA-256 (hex) of every file that was read; {} where one changed meanwhile, or was not read."""
+        found = {self.shown(path): digest for path, (_, digest) in self._data.items()}
+        for path, digest in self._texts.items():
+            try:
+                if content(path.read_bytes()) != digest:
+                    return {}
+            except OSError:
+                return {}
+            found[self.shown(path)] = digest
+        return found if set(found) == self.files else {}
 
     def mesh(
         self,
@@ -76,23 +141,37 @@ class Sources:
         key = (path, body, metres, weld, solid)
         if key not in self._built:
             try:
-                raw = self._read(path)
-                chosen = raw if body is None else select_body(raw, body)
-                built = build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
+                request = _Request(self.shown(path), self._content(path), body, metres, weld, solid)
+                built = self._earlier.get(request) or self._build(path, body, metres, weld, solid)
                 self._built[key] = self._same.setdefault((built.digest, built.path, body), built)
             except MeshError as error:
                 self._note(error, path, file, line)
                 self._built[key] = None
         return self._built[key]
 
+    def _build(self, path: Path, body: str | None, metres: float, weld: float | None, solid: bool) -> Mesh:
+        from kinform.form.meshes.bodies import select_body
+        from kinform.form.meshes.health import build_mesh
+
+        raw = self._read(path)
+        chosen = raw if body is None else select_body(raw, body)
+        return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
+
+    def _content(self, path: Path) -> str:
+        if path not in self._data:
+            try:
+                data = path.read_bytes()
+            except OSError as error:
+                raise MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")]) from None
+            self._data[path] = data, content(data)
+        return self._data[path][1]
+
     def _read(self, path: Path) -> RawMesh:
         if path not in self._raw:
             try:
-                self._raw[path] = read_raw(path)
+                self._raw[path] = _parsed(path, self._data[path][0])
             except MeshError as error:
                 self._raw[path] = error
-            except OSError as error:
-                self._raw[path] = MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
         found = self._raw[path]
         if isinstance(found, MeshError):
             raise found

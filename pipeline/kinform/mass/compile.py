@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -17,17 +18,23 @@ __all__ = ["compile_mass"]
 
 
 def compile_mass(
-    assembly: Assembly, kinematics: Kinematics, surfaces: dict[str, MeshSurfaces] | None = None
+    assembly: Assembly,
+    kinematics: Kinematics,
+    surfaces: dict[str, MeshSurfaces] | None = None,
+    known: Mapping[str, MassProperties] | None = None,
 ) -> MassReport:
     """Mass, centre of mass and inertia of every part and body, world frame, SI.
 
     `surfaces` (by mesh digest) sharpen the bound of the tessellation's error. A mesh that is not
     watertight, is wound inconsistently or has no density has no mass, and neither has a body that
-    contains it: the reasons are in `problems`.
+    contains it: the reasons are in `problems`. Parts whose properties are `known` are not measured again.
     """
     shapes: dict[str, SolidShape] = {}
     parts = []
     for part in assembly.parts:
+        if known is not None and part.name in known:
+            parts.append(known[part.name])
+            continue
         shape = None
         if part.mesh is not None:
             shape = _shape(part.mesh, shapes, surfaces, assembly)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["SEVERITIES", "CheckReport", "Finding", "Ignored", "RuleOutcome"]
+__all__ = ["SEVERITIES", "CheckReport", "Finding", "Ignored", "RuleOutcome", "verdict"]
 
 SEVERITIES = ("note", "warning", "error")
 
@@ -69,3 +69,17 @@ class CheckReport:
     def inconclusive(self) -> int:
         """How many rules could not be decided."""
         return sum(rule.outcome == "inconclusive" for rule in self.rules)
+
+
+def verdict(report: CheckReport, fail_on: str = "error") -> int:
+    """Exit code of the gate: 0 verified, 1 findings at or above `fail_on`, 2 not verified.
+
+    Not verified: no rule ran, or one was inconclusive. Where 1 and 2 both apply, 1. `fail_on`: note,
+    warning or error; ValueError otherwise.
+    """
+    if fail_on not in SEVERITIES:
+        raise ValueError(f"unknown severity {fail_on!r}: expected one of {', '.join(SEVERITIES)}")
+    level = SEVERITIES.index(fail_on)
+    if any(SEVERITIES.index(finding.severity) >= level for finding in report.findings):
+        return 1
+    return 2 if report.ran == 0 or report.inconclusive else 0

@@ -22,3 +22,8 @@ class Fingerprints:
     """Of the surfaces of each mesh, by mesh digest."""
     pairs: dict[tuple[PartName, PartName], str] = field(default_factory=dict)
     """Of the contacts of each candidate pair, by part names."""
+    files: dict[str, str] = field(default_factory=dict)
+    """SHA-256 (hex) of the content of every file read, by its name relative to the manifest; empty: not known."""
+    lineage: dict[str, str] = field(default_factory=dict)
+    """By stage as above, without surfaces: hash of the files, and of the settings and versions of the code of this
+    stage and all before it. Where it is what a run would give, nothing needs to be looked at; empty: not known."""

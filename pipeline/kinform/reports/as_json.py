@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from kinform.model.design import Design
@@ -15,9 +16,10 @@ __all__ = ["SCHEMA", "document", "render"]
 SCHEMA = "kinform/findings/1"
 
 
-def render(report: CheckReport, design: Design) -> str:
-    """The document as text."""
-    return json.dumps(document(report, design), indent=1, ensure_ascii=False) + "\n"
+def render(report: CheckReport, design: Design, run: Mapping[str, Any] | None = None) -> str:
+    """The document as text; with the account of a `run`, where it was one."""
+    whole = document(report, design) | ({} if run is None else {"run": dict(run)})
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
 def document(report: CheckReport, design: Design) -> dict[str, Any]:

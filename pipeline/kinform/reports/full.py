@@ -6,7 +6,7 @@ import textwrap
 
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.words import one_line, rule_counts, severity_counts, verdict_line, where
+from kinform.reports.words import one_line, place, rule_counts, severity_counts, verdict_line, where
 
 __all__ = ["render"]
 
@@ -35,7 +35,7 @@ def _finding(finding: Finding) -> str:
     facts = {
         "found": finding.found,
         "intended": finding.intended,
-        "place": _place(finding),
+        "place": place(finding),
         "at": where(finding) or None,
     }
     for key, value in facts.items():
@@ -44,12 +44,6 @@ def _finding(finding: Finding) -> str:
     if finding.remedy:
         lines += _wrapped(f"{'remedy:':<10}{one_line(finding.remedy)}", "  ", " " * 12)
     return "\n".join(lines)
-
-
-def _place(finding: Finding) -> str | None:
-    if finding.place is None:
-        return None
-    return "(" + ", ".join(f"{1000.0 * x + 0.0:.4g}" for x in finding.place) + ") mm"
 
 
 def _wrapped(text: str, first: str, rest: str) -> list[str]:

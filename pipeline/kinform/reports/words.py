@@ -6,7 +6,7 @@ from collections import Counter
 
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
-__all__ = ["counted", "one_line", "rule_counts", "severity_counts", "verdict_line", "where"]
+__all__ = ["counted", "details", "one_line", "place", "rule_counts", "severity_counts", "verdict_line", "where"]
 
 
 def counted(number: int, noun: str) -> str:
@@ -24,6 +24,24 @@ def where(finding: Finding) -> str:
     if finding.file is None:
         return ""
     return finding.file if finding.line is None else f"{finding.file}:{finding.line}"
+
+
+def place(finding: Finding) -> str | None:
+    """ "(1, 0, -20) mm", or None."""
+    if finding.place is None:
+        return None
+    return "(" + ", ".join(f"{1000.0 * x + 0.0:.4g}" for x in finding.place) + ") mm"
+
+
+def details(finding: Finding) -> dict[str, str]:
+    """Found, intended, place and remedy, as far as they are known, by these names."""
+    facts = {
+        "found": finding.found,
+        "intended": finding.intended,
+        "place": place(finding),
+        "remedy": finding.remedy,
+    }
+    return {key: value for key, value in facts.items() if value}
 
 
 def severity_counts(report: CheckReport) -> str:

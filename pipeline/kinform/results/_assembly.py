@@ -22,6 +22,7 @@ from kinform.model.assembly import (
     freeze,
 )
 from kinform.model.checks import CheckSettings
+from kinform.model.function import Function
 from kinform.model.tolerances import Tolerances
 from kinform.results import _checks, _function
 from kinform.results._table import (
@@ -43,7 +44,7 @@ from kinform.results._table import (
     write_texts,
 )
 
-__all__ = ["read", "write"]
+__all__ = ["read", "read_header", "write"]
 
 _SOURCE = (text("source_file"), integer("source_line", optional=True))
 _HEADER = (text("name"), text("units"), text("ground"), flag("infer_fasteners"), *_SOURCE)
@@ -120,6 +121,23 @@ def read(group: h5py.Group) -> Assembly:
         files=read_texts(group, "files"),
         notes=read_texts(group, "notes"),
         check=_checks.read(group["check"]) if "check" in group else CheckSettings(),
+    )
+
+
+def read_header(group: h5py.Group) -> Assembly:
+    """The assembly without parts, groups and function: its name, source, files and notes."""
+    (header,) = read_rows(group, "header", _HEADER)
+    return Assembly(
+        **_with_source(header),
+        parts=(),
+        groups=(),
+        assumptions=(),
+        tolerances=Tolerances(),
+        function=Function(),
+        simulation=None,
+        subassemblies=(),
+        files=read_texts(group, "files"),
+        notes=read_texts(group, "notes"),
     )
 
 

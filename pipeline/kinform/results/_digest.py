@@ -39,13 +39,18 @@ def digest(*values: Any) -> str:
 
 
 def _feed(hasher: Any, value: Any) -> None:
-    if value is None or isinstance(value, (bool, int, np.bool_, np.integer)):
-        hasher.update(f"{int(value) if value is not None else value};".encode())
-    elif isinstance(value, float):
-        hasher.update(b"f" + struct.pack("<d", value))
-    elif isinstance(value, str):
+    kind = type(value)
+    if kind is float:
+        hasher.update(b"f" + _PACKED(value))
+    elif kind is np.ndarray:
+        array = value if value.dtype.str[0] in "<|" and value.flags.c_contiguous else _plain(value)
+        hasher.update(f"a{array.dtype.str}{value.shape};".encode())
+        hasher.update(array.data if array.size else b"")
+    elif kind is str:
         encoded = value.encode(errors="surrogatepass")
         hasher.update(f"s{len(encoded)};".encode() + encoded)
+    elif value is None or isinstance(value, (bool, int, np.bool_, np.integer)):
+        hasher.update(f"{int(value) if value is not None else value};".encode())
     elif isinstance(value, (tuple, list)):
         hasher.update(f"t{len(value)};".encode())
         for item in value:
@@ -55,13 +60,25 @@ def _feed(hasher: Any, value: Any) -> None:
         for key in sorted(value):
             _feed(hasher, key)
             _feed(hasher, value[key])
-    elif isinstance(value, np.ndarray):
-        array = np.ascontiguousarray(value, dtype=value.dtype.newbyteorder("<"))
-        hasher.update(f"a{array.dtype.str}{np.shape(value)};".encode() + array.tobytes())
     elif dataclasses.is_dataclass(value):
         _feed_record(hasher, value)
+    elif isinstance(value, float):
+        _feed(hasher, float(value))
+    elif isinstance(value, str):
+        _feed(hasher, str(value))
+    elif isinstance(value, np.ndarray):
+        _feed(hasher, np.asarray(value))
     else:
-        raise TypeError(f"cannot hash a {type(value).__name__}")
+        raise TypeError(f"cannot hash a {kind.__name__}")
+
+
+_PACKED = struct.Struct("<d").pack
+
+
+def _plain(array: Any) -> Any:
+    """The array in C order and little-endian."""
+    found = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
+    return found.reshape(np.shape(array))
 
 
 def _feed_record(hasher: Any, record: Any) -> None:

@@ -31,9 +31,11 @@ from kinform.results import (
     _simulation,
     _store,
     _surfaces,
+    _table,
+    lineage,
 )
 
-__all__ = ["SCHEMA", "check_output", "read", "to_bytes", "write"]
+__all__ = ["SCHEMA", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
 SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"
@@ -110,12 +112,18 @@ def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
     group = file.create_group(name)
     group.attrs["schema"] = f"{SCHEMA}/{name}"
     group.attrs["fingerprint"] = marks.stages.get(_STAGE_OF.get(name, name), "")
+    if name in marks.lineage:
+        group.attrs["lineage"] = marks.lineage[name]
     return group
 
 
 def _write_groups(file: h5py.File, design: Design) -> None:
     marks, contacts, kinematics = design.fingerprints, design.contacts, design.kinematics
     _assembly.write(_group(file, "assembly", marks), design.assembly)
+    if marks.files:
+        _table.write_texts(
+            file["assembly"], "contents", [f"{hash} {name}" for name, hash in sorted(marks.files.items())]
+        )
     if design.surfaces or contacts is not None:
         _surfaces.write(_group(file, "surfaces", marks), design.surfaces, marks.meshes)
     if contacts is not None:
@@ -135,7 +143,7 @@ def _write_groups(file: h5py.File, design: Design) -> None:
 
 def _read_groups(file: h5py.File) -> Design:
     parts: dict[str, Any] = {"assembly": _assembly.read(file["assembly"])}
-    marks = Fingerprints(stages=_read_marks(file))
+    marks = Fingerprints(stages=_read_marks(file), files=_read_contents(file), lineage=_read_lineage(file))
     if "surfaces" in file:
         parts["surfaces"], meshes = _surfaces.read(file["surfaces"])
         marks = dataclasses.replace(marks, meshes=meshes)
@@ -160,6 +168,43 @@ def _read_groups(file: h5py.File) -> Design:
 def _read_marks(file: h5py.File) -> dict[str, str]:
     marks = {name: str(group.attrs["fingerprint"]) for name, group in file.items() if name not in _STAGE_OF}
     return {name: mark for name, mark in marks.items() if mark}
+
+
+def _read_contents(file: h5py.File) -> dict[str, str]:
+    lines = _table.read_texts(file["assembly"], "contents") if "contents" in file["assembly"] else ()
+    return {name: hash for hash, name in (line.split(" ", 1) for line in lines)}
+
+
+def _read_lineage(file: h5py.File) -> dict[str, str]:
+    return {name: str(group.attrs["lineage"]) for name, group in file.items() if "lineage" in group.attrs}
+
+
+def files_of(path: str | Path) -> tuple[str, ...]:
+    """The files that were read for these results, relative to the manifest; () where there are no such results."""
+    try:
+        with _opened(path) as file:
+            return _table.read_texts(file["assembly"], "files")
+    except (ResultsError, *_DAMAGE):
+        return ()
+
+
+def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) -> Design | None:
+    """What findings are told with, of results that are what a run of the manifest would give; None of others.
+
+    The assembly is without parts, the kinematics without joints. Raises nothing: whatever is wrong with the file or
+    its inputs, a run will tell.
+    """
+    try:
+        with _opened(path) as file:
+            known = _read_lineage(file).get("findings")
+            if not known or known != lineage.current(manifest, _read_contents(file), allow_outside=allow_outside):
+                return None
+            assembly = _assembly.read_header(file["assembly"])
+            bodies = None if assembly.ground is not None else _joints.read_bodies(file["joints"])
+            marks = Fingerprints(lineage=_read_lineage(file))
+            return Design(assembly, kinematics=bodies, report=_findings.read(file["findings"]), fingerprints=marks)
+    except (ResultsError, *_DAMAGE):
+        return None
 
 
 @contextlib.contextmanager

@@ -24,6 +24,7 @@ from kinform.results._table import (
     write_rows,
     write_texts,
 )
+from kinform.results.inputs import only_bodies
 
 __all__ = ["read", "write"]
 
@@ -104,6 +105,11 @@ def read(group: h5py.Group) -> dict[str, Any]:
         "misaligned": tuple(tuple(row.values()) for row in read_rows(group, "misaligned", _MISALIGNED)),
         "couplings": read_records(group, "couplings", _COUPLINGS, Coupling) if "couplings" in group else (),
     }
+
+
+def read_bodies(group: h5py.Group) -> Kinematics:
+    """Which parts move as one, and nothing of how."""
+    return only_bodies(read_records(group, "bodies", _BODIES, Body))
 
 
 def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:

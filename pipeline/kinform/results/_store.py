@@ -1,20 +1,27 @@
 """Replacing a results file: all of the new one or none of it, and never a file that is not ours.
 
 The new bytes go to a temporary file in the same folder, are synchronised to disk, and take the place of
-the old file in one step. Identical bytes leave the file alone and touch its time, so that Make converges.
+the old file in one step. Identical bytes leave the file alone and touch its time, so that Make converges. What a
+killed process left behind is removed by the next that writes in the folder: writers hold a lock on their file.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 import stat
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows: files that are left behind stay
+    fcntl = None  # type: ignore[assignment]
 
 from kinform.errors import Problem, ResultsError
 
 __all__ = ["check_target", "refuse", "replace"]
+
+_PREFIX, _SUFFIX = ".kinform-", ".tmp"
 
 
 def refuse(path: str | Path, message: str, remedy: str) -> ResultsError:
@@ -66,21 +73,59 @@ def _holds(target: Path, data: bytes) -> bool:
 
 
 def _swap(target: Path, data: bytes) -> None:
-    temporary = target.parent / f".kinform-{secrets.token_hex(8)}.tmp"
+    _sweep(target.parent)
+    temporary, handle = _draft(target.parent)
     try:
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-        with open(os.open(temporary, flags, 0o666), "wb") as stream:
+        with open(handle, "wb") as stream:
             stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
-        if target.exists():
-            os.chmod(temporary, stat.S_IMODE(target.stat().st_mode))
-        os.replace(temporary, target)
+            if target.exists():
+                os.chmod(temporary, stat.S_IMODE(target.stat().st_mode))
+            if fcntl is not None:  # still locked: nobody takes it for left behind
+                os.replace(temporary, target)
+        if fcntl is None:
+            os.replace(temporary, target)
     except BaseException:
         with contextlib.suppress(OSError):
             temporary.unlink()
         raise
     _synchronise(target.parent)
+
+
+def _draft(folder: Path) -> tuple[Path, int]:
+    """A new temporary file, open for writing and locked for as long as it is open."""
+    while True:
+        path = folder / f"{_PREFIX}{os.urandom(8).hex()}{_SUFFIX}"
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+        if fcntl is None:
+            return path, handle
+        with contextlib.suppress(OSError):  # a file system without locks: `_sweep` cannot lock either
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        if path.exists():
+            return path, handle
+        os.close(handle)  # swept before it was locked
+
+
+def _sweep(folder: Path) -> None:
+    """Remove temporary files that nobody writes any more: their process was killed."""
+    if fcntl is None:
+        return
+    with contextlib.suppress(OSError):
+        for entry in sorted(os.listdir(folder)):
+            if entry.startswith(_PREFIX) and entry.endswith(_SUFFIX):
+                _remove_unless_locked(folder / entry)
+
+
+def _remove_unless_locked(path: Path) -> None:
+    assert fcntl is not None
+    with contextlib.suppress(OSError):
+        handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            path.unlink()
+        finally:
+            os.close(handle)
 
 
 def _synchronise(folder: Path) -> None:

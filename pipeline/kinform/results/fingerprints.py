@@ -6,7 +6,11 @@ that runs: no time of a file, no path, no order of events. Equal fingerprints ar
 
 from __future__ import annotations
 
+import functools
 import importlib
+import pkgutil
+import re
+import sys
 from collections.abc import Mapping, Sequence
 
 from kinform._version import __version__
@@ -17,7 +21,18 @@ from kinform.model.tolerances import Tolerances
 from kinform.results import inputs
 from kinform.results._digest import digest
 
-__all__ = ["Inputs", "changes", "listed", "mark", "of_assembly", "of_mesh", "of_pair", "of_parts", "of_stage"]
+__all__ = [
+    "Inputs",
+    "changes",
+    "listed",
+    "mark",
+    "of_assembly",
+    "of_mesh",
+    "of_pair",
+    "of_parts",
+    "of_stage",
+    "versions_of",
+]
 
 Inputs = Mapping[str, str]
 """Hash of each input, by its name in words."""
@@ -41,8 +56,31 @@ _ASSEMBLY_FIELDS = (
 
 def mark(stage: str, found: Inputs) -> str:
     """The fingerprint of a result of this stage with these inputs, computed by the present code."""
-    versions = [importlib.import_module(f"kinform.{name}").CODE_VERSION for name in _CODE[stage]]
-    return digest(stage, __version__, versions, dict(found))
+    return digest(stage, __version__, versions_of(stage), dict(found))
+
+
+def versions_of(stage: str) -> list[int]:
+    """The versions of all code that decides the result of a stage; imports none of it."""
+    return [_version_of(name) for name in _CODE[stage]]
+
+
+def _version_of(package: str) -> int:
+    module = sys.modules.get(f"kinform.{package}")
+    version = getattr(module, "CODE_VERSION", None)  # not there yet while the package is being imported
+    return _stated_version(package) if version is None else int(version)
+
+
+@functools.cache
+def _stated_version(package: str) -> int:
+    """As the text of the package says, since importing it takes longer than a run that reuses everything."""
+    try:
+        text = pkgutil.get_data("kinform", f"{package}/__init__.py") or b""
+    except OSError:  # compiled only
+        text = b""
+    stated = re.search(rb"^CODE_VERSION(?:: int)? = (\d+)$", text, re.MULTILINE)
+    if stated is not None:
+        return int(stated[1])
+    return int(importlib.import_module(f"kinform.{package}").CODE_VERSION)
 
 
 def of_assembly(assembly: Assembly) -> Inputs:

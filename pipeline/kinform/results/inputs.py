@@ -15,7 +15,7 @@ import numpy as np
 from kinform.model.assembly import Assembly, Mesh, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
-from kinform.model.kinematics import ConstraintMatrix, Kinematics, Misfit, Mobility
+from kinform.model.kinematics import Body, ConstraintMatrix, Kinematics, Misfit, Mobility
 
 __all__ = ["assembly_for", "bare_mesh", "only_bodies"]
 
@@ -32,13 +32,13 @@ def bare_mesh(mesh: Mesh) -> Mesh:
     return replace(mesh, path="", body=None)
 
 
-def only_bodies(kinematics: Kinematics) -> Kinematics:
+def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:
     """Which parts move as one, and nothing of how."""
     zero = np.zeros(0)
     none = np.zeros(0, dtype=np.int64)
     matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)
-    mobility = Mobility(0, None, 0, 0, 0, 0, np.zeros((0, len(kinematics.bodies), 6)), (), ())
-    return Kinematics(kinematics.bodies, (), matrix, mobility, Misfit())
+    mobility = Mobility(0, None, 0, 0, 0, 0, np.zeros((0, len(bodies), 6)), (), ())
+    return Kinematics(bodies, (), matrix, mobility, Misfit())
 
 
 def _shapes(assembly: Assembly) -> Assembly:

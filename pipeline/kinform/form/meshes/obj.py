@@ -11,7 +11,6 @@ import math
 import re
 from collections.abc import Iterator
 from itertools import chain
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +45,8 @@ class _Lines:
         self.faults: list[Fault] = []
 
 
-def read_obj(path: Path) -> RawMesh:
-    """Read an OBJ file; raises MeshError with lines, or OSError where the file cannot be opened."""
-    data = path.read_bytes()
+def read_obj(data: bytes) -> RawMesh:
+    """Facets of the bytes of an OBJ file; raises MeshError with lines."""
     if b"\0" in data[:4096]:
         raise MeshError([Fault("is no OBJ file: it holds binary data", REEXPORT)])
     return parse_obj(data.decode("utf-8", errors="replace"))

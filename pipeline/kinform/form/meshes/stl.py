@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from itertools import chain
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,18 +27,16 @@ _WORDS = {
 }  # fmt: skip
 
 
-def read_stl(path: Path) -> RawMesh:
-    """Read an STL file; raises MeshError, or OSError where the file cannot be opened."""
-    size = path.stat().st_size
-    with path.open("rb") as file:
-        head = file.read(1024)
-        count = int.from_bytes(head[80:84], "little") if len(head) >= _HEADER else None
-        if count is not None and size >= _HEADER + _RECORD.itemsize * count and not _is_text(head):
-            return parse_binary(head + file.read())
-        if count is not None and size == _HEADER + _RECORD.itemsize * count:
-            return parse_binary(head + file.read())
-        if _is_text(head):
-            return parse_ascii((head + file.read()).decode("utf-8", errors="replace"))
+def read_stl(data: bytes) -> RawMesh:
+    """Facets of the bytes of an STL file; raises MeshError."""
+    size, head = len(data), data[:1024]
+    count = int.from_bytes(head[80:84], "little") if len(head) >= _HEADER else None
+    if count is not None and size >= _HEADER + _RECORD.itemsize * count and not _is_text(head):
+        return parse_binary(data)
+    if count is not None and size == _HEADER + _RECORD.itemsize * count:
+        return parse_binary(data)
+    if _is_text(head):
+        return parse_ascii(data.decode("utf-8", errors="replace"))
     raise MeshError([_wrong_size(size, count)])
 
 

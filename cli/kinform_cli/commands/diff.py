@@ -1,0 +1,65 @@
+"""`kinform diff`: what changed in behaviour between two results files."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from kinform_cli import console, files
+from kinform_cli.options import Debug, Quiet, Tolerances, examples
+
+if TYPE_CHECKING:
+    from kinform.changes import Tolerance
+
+__all__ = ["EXAMPLES", "DiffFormat", "diff", "tolerance"]
+
+EXAMPLES = examples(
+    "kinform diff before.h5 after.h5",
+    "kinform diff before.h5 after.h5 --tolerance 0.1mm --tolerance 1%",
+    "kinform diff before.h5 after.h5 --format md > change.md",
+)
+
+
+class DiffFormat(StrEnum):
+    """How changes are printed."""
+
+    full = "full"
+    json = "json"
+    md = "md"
+
+
+def diff(
+    before: Annotated[Path, typer.Argument(metavar="A.h5", show_default=False, help="Results file before.")],
+    after: Annotated[Path, typer.Argument(metavar="B.h5", show_default=False, help="Results file after.")],
+    format: Annotated[DiffFormat, typer.Option("--format", "-f", help="json: SI and radians.")] = DiffFormat.full,
+    tolerances: Tolerances = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Say what changed in behaviour: joints, axes, freedoms, ranges, masses, overlaps, findings.
+
+    Exit code 0: the same behaviour.
+    1: something changed beyond the tolerances.
+    2: not verified: one of the files lacks what the other has, or the input is bad.
+    """
+    within = tolerance(tolerances)
+    from kinform import changes
+
+    found = changes.compare(changes.snapshot(files.read(before)), changes.snapshot(files.read(after)), within)
+    console.emit(changes.render(found, format.value))
+    raise typer.Exit(found.code)
+
+
+def tolerance(stated: list[str] | None) -> Tolerance | None:
+    """The tolerances of the command line; a usage error where one is none."""
+    if not stated:
+        return None
+    from kinform.changes import Tolerance
+
+    try:
+        return Tolerance.of(stated)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--tolerance") from None

@@ -1,0 +1,46 @@
+"""`kinform lock`: keep the derived behaviour, once accepted, in a file that people review."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinform_cli import console, files
+from kinform_cli.commands.diff import tolerance
+from kinform_cli.errors import refuse
+from kinform_cli.options import Debug, Quiet, Results, Tolerances, examples
+from kinform_cli.text import count
+
+__all__ = ["EXAMPLES", "lock"]
+
+EXAMPLES = examples(
+    "kinform lock arm.h5 -o behaviour.lock.json",
+    "kinform lock arm.h5 -o behaviour.lock.json --tolerance 0.05mm --tolerance 1%",
+    "kinform check arm.h5 --lock behaviour.lock.json",
+)
+
+
+def lock(
+    source: Results,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", show_default=False, help="Lock file (JSON) to write.")
+    ],
+    tolerances: Tolerances = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Lock the behaviour: bodies, joints, axes, ranges, mobility, masses, overlaps, as they are now.
+
+    Values are rounded to a tenth of the tolerances; those stand in the file and hold when it is checked.
+    """
+    within = tolerance(tolerances)
+    files.check_text_output(output, inputs=[source])
+    from kinform import changes
+
+    found = changes.snapshot(files.read(source))
+    if found.joints is None:
+        raise refuse("has no joints to lock", file=source, remedy=f"kinform joints {source} -o {source}")
+    files.write_text(output, changes.write_lock(found) if within is None else changes.write_lock(found, within))
+    console.say(f"{output}: {count(len(found.bodies or ()), 'body', 'bodies')}, {count(len(found.joints), 'joint')}")

@@ -1,0 +1,123 @@
+"""`kinform watch`: run again whenever a file of the design is saved."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinform_cli import console, errors, files
+from kinform_cli.gate import show
+from kinform_cli.options import AllowOutside, Debug, FailOn, FindingsFormat, Jobs, Quiet, Severity, cores, examples
+from kinform_cli.progress import Working
+
+__all__ = ["EXAMPLES", "watch"]
+
+EXAMPLES = examples(
+    "kinform watch arm.toml -o arm.h5",
+    "kinform watch arm.toml -o arm.h5 --fail-on warning",
+    "kinform watch arm.toml -o arm.h5 --max-runs 1    # once",
+)
+
+Stamp = tuple[int, int, int] | None
+
+
+def watch(
+    manifest: Annotated[Path, typer.Argument(metavar="M.toml", show_default=False, help="Manifest of the design.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="F.h5", show_default=False, help="Results file; what is valid is reused."
+        ),
+    ],
+    allow_outside: AllowOutside = False,
+    format: Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")] = (
+        FindingsFormat.concise
+    ),
+    fail_on: FailOn = Severity.error,
+    jobs: Jobs = None,
+    period: Annotated[
+        float, typer.Option("--period", min=0.01, metavar="SECONDS", help="How often the files are looked at.")
+    ] = 0.5,
+    max_runs: Annotated[
+        int | None,
+        typer.Option("--max-runs", min=1, metavar="N", show_default=False, help="Leave after so many runs."),
+    ] = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Run on every save of the manifest or of a file that it names, until Ctrl-C.
+
+    Bad input is reported, and the next save tried. The exit code is that of the last run; as for `run`.
+    """
+    files.check_output(output, inputs=[manifest])
+    code, runs = errors.NOT_VERIFIED, 0
+    try:
+        while True:
+            before = _stamps(_files(manifest, output))
+            code = _run(manifest, output, allow_outside, cores(jobs), format, fail_on)
+            runs += 1
+            if runs == max_runs:
+                break
+            watched = _files(manifest, output)
+            console.say(f"watching {len(watched)} files; Ctrl-C ends")
+            # what was saved while the run went on counts as saved after it
+            seen = {path: before.get(path, stamp) for path, stamp in _stamps(watched).items()}
+            _wait(seen, period)
+    except KeyboardInterrupt:
+        console.say("watching ended")
+    raise typer.Exit(code)
+
+
+def _run(
+    manifest: Path, output: Path, allow_outside: bool, jobs: int, format: FindingsFormat, fail_on: Severity
+) -> int:
+    """One run: prints its findings or its errors; the exit code that it is due."""
+    import kinform
+
+    try:
+        with Working("run") as working:
+            outcome = kinform.run(
+                manifest,
+                output,
+                jobs=jobs,
+                progress=working.step,
+                allow_outside=allow_outside,
+            )
+    except (kinform.KinformError, OSError) as error:
+        return errors.report(error)
+    return show(outcome.gist, format, fail_on, manifest.parent, outcome)
+
+
+def _files(manifest: Path, output: Path) -> list[Path]:
+    """The files of the design as the last results know them, and always the manifest."""
+    from kinform import results
+
+    names = results.files_of(output)
+    return sorted({manifest, *(manifest.parent / name for name in names)})
+
+
+def _stamps(paths: list[Path]) -> dict[Path, Stamp]:
+    """Identity, time and size of each file; None where there is none."""
+    found: dict[Path, Stamp] = {}
+    for path in paths:
+        try:
+            status = path.stat()
+            found[path] = (status.st_ino, status.st_mtime_ns, status.st_size)
+        except OSError:
+            found[path] = None
+    return found
+
+
+def _wait(seen: dict[Path, Stamp], period: float) -> None:
+    """Return when a file is another than was seen, and has not changed for a period: programs save in several steps."""
+    paths = list(seen)
+    while (now := _stamps(paths)) == seen:
+        time.sleep(period)
+    while True:
+        time.sleep(period)
+        if (later := _stamps(paths)) == now:
+            return
+        now = later

@@ -1,0 +1,24 @@
+"""What changed in behaviour: between two designs, or since a designer accepted what was derived (a lock)."""
+
+from __future__ import annotations
+
+from kinform.changes.compare import Change, Comparison, compare
+from kinform.changes.lock import Lock, read_lock, with_lock, write_lock
+from kinform.changes.render import FORMATS, render
+from kinform.changes.snapshot import Snapshot, snapshot
+from kinform.changes.tolerance import Tolerance
+
+__all__ = [
+    "FORMATS",
+    "Change",
+    "Comparison",
+    "Lock",
+    "Snapshot",
+    "Tolerance",
+    "compare",
+    "read_lock",
+    "render",
+    "snapshot",
+    "with_lock",
+    "write_lock",
+]

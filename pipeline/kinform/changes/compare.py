@@ -1,0 +1,368 @@
+"""Two behaviours side by side: which joints changed, which axes moved, which freedoms and masses were gained or lost.
+
+Bodies are matched by their parts, not by their names, so a part that renames a body hides nothing; joints by the
+bodies that they join. An axis that moved is told by the angle between the lines and by their distance, whichever
+way their directions point.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
+from kinform.changes.tolerance import Tolerance
+
+__all__ = ["Change", "Comparison", "compare"]
+
+PARTS = ("bodies", "joints", "mobility", "masses", "interferences", "simulation", "findings")
+"""What is compared, where both know it."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that is not as it was."""
+
+    kind: str
+    """Hyphenated: "joint-type", "axis-moved", "mass", …"""
+    subject: tuple[str, ...]
+    """Names as they are now, or were where it is gone."""
+    message: str
+    """Without the subject: "moved by 0.3 mm"."""
+    before: str | None = None
+    after: str | None = None
+    amount: float | None = None
+    """SI and radians, after less before, or how far."""
+    unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All changes, sorted by kind of subject and name; and what could not be compared."""
+
+    before: str
+    after: str
+    """Names of the assemblies."""
+    changes: tuple[Change, ...]
+    missing: tuple[tuple[str, str], ...]
+    """(what, why) that only one side knows: not verified."""
+    compared: tuple[str, ...]
+    tolerance: Tolerance
+
+    @property
+    def code(self) -> int:
+        """Exit code: 0 the same, 1 something changed, 2 not verified."""
+        if self.changes:
+            return 1
+        return 2 if self.missing or not self.compared else 0
+
+
+def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = None) -> Comparison:
+    """What of `before` is otherwise in `after`, beyond the tolerance."""
+    within = Tolerance() if tolerance is None else tolerance
+    known = {name: (getattr(before, name) is not None, getattr(after, name) is not None) for name in PARTS}
+    both = [name for name, (one, two) in known.items() if one and two]
+    missing = [
+        (name, "not computed " + ("before" if two else "after")) for name, (one, two) in known.items() if one != two
+    ]
+    now = _matched(before, after)
+    steps = {
+        "bodies": lambda: _bodies(before, after, now),
+        "joints": lambda: _joints(before, after, now, within),
+        "mobility": lambda: _mobility(before, after),
+        "masses": lambda: _masses(before, after, now, within),
+        "interferences": lambda: _interferences(before, after, within),
+        "simulation": lambda: _simulation(before, after),
+        "findings": lambda: _findings(before, after),
+    }
+    changes = tuple(change for name in both for change in steps[name]())
+    return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
+
+
+def _matched(before: Snapshot, after: Snapshot) -> dict[str, str]:
+    """By body before: the body after that holds most of its parts, where that is so the other way too."""
+    old, new = dict(before.bodies or ()), dict(after.bodies or ())
+    there = {name: _holder(parts, new) for name, parts in old.items()}
+    back = {name: _holder(parts, old) for name, parts in new.items()}
+    return {name: found for name, found in there.items() if found is not None and back[found] == name}
+
+
+def _holder(parts: tuple[str, ...], bodies: Mapping[str, tuple[str, ...]]) -> str | None:
+    shared = {name: len(set(parts).intersection(own)) for name, own in bodies.items()}
+    most = max(shared.values(), default=0)
+    return min((name for name, count in shared.items() if count == most), default=None) if most else None
+
+
+def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str]) -> Iterator[Change]:
+    old, new = dict(before.bodies or ()), dict(after.bodies or ())
+    for name in sorted(old):
+        if name not in now:
+            into = _holder(old[name], new)
+            if into is None:
+                yield Change("body-gone", (name,), "is gone", ", ".join(old[name]), None)
+            else:
+                yield Change("body-merged", (name,), f"is part of {_q(into)} now", name, into)
+    came_from = {found: name for name, found in now.items()}
+    for name in sorted(new):
+        if name not in came_from:
+            source = _holder(new[name], old)
+            told = "is new" if source is None else f"was part of {_q(source)}"
+            yield Change("body-new", (name,), told, source, ", ".join(new[name]))
+            continue
+        was = came_from[name]
+        if was != name:
+            yield Change("body-renamed", (name,), f"was named {_q(was)}", was, name)
+        added, lost = sorted(set(new[name]) - set(old[was])), sorted(set(old[was]) - set(new[name]))
+        if added:
+            yield Change("body-parts", (name,), f"has {_list(added)} in addition", None, ", ".join(added))
+        if lost:
+            yield Change("body-parts", (name,), f"no longer has {_list(lost)}", ", ".join(lost), None)
+    if before.ground is not None and after.ground != now.get(before.ground, before.ground):
+        yield Change(
+            "ground",
+            (after.ground or "–",),
+            f"is the ground instead of {_q(before.ground)}",
+            before.ground,
+            after.ground,
+        )
+
+
+def _joints(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance) -> Iterator[Change]:
+    into = {name: now.get(name) or _holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
+    new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
+    found = set()
+    for joint in before.joints or ():
+        ends = [into.get(name) for name in joint.bodies]
+        pair = frozenset(str(end) for end in ends)
+        if pair in new and len(pair) == 2:
+            found.add(pair)
+            yield from _joint(joint, new[pair], tuple(str(end) for end in ends) != new[pair].bodies, within)
+        elif len(pair) == 1 and ends[0] is not None:
+            yield Change(
+                "joint-type", (joint.name,), f"became fixed: both are {_q(str(ends[0]))} now",
+                joint.type, "fixed", -float(joint.freedoms), "freedoms",
+            )  # fmt: skip
+        else:
+            yield Change("joint-gone", (joint.name,), f"is gone ({joint.type})", joint.type, None)
+    for pair, joint in sorted(new.items(), key=lambda item: item[1].name):
+        if pair not in found:
+            yield Change("joint-new", (joint.name,), f"is new ({joint.type}, {joint.status})", None, joint.type)
+
+
+def _joint(old: JointState, new: JointState, turned: bool, within: Tolerance) -> Iterator[Change]:
+    subject = (new.name,)
+    if old.type != new.type:
+        less = new.freedoms - old.freedoms
+        told = "" if not less else f", {_freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
+        yield Change(
+            "joint-type", subject, f"was {old.type}, is {new.type}{told}", old.type, new.type, float(less), "freedoms"
+        )
+        return
+    if old.freedoms != new.freedoms:
+        less = new.freedoms - old.freedoms
+        told = f"{_freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
+        yield Change("joint-freedoms", subject, told, str(old.freedoms), str(new.freedoms), float(less), "freedoms")
+    if old.status != new.status:
+        yield Change("joint-status", subject, f"was {old.status}, is {new.status}", old.status, new.status)
+    yield from _axes(subject, "axis", old.axis, new.axis, within)
+    yield from _axes(subject, "second axis", old.axis2, new.axis2, within)
+    if old.centre is not None and new.centre is not None:
+        away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
+        if away > within.length:
+            yield Change(
+                "axis-moved", subject, f"centre moved by {_mm(away)}", _place(old.centre), _place(new.centre), away, "m"
+            )
+    if (old.pitch is None) != (new.pitch is None) or (
+        old.pitch is not None and new.pitch is not None and not within.lengths_agree(old.pitch, new.pitch)
+    ):
+        yield Change("pitch", subject, "has another pitch", _mm_or_none(old.pitch), _mm_or_none(new.pitch))
+    # the value is of the second body relative to the first: exchanged bodies turn the range round
+    lower, upper = (new.lower, new.upper) if not turned else (_minus(new.upper), _minus(new.lower))
+    yield from _range(subject, old, new, lower, upper, within)
+
+
+def _axes(
+    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance
+) -> Iterator[Change]:
+    if old is None or new is None:
+        return
+    one, two = np.array(old.direction), np.array(new.direction)
+    angle = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
+    if angle > within.angle:
+        yield Change(
+            "axis-tilted", subject, f"{what} tilted by {_deg(angle)}", _direction(one), _direction(two), angle, "rad"
+        )
+    if old.point is not None and new.point is not None:
+        # how far the new axis is from where the old one was located
+        arm = np.array(old.point) - np.array(new.point)
+        away = float(np.linalg.norm(arm - two * float(two @ arm)))
+        if away > within.length:
+            yield Change(
+                "axis-moved", subject, f"{what} moved by {_mm(away)}", _place(old.point), _place(new.point), away, "m"
+            )
+
+
+def _range(
+    subject: tuple[str, ...],
+    old: JointState,
+    new: JointState,
+    lower: float | None,
+    upper: float | None,
+    within: Tolerance,
+) -> Iterator[Change]:
+    if old.range_status != new.range_status:
+        told = f"range was {old.range_status}, is {new.range_status}"
+        yield Change("range-status", subject, told, old.range_status, new.range_status)
+    say, agree, unit = (_mm, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
+    for side, one, two in (("lower", old.lower, lower), ("upper", old.upper, upper)):
+        if one is None or two is None or agree(one, two):
+            continue
+        if math.isfinite(one) and math.isfinite(two):
+            told = f"{side} end of the range {_signed(two - one, say)}"
+            yield Change("range", subject, told, say(one), say(two), two - one, unit)
+        else:
+            told = f"{side} end of the range was {_end(one, say)}, is {_end(two, say)}"
+            yield Change("range", subject, told, _end(one, say), _end(two, say))
+
+
+def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
+    old = dict(before.mobility or ())
+    for name, value in after.mobility or ():
+        was = old.get(name)
+        if was == value:
+            continue
+        label = name.replace("_", " ") + ("" if "mobility" in name else " mobility" if name in _FREEDOMS else "")
+        amount = None if was is None or value is None else float(value - was)
+        told = f"{label} was {_or_unknown(was)}, is {_or_unknown(value)}"
+        if amount is not None and name == "effective":
+            told += f": {_freedoms(abs(int(amount)))} {'gained' if amount > 0 else 'lost'}"
+        yield Change("mobility", (name,), told, _or_unknown(was), _or_unknown(value), amount, "freedoms")
+
+
+_FREEDOMS = ("instantaneous", "finite", "effective")
+
+
+def _masses(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance) -> Iterator[Change]:
+    new = {body.name: body for body in after.masses or ()}
+    for old in before.masses or ():
+        name = now.get(old.name, old.name)
+        if name in new:
+            yield from _mass(old, new[name], within)
+
+
+def _mass(old: BodyMass, new: BodyMass, within: Tolerance) -> Iterator[Change]:
+    subject = (new.name,)
+    if (old.mass is None) != (new.mass is None):
+        told = "mass is no longer known" if new.mass is None else "mass is known now"
+        yield Change("mass", subject, told, _kg(old.mass), _kg(new.mass))
+    elif old.mass is not None and new.mass is not None and not within.masses_agree(old.mass, new.mass):
+        told = f"mass {_signed(new.mass - old.mass, _grams)}"
+        yield Change("mass", subject, told, _kg(old.mass), _kg(new.mass), new.mass - old.mass, "kg")
+    if old.centre is not None and new.centre is not None:
+        away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
+        if away > within.length:
+            told = f"centre of mass moved by {_mm(away)}"
+            yield Change("centre-of-mass", subject, told, _place(old.centre), _place(new.centre), away, "m")
+    if old.moments is not None and new.moments is not None:
+        largest = max(max(map(abs, old.moments)), max(map(abs, new.moments)))
+        worst = max(abs(two - one) for one, two in zip(old.moments, new.moments, strict=True))
+        if worst > within.share * largest:
+            told = f"principal moments changed by up to {100.0 * worst / largest:.3g} %"
+            yield Change("inertia", subject, told, _moments(old.moments), _moments(new.moments), worst, "kg·m²")
+
+
+def _interferences(before: Snapshot, after: Snapshot, within: Tolerance) -> Iterator[Change]:
+    old, new = dict(before.interferences or ()), dict(after.interferences or ())
+    for pair in sorted(set(old) | set(new)):
+        if pair not in new:
+            yield Change("interference-gone", pair, "no longer overlap", _mm(old[pair]), None, -old[pair], "m")
+        elif pair not in old:
+            yield Change("interference-new", pair, f"overlap by {_mm(new[pair])}", None, _mm(new[pair]), new[pair], "m")
+        elif not within.lengths_agree(old[pair], new[pair]):
+            told = f"overlap {_signed(new[pair] - old[pair], _mm)}"
+            yield Change("interference", pair, told, _mm(old[pair]), _mm(new[pair]), new[pair] - old[pair], "m")
+
+
+def _simulation(before: Snapshot, after: Snapshot) -> Iterator[Change]:
+    old, new = before.simulation, after.simulation
+    if old is not None and new is not None and old != new:
+        one, two = (" ".join(filter(None, (level, status))) for status, level in (old, new))
+        yield Change("simulation", ("simulation",), f"was {one}, is {two}", one, two)
+
+
+def _findings(before: Snapshot, after: Snapshot) -> Iterator[Change]:
+    old = {(code, subject): (severity, count) for code, subject, severity, count in before.findings or ()}
+    new = {(code, subject): (severity, count) for code, subject, severity, count in after.findings or ()}
+    for key in sorted(set(old) | set(new)):
+        code, subject = key
+        if key not in new:
+            yield Change("finding-gone", (code, *subject), f"{old[key][0]} is gone", old[key][0], None)
+        elif key not in old:
+            yield Change("finding-new", (code, *subject), f"{new[key][0]} is new", None, new[key][0])
+        elif old[key] != new[key]:
+            one, two = (f"{count} × {severity}" for severity, count in (old[key], new[key]))
+            yield Change("finding", (code, *subject), f"was {one}, is {two}", one, two)
+
+
+def _q(name: str) -> str:
+    return f"'{name}'"
+
+
+def _list(names: list[str]) -> str:
+    return ", ".join(map(_q, names))
+
+
+def _freedoms(count: int) -> str:
+    return f"{count} freedom" + ("" if count == 1 else "s")
+
+
+def _minus(value: float | None) -> float | None:
+    return None if value is None else -value
+
+
+def _mm(metres: float) -> str:
+    return f"{1e3 * metres + 0.0:.4g} mm"
+
+
+def _mm_or_none(metres: float | None) -> str | None:
+    return None if metres is None else _mm(metres)
+
+
+def _deg(radians: float) -> str:
+    return f"{math.degrees(radians) + 0.0:.4g}°"
+
+
+def _grams(kilograms: float) -> str:
+    return f"{1e3 * kilograms + 0.0:.4g} g"
+
+
+def _kg(kilograms: float | None) -> str | None:
+    return None if kilograms is None else f"{kilograms:.6g} kg"
+
+
+def _signed(value: float, say: Callable[[float], str]) -> str:
+    text = say(value)
+    return text.replace("-", "−", 1) if value < 0 else f"+{text}"
+
+
+def _end(value: float, say: Callable[[float], str]) -> str:
+    return "unbounded" if math.isinf(value) else say(value)
+
+
+def _or_unknown(value: int | None) -> str:
+    return "unknown" if value is None else str(value)
+
+
+def _direction(axis: np.ndarray) -> str:
+    return "(" + ", ".join(f"{x + 0.0:.4g}" for x in axis) + ")"
+
+
+def _place(point: Vector) -> str:
+    return "(" + ", ".join(f"{1e3 * x + 0.0:.5g}" for x in point) + ") mm"
+
+
+def _moments(moments: Vector) -> str:
+    return "(" + ", ".join(f"{x:.4g}" for x in moments) + ") kg·m²"

@@ -1,0 +1,267 @@
+"""The lock: behaviour that was derived once and that the designer accepted, in a file that people review.
+
+JSON in mm, degrees and grams, each value rounded to a tenth of the tolerance that stands beside it, sorted by name: the
+same behaviour gives the same bytes, and a change of behaviour is a change of a few lines. Findings and motion are
+not in it: a baseline keeps those, and requirements judge these.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from kinform.changes.compare import Change, Comparison, compare
+from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
+from kinform.changes.tolerance import Tolerance
+from kinform.errors import InputError, Problem
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
+
+__all__ = ["ACCEPTED", "CODE", "NAME", "SCHEMA", "Lock", "read_lock", "with_lock", "write_lock"]
+
+SCHEMA = "kinform/behaviour-lock/1"
+CODE, NAME = "KF450", "behaviour-differs-from-lock"
+
+ACCEPTED = Tolerance(length=1e-5, angle=math.radians(0.05), mass=1e-6, share=5e-3)
+"""What a lock lets pass where nothing else is stated: 0.01 mm, 0.05°, 1 mg, 0.5 %."""
+
+_PLACES = 6
+"""Decimals of directions."""
+
+
+@dataclass(frozen=True)
+class Lock:
+    """An accepted behaviour, and what still counts as the same."""
+
+    behaviour: Snapshot
+    tolerance: Tolerance
+    file: str
+
+
+def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
+    """The text of a lock. Raises ValueError where joints are not known."""
+    if behaviour.joints is None or behaviour.bodies is None:
+        raise ValueError("joints are not known")
+    grain = _Grain(tolerance)
+    masses = {body.name: body for body in behaviour.masses or ()}
+    found: dict[str, Any] = {
+        "schema": SCHEMA,
+        "assembly": behaviour.assembly,
+        "tolerances": {
+            "length_mm": _short(1e3 * tolerance.length),
+            "angle_deg": _short(math.degrees(tolerance.angle)),
+            "mass_g": _short(1e3 * tolerance.mass),
+            "mass_percent": _short(100.0 * tolerance.share),
+        },
+        "mobility": dict(behaviour.mobility or ()),
+        "ground": behaviour.ground,
+        "bodies": [
+            {"name": name, "parts": list(parts), **(_mass(masses[name], grain) if name in masses else {})}
+            for name, parts in behaviour.bodies
+        ],
+        "joints": [_joint(joint, grain) for joint in behaviour.joints],
+    }
+    if behaviour.interferences is not None:
+        found["overlaps"] = [
+            {"parts": list(parts), "depth_mm": grain.length(depth)} for parts, depth in behaviour.interferences
+        ]
+    return _dumped(found) + "\n"
+
+
+def read_lock(text: str, file: str) -> Lock:
+    """The lock in a text; raises InputError, naming `file`, where it is none."""
+    try:
+        found = json.loads(text)
+        if not isinstance(found, dict) or found.get("schema") != SCHEMA:
+            stated = found.get("schema") if isinstance(found, dict) else None
+            raise ValueError(f"its schema is {stated!r}, not {SCHEMA!r}")
+        return Lock(_read(found), _read_tolerance(found["tolerances"]), file)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        told = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
+        problem = Problem(f"this is no lock of kinform: {told}", file, None, "write it anew: kinform lock F.h5 -o FILE")
+        raise InputError([problem]) from None
+
+
+def with_lock(report: CheckReport, design: Design, lock: Lock) -> CheckReport:
+    """The report with a finding for each difference from the lock, and what became of the rule KF450."""
+    from kinform.changes.snapshot import snapshot
+
+    found = compare(lock.behaviour, snapshot(design), lock.tolerance)
+    findings = tuple(_finding(change, lock) for change in found.changes)
+    kept = [finding for finding in report.findings if finding.code != CODE]
+    after = sorted([*kept, *findings], key=lambda finding: (finding.code, finding.subject))
+    outcome = _outcome(found, lock)
+    rules = {rule.code: rule for rule in report.rules} | {CODE: outcome}
+    return dataclasses.replace(report, findings=tuple(after), rules=tuple(rules[code] for code in sorted(rules)))
+
+
+def _outcome(found: Comparison, lock: Lock) -> RuleOutcome:
+    if found.changes:
+        return RuleOutcome(CODE, NAME, "failed")
+    lacking = [what for what, why in found.missing if why.endswith("after")]
+    if lacking:
+        return RuleOutcome(CODE, NAME, "inconclusive", f"{', '.join(lacking)} of {lock.file} have not been computed")
+    return RuleOutcome(CODE, NAME, "passed")
+
+
+def _finding(change: Change, lock: Lock) -> Finding:
+    return Finding(
+        CODE, NAME, "error", change.subject, f"{change.message}, against {lock.file}", change.after, change.before,
+        file=lock.file, remedy="Repair the design; or accept the change: kinform lock F.h5 -o FILE, and review the file.",
+    )  # fmt: skip
+
+
+class _Grain:
+    """Rounds to a tenth of a tolerance, in mm, degrees and grams."""
+
+    def __init__(self, tolerance: Tolerance):
+        self.tolerance = tolerance
+
+    def length(self, metres: float) -> float:
+        return _rounded(1e3 * metres, 1e2 * self.tolerance.length)
+
+    def angle(self, radians: float) -> float:
+        return _rounded(math.degrees(radians), 0.1 * math.degrees(self.tolerance.angle))
+
+    def mass(self, kilograms: float) -> float:
+        grain = 0.1 * max(1e3 * self.tolerance.mass, self.tolerance.share * 1e3 * kilograms)
+        return _rounded(1e3 * kilograms, grain)
+
+    def moments(self, values: Vector) -> list[float]:
+        """g·mm²."""
+        grain = 1e9 * 0.1 * self.tolerance.share * max(map(abs, values))
+        return [_rounded(1e9 * value, grain) for value in values]
+
+    def place(self, point: Vector) -> list[float]:
+        return [self.length(x) for x in point]
+
+
+def _rounded(value: float, grain: float) -> float:
+    """The nearest decimal number as coarse as the grain allows; whole numbers as such."""
+    if not math.isfinite(value) or grain <= 0.0:
+        return value
+    found = round(value, -math.floor(math.log10(grain))) + 0.0
+    return int(found) if found == int(found) and abs(found) < 2**53 else found
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.9g}")
+
+
+def _mass(body: BodyMass, grain: _Grain) -> dict[str, Any]:
+    return {
+        "mass_g": None if body.mass is None else grain.mass(body.mass),
+        "centre_of_mass_mm": None if body.centre is None else grain.place(body.centre),
+        "principal_moments_g_mm2": None if body.moments is None else grain.moments(body.moments),
+    }
+
+
+def _joint(joint: JointState, grain: _Grain) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "name": joint.name, "bodies": list(joint.bodies), "type": joint.type, "status": joint.status,
+        "freedoms": joint.freedoms,
+    }  # fmt: skip
+    for name, axis in (("axis", joint.axis), ("axis2", joint.axis2)):
+        if axis is not None:
+            found[name] = [round(x, _PLACES) + 0.0 for x in axis.direction]
+    point = joint.centre if joint.axis is None or joint.axis.point is None else joint.axis.point
+    if point is not None:
+        found["point_mm"] = grain.place(point)
+    if joint.pitch is not None:
+        found["pitch_mm"] = grain.length(joint.pitch)
+    if joint.range_status != "unknown" or joint.lower is not None or joint.upper is not None:
+        unit, say = ("mm", grain.length) if joint.slides else ("deg", grain.angle)
+        limits = [None if x is None or math.isinf(x) else say(x) for x in (joint.lower, joint.upper)]
+        found["range"] = {"status": joint.range_status, unit: limits}
+    return found
+
+
+def _dumped(value: Any) -> str:
+    """JSON with a line a body, a joint and an overlap."""
+    lines = []
+    for key, item in value.items():
+        if isinstance(item, list) and item:
+            inner = ",\n  ".join(json.dumps(entry, ensure_ascii=False, allow_nan=False) for entry in item)
+            lines.append(f" {json.dumps(key)}: [\n  {inner}\n ]")
+        else:
+            lines.append(f" {json.dumps(key)}: {json.dumps(item, ensure_ascii=False, allow_nan=False)}")
+    return "{\n" + ",\n".join(lines) + "\n}"
+
+
+def _read(found: Mapping[str, Any]) -> Snapshot:
+    bodies, joints = found["bodies"], found["joints"]
+    weighed = [body for body in bodies if "mass_g" in body]
+    overlaps = found.get("overlaps")
+    return Snapshot(
+        assembly=str(found["assembly"]),
+        bodies=tuple((str(body["name"]), tuple(map(str, body["parts"]))) for body in bodies),
+        ground=found["ground"],
+        joints=tuple(_read_joint(joint) for joint in joints),
+        mobility=tuple(found["mobility"].items()),
+        masses=tuple(_read_mass(body) for body in weighed) if weighed else None,
+        interferences=None
+        if overlaps is None
+        else tuple(
+            ((str(item["parts"][0]), str(item["parts"][1])), 1e-3 * float(item["depth_mm"])) for item in overlaps
+        ),
+        simulation=None,
+        findings=None,
+    )
+
+
+def _read_mass(body: Mapping[str, Any]) -> BodyMass:
+    mass = body["mass_g"]
+    return BodyMass(
+        str(body["name"]),
+        None if mass is None else 1e-3 * float(mass),
+        _read_vector(body.get("centre_of_mass_mm"), 1e-3),
+        _read_vector(body.get("principal_moments_g_mm2"), 1e-9),
+    )
+
+
+def _read_joint(joint: Mapping[str, Any]) -> JointState:
+    kind, axis = str(joint["type"]), _read_vector(joint.get("axis"), 1.0)
+    point = _read_vector(joint.get("point_mm"), 1e-3)
+    limits = joint.get("range", {})
+    scale = 1e-3 if kind == "prismatic" else math.pi / 180.0
+    lower, upper = limits.get("mm", limits.get("deg", (None, None)))
+    centred = kind in ("spherical", "universal")
+    first, second = joint["bodies"]
+    pitch = joint.get("pitch_mm")
+    free = limits.get("status") == "unbounded"
+    return JointState(
+        name=str(joint["name"]),
+        bodies=(str(first), str(second)),
+        type=kind,
+        status=str(joint["status"]),
+        freedoms=int(joint["freedoms"]),
+        axis=None if axis is None else Axis(axis, None if centred else point),
+        axis2=None if "axis2" not in joint else Axis(_vector(joint["axis2"], 1.0), None),
+        centre=point if centred else None,
+        pitch=None if pitch is None else 1e-3 * float(pitch),
+        lower=(-math.inf if free else None) if lower is None else scale * float(lower),
+        upper=(math.inf if free else None) if upper is None else scale * float(upper),
+        range_status=str(limits.get("status", "unknown")),
+    )
+
+
+def _read_vector(values: Iterable[float] | None, scale: float) -> Vector | None:
+    return None if values is None else _vector(values, scale)
+
+
+def _vector(values: Iterable[float], scale: float) -> Vector:
+    x, y, z = (scale * float(value) for value in values)
+    return (x, y, z)
+
+
+def _read_tolerance(found: Mapping[str, Any]) -> Tolerance:
+    return Tolerance(
+        length=1e-3 * float(found["length_mm"]),
+        angle=math.radians(float(found["angle_deg"])),
+        mass=1e-3 * float(found["mass_g"]),
+        share=1e-2 * float(found["mass_percent"]),
+    )

@@ -1,0 +1,158 @@
+"""The behaviour of a design in the few values that a designer would recognise: what `diff` compares and a lock keeps.
+
+SI and radians, world frame. A group of values is None where the stage that gives it has not run.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.model.design import Design
+from kinform.model.kinematics import Joint
+from kinform.model.mass import MassProperties
+
+__all__ = ["Axis", "BodyMass", "JointState", "Snapshot", "snapshot"]
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A line: unit direction, and a point on it (m), None where only the direction matters."""
+
+    direction: Vector
+    point: Vector | None
+
+
+@dataclass(frozen=True)
+class JointState:
+    """A joint between two bodies."""
+
+    name: str
+    bodies: tuple[str, str]
+    type: str
+    status: str
+    freedoms: int
+    axis: Axis | None
+    axis2: Axis | None
+    centre: Vector | None
+    """Of a spherical joint."""
+    pitch: float | None
+    lower: float | None
+    upper: float | None
+    """rad, or m of a prismatic joint."""
+    range_status: str
+
+    @property
+    def slides(self) -> bool:
+        """Whether its range is a length."""
+        return self.type == "prismatic"
+
+
+@dataclass(frozen=True)
+class BodyMass:
+    """Mass (kg), centre of mass (m) and principal moments (kg·m²) of a body; None where they are not known."""
+
+    name: str
+    mass: float | None
+    centre: Vector | None
+    moments: Vector | None
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """All of it, each sorted by name."""
+
+    assembly: str
+    bodies: tuple[tuple[str, tuple[str, ...]], ...] | None
+    """(name, parts)."""
+    ground: str | None
+    joints: tuple[JointState, ...] | None
+    mobility: tuple[tuple[str, int | None], ...] | None
+    masses: tuple[BodyMass, ...] | None
+    interferences: tuple[tuple[tuple[str, str], float], ...] | None
+    """(parts, greatest depth in m) of overlaps that are no press fit."""
+    simulation: tuple[str, str] | None
+    """Status and level."""
+    findings: tuple[tuple[str, tuple[str, ...], str, int], ...] | None
+    """(code, subject, severity, how many)."""
+
+
+def snapshot(design: Design) -> Snapshot:
+    """The behaviour of a design as far as it has been derived."""
+    kinematics, report = design.kinematics, design.report
+    return Snapshot(
+        assembly=design.assembly.name,
+        bodies=None
+        if kinematics is None
+        else tuple((str(b.name), tuple(map(str, b.parts))) for b in kinematics.bodies),
+        ground=None if kinematics is None else next((str(b.name) for b in kinematics.bodies if b.ground), None),
+        joints=None if kinematics is None else tuple(_joint(joint) for joint in kinematics.joints),
+        mobility=None if kinematics is None else _counts(design),
+        masses=None if design.mass is None else tuple(_mass(body) for body in design.mass.bodies),
+        interferences=None if design.contacts is None else _overlaps(design),
+        simulation=None if design.simulation is None else (design.simulation.status, design.simulation.level),
+        findings=None
+        if report is None
+        else tuple(
+            (code, subject, severity, count)
+            for (code, subject, severity), count in sorted(
+                Counter((f.code, f.subject, f.severity) for f in report.findings).items()
+            )
+        ),
+    )
+
+
+def _joint(joint: Joint) -> JointState:
+    line = joint.type in ("revolute", "screw", "cylindrical")
+    point = _vector(joint.point)
+    return JointState(
+        name=str(joint.name),
+        bodies=(str(joint.bodies[0]), str(joint.bodies[1])),
+        type=joint.type,
+        status=joint.status,
+        freedoms=joint.freedoms,
+        axis=_axis(joint.axis, point if line else None),
+        axis2=_axis(joint.axis2, None),
+        centre=point if joint.type in ("spherical", "universal") else None,
+        pitch=joint.pitch,
+        lower=joint.range_lower,
+        upper=joint.range_upper,
+        range_status=joint.range_status,
+    )
+
+
+def _counts(design: Design) -> tuple[tuple[str, int | None], ...]:
+    from kinform.reports.json_views import mobility_counts
+
+    assert design.kinematics is not None
+    return tuple(mobility_counts(design.kinematics.mobility).items())
+
+
+def _mass(item: MassProperties) -> BodyMass:
+    return BodyMass(item.name, item.mass, _vector(item.centre_of_mass), _vector(item.principal_moments))
+
+
+def _overlaps(design: Design) -> tuple[tuple[tuple[str, str], float], ...]:
+    assert design.contacts is not None
+    deepest: dict[tuple[str, str], float] = {}
+    for overlap in design.contacts.interferences:
+        if not overlap.mated:
+            pair = (str(overlap.parts[0]), str(overlap.parts[1]))
+            deepest[pair] = max(overlap.depth, deepest.get(pair, 0.0))
+    return tuple(sorted(deepest.items()))
+
+
+def _axis(direction: np.ndarray | None, point: Vector | None) -> Axis | None:
+    found = _vector(direction)
+    return None if found is None else Axis(found, point)
+
+
+def _vector(values: np.ndarray | None) -> Vector | None:
+    if values is None or not np.all(np.isfinite(values)):
+        return None
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)

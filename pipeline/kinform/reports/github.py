@@ -1,0 +1,51 @@
+"""Workflow commands of GitHub Actions: an annotation a finding, at its line of the manifest.
+
+No line begins with text that a user chose: a part cannot be named so that it becomes a command.
+"""
+
+from __future__ import annotations
+
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.reports.words import details, one_line, rule_counts, severity_counts, verdict_line
+
+__all__ = ["render"]
+
+_COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """Annotations of findings, then of rules that could not decide, then a line with the verdict for the log."""
+    manifest = design.assembly.source.file
+    lines = [_finding(finding, manifest) for finding in report.findings]
+    lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
+    lines.append(
+        f"{verdict_line(report)}; {severity_counts(report)}; {rule_counts(report)}; {one_line(design.assembly.name)}"
+    )
+    return "\n".join(lines) + "\n"
+
+
+def _finding(finding: Finding, manifest: str) -> str:
+    title = f"{finding.code} {finding.rule}: {', '.join(map(one_line, finding.subject))}"
+    text = "\n".join([finding.message, *(f"{key}: {value}" for key, value in details(finding).items())])
+    return _command(_COMMANDS[finding.severity], finding.file or manifest, finding.line, title, text)
+
+
+def _undecided(rule: RuleOutcome, manifest: str) -> str:
+    return _command("warning", manifest, None, f"{rule.code} {rule.rule}: could not decide", rule.reason)
+
+
+def _command(name: str, file: str, line: int | None, title: str, text: str) -> str:
+    properties = {"file": file, "line": None if line is None else str(line), "title": title}
+    stated = ",".join(f"{key}={_property(value)}" for key, value in properties.items() if value)
+    return f"::{name} {stated}::{_data(text)}"
+
+
+def _data(text: str) -> str:
+    """As the runner decodes it; other control characters are escaped as in Python."""
+    lines = [one_line(line) for line in text.split("\n")]
+    return "\n".join(lines).replace("%", "%25").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -1,0 +1,83 @@
+"""JUnit XML, for the test views of CI: a test case a rule, of a rule with findings a case a finding.
+
+Findings at or above the severity that fails the gate are failures; lesser ones are told by cases that pass. A
+rule that could not decide is an error, one that does not apply is skipped; so failures are exit code 1 and errors
+alone exit code 2. The text is ASCII with character references; what XML 1.0 cannot carry is escaped as in Python.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from xml.etree import ElementTree
+
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
+from kinform.reports.words import details, verdict_line
+
+__all__ = ["render"]
+
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
+    """The document: one suite; `fail_on` is the least severity that is a failure."""
+    failing = SEVERITIES[SEVERITIES.index(fail_on) :]
+    suite = ElementTree.Element("testsuite", name=_legal(design.assembly.name))
+    for rule in report.rules:
+        own = [finding for finding in report.findings if finding.code == rule.code]
+        for finding in own:
+            _case_of_finding(suite, finding, finding.severity in failing)
+        if not own or rule.outcome == "inconclusive":
+            _case_of_rule(suite, rule)
+    known = {rule.code for rule in report.rules}
+    for finding in report.findings:
+        if finding.code not in known:
+            _case_of_finding(suite, finding, finding.severity in failing)
+    if report.ran == 0:
+        case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="rules ran")
+        ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report))
+    found = Counter(child.tag for case in suite for child in case)
+    counts = {"tests": len(suite), "failures": found["failure"], "errors": found["error"], "skipped": found["skipped"]}
+    whole = ElementTree.Element("testsuites", name="kinform")
+    whole.append(suite)
+    for element in (whole, suite):
+        for name, count in counts.items():
+            if element is suite or name != "skipped":
+                element.set(name, str(count))
+    ElementTree.indent(whole, " ")
+    text: str = ElementTree.tostring(whole, "unicode")
+    head = '<?xml version="1.0" encoding="UTF-8"?>\n'
+    return head + text.encode("ascii", "xmlcharrefreplace").decode("ascii") + "\n"
+
+
+def _case_of_finding(suite: ElementTree.Element, finding: Finding, fails: bool) -> None:
+    subject = ", ".join(finding.subject)
+    case = _case(suite, finding.code, f"{finding.rule}: {subject}")
+    if finding.file is not None:
+        case.set("file", _legal(finding.file))
+    if finding.line is not None:
+        case.set("line", str(finding.line))
+    lines = [f"{finding.severity}: {finding.message}", *(f"{key}: {value}" for key, value in details(finding).items())]
+    if fails:
+        told = ElementTree.SubElement(case, "failure", type=finding.severity, message=_legal(finding.message))
+    else:
+        told = ElementTree.SubElement(case, "system-out")
+    told.text = _legal("\n".join(lines))
+
+
+def _case_of_rule(suite: ElementTree.Element, rule: RuleOutcome) -> None:
+    case = _case(suite, rule.code, rule.rule)
+    if rule.outcome == "inconclusive":
+        ElementTree.SubElement(case, "error", type="inconclusive", message=_legal(rule.reason))
+    elif rule.outcome != "passed" and rule.outcome != "failed":  # skipped
+        ElementTree.SubElement(case, "skipped", message=_legal(rule.reason))
+
+
+def _case(suite: ElementTree.Element, code: str, name: str) -> ElementTree.Element:
+    return ElementTree.SubElement(suite, "testcase", classname=f"kinform.{code}", name=_legal(name))
+
+
+def _legal(text: str) -> str:
+    """The text with what XML cannot carry escaped."""
+    return _NOT_XML.sub(lambda match: match[0].encode("unicode_escape").decode("ascii"), text)

@@ -1,0 +1,79 @@
+"""Markdown (GitHub's and GitLab's dialect), for comments on a change and for summaries of a job.
+
+Names stand in code spans, where no dialect reads them as markup, mentions or references; all other text that
+comes from the design is escaped.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES, CheckReport, Finding
+from kinform.reports.words import details, one_line, rule_counts, severity_counts, verdict_line, where
+
+__all__ = ["cell_code", "code", "escaped", "render", "table"]
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """Verdict, a table of findings (the most severe first), their details, and the rules that could not decide."""
+    blocks = [
+        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report))}",
+        f"{severity_counts(report)}; {rule_counts(report)}",
+    ]
+    found = sorted(report.findings, key=lambda finding: -SEVERITIES.index(finding.severity))
+    if found:
+        rows = [
+            (
+                f.severity,
+                f"{f.code} {f.rule}",
+                ", ".join(map(cell_code, f.subject)),
+                escaped(f.message),
+                cell_code(where(f)) if f.file is not None else "",
+            )
+            for f in found
+        ]
+        blocks.append(table(("severity", "rule", "subject", "what is wrong", "at"), rows))
+        told = [_details(finding) for finding in found]
+        if any(told):
+            lines = "\n".join(text for text in told if text)
+            blocks.append(f"<details><summary>Details and remedies</summary>\n\n{lines}\n\n</details>")
+    undecided = [rule for rule in report.rules if rule.outcome == "inconclusive"]
+    if undecided:
+        blocks.append(
+            "Not decided:\n\n" + "\n".join(f"- {rule.code} {rule.rule}: {escaped(rule.reason)}" for rule in undecided)
+        )
+    return "\n\n".join(blocks) + "\n"
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table; cells are Markdown without line breaks, pipes escaped."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def code(text: str) -> str:
+    """The text in a code span, on one line."""
+    text = one_line(text)
+    fence = "`" * (1 + max(map(len, re.findall("`+", text)), default=0))
+    pad = " " if not text.strip() or text[0] in "` " or text[-1] in "` " else ""
+    return f"{fence}{pad}{text}{pad}{fence}"
+
+
+def cell_code(text: str) -> str:
+    """As `code`, in a table, where pipes end a cell even in code spans."""
+    return code(text).replace("|", "\\|")
+
+
+def escaped(text: str) -> str:
+    """The text with every character that Markdown could read as markup escaped, on one line."""
+    return re.sub(r"([\\`*_{}\[\]<>#+!|~&@$()])", r"\\\1", one_line(text))
+
+
+def _details(finding: Finding) -> str:
+    found = details(finding)
+    if not found:
+        return ""
+    lines = [f"- {finding.code} {', '.join(map(code, finding.subject))}"]
+    return "\n".join([*lines, *(f"  - {key}: {escaped(value)}" for key, value in found.items())])

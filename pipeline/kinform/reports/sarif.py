@@ -1,0 +1,125 @@
+"""SARIF 2.1.0 (OASIS), for code scanning: a result a finding, located at the line of the manifest that declares its subject.
+
+A rule that could not decide is a result of kind `open`; what became of every rule is in the properties of the
+run. The text is ASCII, so that no encoding of a terminal or a pipe changes it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from kinform._version import __version__
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.reports.words import verdict_line
+
+if TYPE_CHECKING:
+    from kinform.consistency import Rule
+
+__all__ = ["SCHEMA", "render"]
+
+SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+
+
+def render(report: CheckReport, design: Design) -> str:
+    """The log as text: one run."""
+    index = {rule.code: k for k, rule in enumerate(report.rules)}
+    manifest = design.assembly.source.file
+    results = [_failed(finding, index, manifest) for finding in report.findings]
+    results += [_open(rule, index, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
+    driver = {"name": "kinform", "version": __version__, "rules": _descriptors(report.rules)}
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "results": results,
+        "properties": {
+            "assembly": design.assembly.name,
+            "verdict": verdict_line(report),
+            "rules": [_present({"code": r.code, "outcome": r.outcome, "reason": r.reason}) for r in report.rules],
+        },
+    }
+    return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=1) + "\n"
+
+
+def _descriptors(outcomes: Sequence[RuleOutcome]) -> list[dict[str, Any]]:
+    from kinform.consistency import RULES
+
+    known = {rule.code: rule for rule in RULES}
+    return [_descriptor(outcome, known.get(outcome.code)) for outcome in outcomes]
+
+
+def _descriptor(outcome: RuleOutcome, rule: Rule | None) -> dict[str, Any]:
+    head: dict[str, Any] = {"id": outcome.code, "name": outcome.rule}
+    if rule is None:  # of results that another version wrote
+        return head
+    paragraphs = [" ".join(text.split()) for text in (rule.documentation or "").strip().split("\n\n")]
+    return head | {
+        "shortDescription": _message(paragraphs[0]),
+        "help": _message("\n\n".join(paragraphs)),
+        "defaultConfiguration": {"level": rule.severity},
+    }
+
+
+def _failed(finding: Finding, index: Mapping[str, int], manifest: str) -> dict[str, Any]:
+    details = {
+        "found": finding.found,
+        "intended": finding.intended,
+        "place": None if finding.place is None else list(finding.place),
+        "remedy": finding.remedy,
+    }
+    return _present(
+        {
+            "ruleId": finding.code,
+            "ruleIndex": index.get(finding.code),
+            "level": finding.severity,
+            "message": _message(f"{', '.join(finding.subject)}: {finding.message}"),
+            "locations": _locations(finding.file or manifest, finding.line, finding.subject),
+            "partialFingerprints": {"codeAndSubject/v1": _key(finding)},
+            "properties": _present(details),
+        }
+    )
+
+
+def _open(rule: RuleOutcome, index: Mapping[str, int], manifest: str) -> dict[str, Any]:
+    return _present(
+        {
+            "ruleId": rule.code,
+            "ruleIndex": index[rule.code],
+            "kind": "open",
+            "level": "none",
+            "message": _message(f"{rule.rule} could not decide: {rule.reason}"),
+            "locations": _locations(manifest, None, ()),
+        }
+    )
+
+
+def _message(text: str) -> dict[str, str]:
+    """A message without placeholders: braces are doubled (3.11.5)."""
+    return {"text": text.replace("{", "{{").replace("}", "}}")}
+
+
+def _locations(file: str, line: int | None, subject: Sequence[str]) -> list[dict[str, Any]]:
+    """One location: the file (a relative URI) with its line, and the subjects by name."""
+    physical: dict[str, Any] = {}
+    if file:
+        physical["artifactLocation"] = {"uri": quote(file.encode(errors="surrogateescape"), safe="/")}
+        if line is not None:
+            physical["region"] = {"startLine": line}
+    logical = [{"name": name, "fullyQualifiedName": name, "kind": "object"} for name in subject]
+    found = _present({"physicalLocation": physical, "logicalLocations": logical})
+    return [found] if found else []
+
+
+def _key(finding: Finding) -> str:
+    """The same for the same inconsistency in another run: no numbers, no lines."""
+    text = json.dumps([finding.code, *finding.subject])
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _present(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Without what is not known or empty."""
+    return {key: value for key, value in fields.items() if value not in (None, "", [], {})}

@@ -1,0 +1,56 @@
+"""Whether a results file is what a run would give, told from the files alone: no mesh is parsed, no stage imported.
+
+The lineage of a result is a hash of the files of the design, and of the settings and the versions of the code of its
+stage and of all before it. It says less than a fingerprint, which sees through changes that do not matter, but is had
+at the cost of reading the files once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from kinform._version import __version__
+from kinform.results import fingerprints
+from kinform.results._digest import digest
+
+__all__ = ["STAGES", "current", "following", "of_files"]
+
+STAGES = ("assembly", "contacts", "joints", "mass", "simulation", "findings")
+_CODE = {stage: (stage,) for stage in STAGES} | {"contacts": ("surfaces", "contacts")}
+
+
+def of_files(manifest: str, files: Mapping[str, str]) -> str:
+    """The lineage of the assembly that a manifest describes; "" where not every file is known."""
+    if manifest not in files:
+        return ""
+    return digest("assembly", __version__, fingerprints.versions_of("assembly"), manifest, dict(files))
+
+
+def following(stage: str, previous: str, level: str | None = None) -> str:
+    """The lineage of a stage's result, from that of the stage before; "" where that is not known."""
+    versions = [fingerprints.versions_of(part) for part in _CODE[stage]]
+    return digest(stage, versions, level, previous) if previous else ""
+
+
+def current(manifest: Path, files: Mapping[str, str], *, allow_outside: bool) -> str:
+    """The lineage that the findings of a run would have now, if it read the same files as before; "" otherwise."""
+    top = manifest.parent
+    if manifest.name not in files:
+        return ""
+    root = os.path.realpath(top)
+    now = {}
+    for name in files:
+        path = top / name
+        if not allow_outside and not Path(os.path.realpath(path)).is_relative_to(root):
+            return ""
+        try:
+            now[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError:
+            return ""
+    found = of_files(manifest.name, now)
+    for stage in STAGES[1:]:
+        found = following(stage, found)
+    return found

@@ -1,0 +1,176 @@
+"""diff, lock and watch as a user runs them, and what a run says of a change."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+from commands import environment
+from known import FIXTURES
+
+from kinform_cli.main import main
+
+PAIR = FIXTURES / "pairs" / "revolute_collars"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    shutil.copytree(PAIR, tmp_path, dirs_exist_ok=True)
+    (tmp_path / "revolute_collars.toml").rename(tmp_path / "m.toml")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments):
+    return main(["run", "m.toml", "-o", "r.h5", *arguments])
+
+
+def heavier(folder):
+    text = (folder / "m.toml").read_text()
+    changed = re.sub(r'material = "\w+"', 'material = "brass"', text, count=1)
+    if changed == text:
+        changed = text.replace('mesh = "shaft.stl"', 'mesh = "shaft.stl"\ndensity = 8500.0', 1)
+    assert changed != text
+    (folder / "m.toml").write_text(changed)
+
+
+def test_a_run_says_what_changed_and_what_followed(folder, capsys):
+    run("-q")
+    capsys.readouterr()
+    run("-f", "json")
+    first = capsys.readouterr()
+    assert "nothing changed" in first.err
+    assert json.loads(first.out)["run"]["recomputed"] == []
+    data = bytearray((folder / "shaft.stl").read_bytes())
+    data[0:4] = b"same"  # another header, the same facets
+    (folder / "shaft.stl").write_bytes(bytes(data))
+    run("-f", "json")
+    assert json.loads(capsys.readouterr().out)["run"]["account"] == "everything is reused: nothing changed that matters"
+    heavier(folder)
+    run("-f", "json")
+    ran = capsys.readouterr()
+    assert "m.toml changed → mass" in ran.err
+    account = json.loads(ran.out)["run"]
+    assert account["account"].startswith("m.toml changed → mass")
+    assert not any(sentence.startswith(("surfaces", "contacts", "joints")) for sentence in account["recomputed"])
+
+
+def test_a_run_with_nothing_changed_parses_no_mesh_and_says_the_same(folder, capsys, monkeypatch):
+    code = run("-q")
+    told = capsys.readouterr().out
+    before = (folder / "r.h5").read_bytes()
+    os.utime("r.h5", (1e9, 1e9))
+
+    def no(*_, **__):
+        raise AssertionError("something was computed or read")
+
+    monkeypatch.setattr("kinform.form.meshes.health.build_mesh", no)
+    monkeypatch.setattr("kinform.stages.import_", no)
+    monkeypatch.setattr("kinform.results.read", no)
+    assert run("-q") == code
+    assert capsys.readouterr().out == told
+    assert (folder / "r.h5").read_bytes() == before
+    assert (folder / "r.h5").stat().st_mtime > 1.6e9
+
+
+def test_a_mesh_that_moved_outside_is_refused_again(folder, tmp_path_factory, capsys):
+    run("-q")
+    elsewhere = tmp_path_factory.mktemp("elsewhere") / "shaft.stl"
+    (folder / "shaft.stl").rename(elsewhere)
+    (folder / "shaft.stl").symlink_to(elsewhere)
+    capsys.readouterr()
+    assert run("-q") == 2
+    assert "outside" in capsys.readouterr().err
+
+
+def test_diff_of_a_heavier_part_and_of_nothing(folder, capsys):
+    run("-q")
+    shutil.copy("r.h5", "before.h5")
+    assert main(["diff", "before.h5", "r.h5"]) == 0
+    heavier(folder)
+    run("-q")
+    capsys.readouterr()
+    assert main(["diff", "before.h5", "r.h5"]) == 1
+    assert re.search(r"shaft|block", capsys.readouterr().out)
+    assert main(["diff", "before.h5", "r.h5", "-f", "json"]) == 1
+    kinds = {change["kind"] for change in json.loads(capsys.readouterr().out)["changes"]}
+    assert "mass" in kinds
+    assert main(["diff", "before.h5", "r.h5", "-f", "md"]) == 1
+    assert "| mass" in capsys.readouterr().out
+    assert main(["diff", "before.h5", "absent.h5"]) == 2
+    assert main(["diff", "before.h5", "r.h5", "--tolerance", "1 parsec"]) == 2
+
+
+def test_diff_with_less_on_one_side_is_not_verified(folder, capsys):
+    run("-q")
+    main(["import", "m.toml", "-o", "a.h5", "-q"])
+    assert main(["diff", "a.h5", "r.h5"]) == 2
+    assert "not compared" in capsys.readouterr().out
+    assert main(["diff", "a.h5", "a.h5"]) == 2
+
+
+def test_a_lock_holds_until_the_behaviour_changes(folder, capsys):
+    green = run("-q")
+    assert main(["lock", "r.h5", "-o", "b.json", "-q"]) == 0
+    assert main(["check", "r.h5", "--lock", "b.json", "-q"]) == green
+    heavier(folder)
+    run("-q")
+    capsys.readouterr()
+    assert main(["check", "r.h5", "--lock", "b.json", "-q", "-f", "concise"]) == 1
+    assert "b.json: error KF450" in capsys.readouterr().out
+    assert main(["check", "r.h5", "--lock", "b.json", "-f", "github", "--manifest-folder", "deeper/down"]) == 1
+    assert "::error file=b.json,title=KF450" in capsys.readouterr().out
+    assert main(["check", "r.h5", "--lock", "absent.json"]) == 2
+    assert main(["check", "r.h5", "--lock", "m.toml"]) == 2
+    assert main(["import", "m.toml", "-o", "a.h5", "-q"]) == 0
+    assert main(["lock", "a.h5", "-o", "c.json"]) == 2
+    assert not (folder / "c.json").exists()
+
+
+def started(*arguments):
+    command = [sys.executable, "-m", "kinform_cli", "watch", "m.toml", "-o", "r.h5", "--period", "0.05", *arguments]
+    return subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def said(watching, word):
+    """Lines on stderr up to the one with that word."""
+    lines = []
+    for line in watching.stderr:
+        lines.append(line)
+        if word in line:
+            return lines
+    raise AssertionError(f"ended without {word!r}: {lines}")
+
+
+def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
+    watching = started()
+    try:
+        said(watching, "watching 3 files")
+        good = (folder / "m.toml").read_text()
+        (folder / "m.toml").write_text("schema = ")
+        assert any("error:" in line for line in said(watching, "watching 3 files"))
+        (folder / "m.toml").write_text(good)
+        heavier(folder)
+        assert any("→ mass" in line for line in said(watching, "watching 3 files"))
+        watching.send_signal(signal.SIGINT)
+        out, errors = watching.communicate(timeout=60)
+        assert watching.returncode in (0, 1, 2)
+        assert watching.returncode != -signal.SIGINT
+        assert "watching ended" in errors
+        assert "Traceback" not in errors
+        assert out.count("rules ran") == 2
+    finally:
+        watching.kill()
+        watching.communicate()
+
+
+def test_watch_leaves_after_so_many_runs_with_the_code_of_the_last(folder, capsys):
+    assert main(["watch", "m.toml", "-o", "r.h5", "--max-runs", "1", "-q"]) == run("-q")
+    (folder / "m.toml").write_text("schema = ")
+    assert main(["watch", "m.toml", "-o", "r.h5", "--max-runs", "1", "-q"]) == 2

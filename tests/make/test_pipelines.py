@@ -1,0 +1,81 @@
+"""The examples of pipelines: their commands exist, their files parse, and the hook does what a gate does."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+import pytest
+import typer
+from known import FIXTURES, ROOT
+
+from kinform_cli.app import app
+from kinform_cli.options import FindingsFormat
+
+CI = sorted((ROOT / "examples" / "ci").glob("*.yml"))
+
+
+def commands(text):
+    """Every command line of kinform in a file, as words."""
+    found = re.findall(r"(?:^|[\s:-])(kinform [^#\n]*)", re.sub(r"#.*", "", text))
+    return [shlex.split(re.split(r"\|\||>>|>|&&", line)[0]) for line in found]
+
+
+@pytest.mark.parametrize("path", [*CI, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
+def test_the_commands_in_an_example_exist_with_their_options(path):
+    group = typer.main.get_command(app)
+    lines = [words for words in commands(path.read_text()) if words[1:2] and words[1] in group.commands]
+    assert lines
+    for words in lines:
+        known = {flag for parameter in group.commands[words[1]].params for flag in parameter.opts}
+        given = {word for word in words[2:] if word.startswith("-")}
+        assert given <= known, words
+        if "--format" in given:
+            assert words[words.index("--format") + 1] in set(FindingsFormat)
+
+
+@pytest.mark.parametrize("path", CI, ids=lambda path: path.name)
+def test_the_gate_decides_the_job_and_nothing_else_does(path):
+    lines = [line.strip() for line in path.read_text().splitlines() if re.search(r"kinform (run|check)", line)]
+    gates = [line for line in lines if "kinform run" in line]
+    assert len(gates) == 1
+    assert "|| true" not in gates[0]
+    assert all(line.endswith("|| true") for line in lines if "kinform check" in line)
+
+
+def test_reports_are_kept_when_the_gate_is_red():
+    github, gitlab = (path.read_text() for path in CI)
+    for step in ("upload-artifact", "upload-sarif", "name: reports"):
+        after = github[github.index(step) :].splitlines()[1]
+        assert after.strip() == "if: ${{ !cancelled() }}", step
+    assert re.search(r"artifacts:\n\s+when: always\n", gitlab)
+
+
+@pytest.mark.parametrize("path", [*CI, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
+def test_an_example_is_yaml(path):
+    yaml = pytest.importorskip("yaml")
+    assert yaml.safe_load(path.read_text())
+
+
+def test_the_hook_is_the_gate(tmp_path):
+    hook = dict(re.findall(r"^\s*(?:- )?(\w+): (.*)$", (ROOT / ".pre-commit-hooks.yaml").read_text(), re.MULTILINE))
+    shutil.copytree(FIXTURES / "pairs" / "planar_block", tmp_path / "design")
+    entry = [sys.executable, "-m", "kinform_cli", *shlex.split(hook["entry"])[1:]]
+    manifest = tmp_path / "design" / "planar_block.toml"
+    codes = []
+    for _ in range(2):
+        ran = subprocess.run(
+            [*entry, "design/planar_block.toml", "-o", "r.h5"],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        codes.append(ran.returncode)
+        manifest.write_text(manifest.read_text().replace("mobility = 3", "mobility = 5"))
+    assert codes == [0, 1]
+    assert re.search(hook["files"], "parts/camera.stl")
+    assert hook["pass_filenames"] == "false"

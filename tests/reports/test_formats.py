@@ -1,0 +1,195 @@
+"""Findings for tools: golden files, read back by readers that know nothing of the writers."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import sarif_structure
+from hostile import DESIGN, NAMES, REPORT, named
+from markdown_it import MarkdownIt
+
+from kinform.consistency import Rule
+from kinform.model.findings import CheckReport, RuleOutcome
+from kinform.reports import FORMATS, render
+
+GOLDEN = Path(__file__).parent / "golden"
+FILES = {
+    "concise": "findings.concise.txt", "full": "findings.full.txt", "github": "findings.github", "json": "findings.json",
+    "junit": "findings.xml", "md": "findings.md", "sarif": "findings.sarif",
+}  # fmt: skip
+DOCUMENTED = Rule(
+    "KF402", "joint-wrong-type", "error", "A joint is wrong.\n\nWhat to do: repair {it}.\n", lambda _: None
+)
+
+
+def test_every_format_has_a_golden_file():
+    assert set(FILES) == set(FORMATS)
+
+
+@pytest.mark.parametrize("format", sorted(FILES))
+def test_a_report_is_its_golden_file(format, monkeypatch):
+    monkeypatch.setattr("kinform.reports.sarif.__version__", "1.2.3")
+    monkeypatch.setattr("kinform.consistency.RULES", (DOCUMENTED,))
+    assert render(REPORT, DESIGN, format) == (GOLDEN / FILES[format]).read_text(encoding="utf-8")
+
+
+def escaped(name):
+    """How a name stands on one line: what cannot be printed is escaped as in Python."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)
+
+
+# --- SARIF ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("report", [REPORT, named(), CheckReport((), ())], ids=["golden", "hostile", "empty"])
+def test_sarif_is_as_the_standard_demands(report):
+    sarif_structure.check(json.loads(render(report, DESIGN, "sarif")))
+
+
+def test_sarif_keeps_every_name_and_its_results_have_stable_keys():
+    text = render(named(), DESIGN, "sarif")
+    assert text.isascii()
+    results = json.loads(text)["runs"][0]["results"]
+    logical = [result["locations"][0]["logicalLocations"][0]["name"] for result in results]
+    assert tuple(logical) == NAMES
+    keys = {result["partialFingerprints"]["codeAndSubject/v1"] for result in results}
+    assert len(keys) == len(NAMES)
+
+
+def test_sarif_tells_an_undecided_rule_and_what_became_of_all_rules():
+    run = json.loads(render(REPORT, DESIGN, "sarif"))["runs"][0]
+    (undecided,) = [result for result in run["results"] if result.get("kind") == "open"]
+    assert undecided["ruleId"] == "KF904"
+    assert "no rule checks ranges yet" in undecided["message"]["text"]
+    assert [rule["outcome"] for rule in run["properties"]["rules"]] == [rule.outcome for rule in REPORT.rules]
+
+
+def test_a_rule_that_this_version_does_not_know_is_still_described():
+    report = CheckReport((), (RuleOutcome("KF999", "from-the-future", "passed"),))
+    log = json.loads(render(report, DESIGN, "sarif"))
+    sarif_structure.check(log)
+    assert log["runs"][0]["tool"]["driver"]["rules"] == [{"id": "KF999", "name": "from-the-future"}]
+
+
+# --- JUnit ---------------------------------------------------------------------------------------------------------
+
+
+def suite_of(report, **settings):
+    whole = ElementTree.fromstring(render(report, DESIGN, "junit", **settings))
+    assert whole.tag == "testsuites"
+    (suite,) = whole
+    cases = list(suite)
+    assert {case.tag for case in cases} <= {"testcase"}
+    assert all(set(case.attrib) >= {"classname", "name"} for case in cases)
+    for count, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
+        assert int(suite.get(count)) == len(suite.findall(f"testcase/{tag}"))
+    assert int(suite.get("tests")) == len(cases)
+    assert whole.get("tests") == suite.get("tests")
+    return suite
+
+
+def test_junit_fails_what_fails_the_gate_and_errs_where_nothing_was_decided():
+    def failures(fail_on):
+        found = suite_of(REPORT, fail_on=fail_on).findall("testcase[failure]")
+        return [case.get("classname") for case in found]
+
+    assert failures("error") == ["kinform.KF402"]
+    assert failures("warning") == ["kinform.KF402", "kinform.KF407"]
+    assert failures("note") == ["kinform.KF107", "kinform.KF402", "kinform.KF407"]
+    suite = suite_of(REPORT)
+    assert [case.get("classname") for case in suite.findall("testcase[error]")] == ["kinform.KF904"]
+    assert [case.get("classname") for case in suite.findall("testcase[skipped]")] == ["kinform.KF501"]
+    assert "2 shells" in suite.find("testcase[@classname='kinform.KF107']/system-out").text
+
+
+def test_junit_of_no_rules_is_not_a_pass():
+    assert suite_of(CheckReport((), (RuleOutcome("KF101", "x", "skipped"),))).get("errors") == "1"
+
+
+def test_junit_keeps_every_name():
+    text = render(named(), DESIGN, "junit")
+    assert text.isascii()
+    names = [case.get("name").removeprefix("part-touches-nothing: ") for case in suite_of(named())]
+    assert names == [f"{name}, b".replace("\x07", "\\x07") for name in NAMES]
+
+
+# --- GitHub --------------------------------------------------------------------------------------------------------
+
+
+def command(line):
+    """A workflow command as the runner reads it: name, properties, message."""
+    name, rest = re.fullmatch(r"::(\w+) (.*)", line).groups()
+    properties, message = rest.split("::", 1)
+    found = dict(item.split("=", 1) for item in properties.split(","))
+
+    def decoded(text):
+        for code, character in (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%")):
+            text = text.replace(code, character)
+        return text
+
+    return name, {key: decoded(value) for key, value in found.items()}, decoded(message)
+
+
+def test_github_has_an_annotation_a_finding_and_a_doubt():
+    *lines, last = render(REPORT, DESIGN, "github").splitlines()
+    found = [command(line) for line in lines]
+    assert [name for name, _, _ in found] == ["notice", "error", "warning", "warning"]
+    assert found[1][1] == {"file": "parts/arm 1.toml", "line": "12", "title": "KF402 joint-wrong-type: el\\nbow"}
+    assert "remedy: Give the shaft a clearance." in found[1][2].splitlines()
+    assert "could not decide" in found[3][1]["title"]
+    assert last.startswith("inconsistent; ")
+
+
+def test_github_keeps_every_name_and_no_name_becomes_a_command():
+    *lines, _ = render(named(), DESIGN, "github").splitlines()
+    assert len(lines) == len(NAMES)
+    for name, line in zip(NAMES, lines, strict=True):
+        kind, properties, _ = command(line)
+        assert kind == "error"
+        assert properties["title"] == f"KF203 part-touches-nothing: {escaped(name)}, b"
+
+
+# --- Markdown ------------------------------------------------------------------------------------------------------
+
+
+def tokens(text):
+    parsed = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"]).parse(text)
+    return [token for block in parsed for token in [block, *(block.children or ())]]
+
+
+def test_markdown_keeps_every_name_and_lets_none_become_markup():
+    found = tokens(render(named(), DESIGN, "md"))
+    spans = [token.content for token in found if token.type == "code_inline"]
+    for name in NAMES:
+        assert spans.count(escaped(name)) == 2, name
+    # no markup from names
+    assert not {"strong_open", "em_open", "s_open", "link_open", "image", "html_inline"} & {t.type for t in found}
+    said = "".join(token.content for token in found if token.type == "text")
+    assert all(escaped(name).strip() in said for name in NAMES)
+
+
+def test_markdown_is_a_heading_a_table_and_what_was_not_decided():
+    found = tokens(render(REPORT, DESIGN, "md"))
+    assert sum(token.type == "tr_open" for token in found) == 1 + len(REPORT.findings)
+    assert sum(token.type == "td_open" for token in found) == 5 * len(REPORT.findings)
+    assert any("no rule checks ranges yet" in token.content for token in found if token.type == "inline")
+
+
+# --- all -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("format", ["concise", "full"])
+def test_text_for_people_keeps_every_name_on_one_line(format):
+    text = render(named(), DESIGN, format)
+    joined = " ".join(text.split())
+    assert all(" ".join(escaped(name).split()) in joined for name in NAMES)
+    assert all(line.isprintable() for line in text.splitlines())
+
+
+def test_json_keeps_every_name():
+    found = json.loads(render(named(), DESIGN, "json"))["findings"]
+    assert tuple(finding["subject"][0] for finding in found) == NAMES
