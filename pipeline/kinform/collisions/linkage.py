@@ -181,8 +181,8 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
         if x == n:
             return np.asarray(path.q[n])
         guess = path.q[n] + (x - n) * (path.q[n + 1] - path.q[n])
-        found = linkage.closed(guess)
-        return np.asarray(guess) if found is None else found
+        found = linkage.closed(np.asarray(guess, float))
+        return np.asarray(guess, float) if found is None else found
 
     nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), lambda x: linkage.poses(at(x)))
     pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)

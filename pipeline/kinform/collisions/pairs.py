@@ -34,6 +34,8 @@ PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
 SAMPLES = 16
 """Ends of crossing segments between which the depth is looked for."""
+LEAST = 2e-5
+"""Share of the smaller part's diagonal that counts as no depth: what vertices may be off their surfaces."""
 INSIDE = 40
 """Places between them that are asked whether they are inside both parts, the deepest first."""
 MOST = 200_000
@@ -185,6 +187,7 @@ class PairTest:
             self._objects = tuple(
                 fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
             )
+            self._whole = tuple(fcl.CollisionObject(shapes.model(n)) for n in self.names)
 
     @property
     def part_names(self) -> tuple[PartName, PartName]:
@@ -213,7 +216,8 @@ class PairTest:
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
-        self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
+        for item in (self._objects[1], self._whole[1]):
+            item.setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
         return np.asarray(X)
 
     def distance(self, D: Array) -> float:
@@ -221,28 +225,30 @@ class PairTest:
         if self.empty:
             return float("inf")
         self._place(D)
-        found = fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult())
+        found = fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult())  # of what moves into what
         return max(float(found), 0.0)
 
     def crossing(self, D: Array) -> Crossing:
-        """Facets that cross at a displacement (4, 4), other than along mates."""
+        """Facets that cross at a displacement (4, 4), other than along mates: those that count, and all of the other
+        part, as faces that meet flat cross nowhere but beside them."""
         if self.empty:
             return NONE
         X = self._place(D)
-        request = fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False)
-        result = fcl.CollisionResult()
-        fcl.collide(*self._objects, request, result)
-        if not result.contacts:
+        first_hits = _hits(self._objects[0], self._whole[1])
+        second_hits = _hits(self._whole[0], self._objects[1])
+        first_hits[:, 0] = self.facets[0][first_hits[:, 0]]
+        second_hits[:, 1] = self.facets[1][second_hits[:, 1]]
+        hits = np.unique(np.concatenate([first_hits, second_hits]), axis=0)
+        if not len(hits):
             return NONE
-        hits = np.unique(np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64), axis=0)
-        f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
+        f, g = hits.T
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
         found, segments = crossings(first, second, 1e-9 * self.size)
         pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
-        slack = 0.0
+        slack = LEAST * self.size
         for pair in sorted({(int(a), int(b)) for a, b in pairs}):
             own = segments[(pairs == pair).all(axis=1)]
             own = own[~self._along_mate(pair, own)]
@@ -282,6 +288,13 @@ class PairTest:
             if away is not None:
                 out |= (away.reshape(-1, 2) <= slack).all(axis=1)
         return out
+
+
+def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
+    """(n, 2) facets of two models that FCL finds to touch."""
+    result = fcl.CollisionResult()
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False), result)
+    return np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
 
 
 _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,10 +52,10 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
         return First(None, None, None)
-    search = _Search(test, course)
+    resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
+    search = _Search(test, course, resolution)
     search.muted = bool(search.state(start).crossing.surfaces)
     search.overlaps = search.muted and (test.overlapping or search.too_deep(start))
-    resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
     left, stack = start, [end]
     while stack:
         right = stack[-1]
@@ -80,11 +81,18 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
 @dataclass(frozen=True, eq=False)
 class _State:
     distance: float
-    crossing: Crossing
+    look: Callable[[], Crossing] | None
+    """None: too far apart to cross."""
+
+    @cached_property
+    def crossing(self) -> Crossing:
+        return NONE if self.look is None else self.look()
 
 
 class _Search:
-    def __init__(self, test: PairTest, course: Course):
+    def __init__(self, test: PairTest, course: Course, reach: float):
+        self.reach = reach
+        """m: a step from what is free goes no deeper than this."""
         self.test, self.course = test, course
         self.muted = False
         """Overlapping since the start, or by no more than chord errors."""
@@ -97,7 +105,7 @@ class _Search:
             self.tried += 1
             D = self.course.displacement(s)
             distance = self.test.distance(D)
-            self._known[s] = _State(distance, NONE if distance > 0.0 else self.test.crossing(D))
+            self._known[s] = _State(distance, None if distance > self.reach else partial(self.test.crossing, D))
         return self._known[s]
 
     def crosses(self, s: float) -> bool:
