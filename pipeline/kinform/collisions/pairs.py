@@ -220,13 +220,30 @@ class PairTest:
             item.setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
         return np.asarray(X)
 
-    def distance(self, D: Array) -> float:
-        """Distance (m) of the facets at a displacement (4, 4); 0 where they touch or cross."""
+    def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
+        """Distance (m) of the facets that count at a displacement (4, 4), 0 where they touch or cross; and the nearest."""
         if self.empty:
-            return float("inf")
+            return float("inf"), (0, 0)
         self._place(D)
-        found = fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult())  # of what moves into what
-        return max(float(found), 0.0)
+        result = fcl.DistanceResult()
+        found = fcl.distance(*self._objects, fcl.DistanceRequest(), result)
+        return max(float(found), 0.0), (result.b1, result.b2)
+
+    def height(self, D: Array, nearest: tuple[int, int]) -> float:
+        """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
+        f, g = self.facets[0][nearest[0]], self.facets[1][nearest[1]]
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        corners = self._meshes[0].vertices[self._meshes[0].faces[f]]
+        middle = X[:3, :3] @ self._meshes[1].vertices[self._meshes[1].faces[g]].mean(axis=0) + X[:3, 3]
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
+        return float(normal @ (middle - corners[0])) / max(float(np.linalg.norm(normal)), 1e-300)
+
+    def middle(self, D: Array, f: int, g: int) -> Array:
+        """(3,) m, first part's frame: between two facets that count."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        own = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
+        return np.asarray(0.5 * (own.mean(axis=0) + far.mean(axis=0)))
 
     def crossing(self, D: Array) -> Crossing:
         """Facets that cross at a displacement (4, 4), other than along mates: those that count, and all of the other

@@ -73,6 +73,11 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
             if search.muted or search.real(right, end, resolution):
                 return search.narrow(left, right, fine)
             search.muted = True
+        if search.through(left, right):
+            if right - left <= fine:
+                return search.flat(left, right)
+            stack.append(0.5 * (left + right))
+            continue
         left = stack.pop()
         search.pass_(left)
     return First(None, None, None, search.overlaps)
@@ -81,6 +86,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
 @dataclass(frozen=True, eq=False)
 class _State:
     distance: float
+    nearest: tuple[int, int]
     look: Callable[[], Crossing] | None
     """None: too far apart to cross."""
 
@@ -104,14 +110,29 @@ class _Search:
         if s not in self._known:
             self.tried += 1
             D = self.course.displacement(s)
-            distance = self.test.distance(D)
-            self._known[s] = _State(distance, None if distance > self.reach else partial(self.test.crossing, D))
+            distance, nearest = self.test.distance(D)
+            self._known[s] = _State(distance, nearest, None if distance > self.reach else partial(self.test.crossing, D))
         return self._known[s]
 
     def crosses(self, s: float) -> bool:
         if not self.muted:
             return bool(self.state(s).crossing.surfaces)
         return not self.overlaps and self.too_deep(s)
+
+    def through(self, left: float, right: float) -> bool:
+        """Whether faces that are parallel may have passed through each other, crossing nowhere."""
+        before, after = self.state(left), self.state(right)
+        if self.muted or before.distance <= 0.0 and after.distance <= 0.0:
+            return False
+        nearest = before.nearest if before.distance > 0.0 else after.nearest
+        heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]
+        return heights[0] > 0.0 >= heights[1]
+
+    def flat(self, left: float, right: float) -> First:
+        """Where faces meet flat."""
+        f, g = self.state(left).nearest
+        place = self.test.middle(self.course.displacement(right), f, g)
+        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3])
 
     def pass_(self, s: float) -> None:
         """Parts that overlapped so far, and have parted at s, count from here on."""
