@@ -97,10 +97,11 @@ def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seek
     from kinform import stages
 
     function = seeker.assembly.function
-    yaw, pitch = function.joints if function.joints[0].name == "yaw" else function.joints[::-1]
+    yaw = next(joint for joint in function.joints if joint.name == "yaw")
+    others = tuple(joint for joint in function.joints if joint is not yaw)
 
     def asked(limit):
-        joints = (replace(yaw, range=(-limit, limit)), pitch)
+        joints = (replace(yaw, range=(-limit, limit)), *others)
         drives = tuple(
             replace(d, law=Law("sine", amplitude=degrees(limit), frequency=0.5)) if d.joint == "yaw" else d
             for d in function.drives

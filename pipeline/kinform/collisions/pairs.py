@@ -187,7 +187,6 @@ class PairTest:
             self._objects = tuple(
                 fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
             )
-            self._whole = tuple(fcl.CollisionObject(shapes.model(n)) for n in self.names)
 
     @property
     def part_names(self) -> tuple[PartName, PartName]:
@@ -216,8 +215,7 @@ class PairTest:
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
-        for item in (self._objects[1], self._whole[1]):
-            item.setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
+        self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
         return np.asarray(X)
 
     def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
@@ -246,19 +244,14 @@ class PairTest:
         return np.asarray(0.5 * (own.mean(axis=0) + far.mean(axis=0)))
 
     def crossing(self, D: Array) -> Crossing:
-        """Facets that cross at a displacement (4, 4), other than along mates: those that count, and all of the other
-        part, as faces that meet flat cross nowhere but beside them."""
+        """Facets that count and cross at a displacement (4, 4), other than along mates."""
         if self.empty:
             return NONE
         X = self._place(D)
-        first_hits = _hits(self._objects[0], self._whole[1])
-        second_hits = _hits(self._whole[0], self._objects[1])
-        first_hits[:, 0] = self.facets[0][first_hits[:, 0]]
-        second_hits[:, 1] = self.facets[1][second_hits[:, 1]]
-        hits = np.unique(np.concatenate([first_hits, second_hits]), axis=0)
+        hits = np.unique(_hits(self._objects[0], self._objects[1]), axis=0)
         if not len(hits):
             return NONE
-        f, g = hits.T
+        f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
         found, segments = crossings(first, second, 1e-9 * self.size)

@@ -53,7 +53,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     if test.empty:
         return First(None, None, None)
     resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
-    search = _Search(test, course, resolution)
+    search = _Search(test, course)
     search.muted = bool(search.state(start).crossing.surfaces)
     search.overlaps = search.muted and (test.overlapping or search.too_deep(start))
     left, stack = start, [end]
@@ -96,9 +96,7 @@ class _State:
 
 
 class _Search:
-    def __init__(self, test: PairTest, course: Course, reach: float):
-        self.reach = reach
-        """m: a step from what is free goes no deeper than this."""
+    def __init__(self, test: PairTest, course: Course):
         self.test, self.course = test, course
         self.muted = False
         """Overlapping since the start, or by no more than chord errors."""
@@ -111,7 +109,7 @@ class _Search:
             self.tried += 1
             D = self.course.displacement(s)
             distance, nearest = self.test.distance(D)
-            self._known[s] = _State(distance, nearest, None if distance > self.reach else partial(self.test.crossing, D))
+            self._known[s] = _State(distance, nearest, None if distance > 0.0 else partial(self.test.crossing, D))
         return self._known[s]
 
     def crosses(self, s: float) -> bool:
@@ -126,7 +124,10 @@ class _Search:
             return False
         nearest = before.nearest if before.distance > 0.0 else after.nearest
         heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]
-        return heights[0] > 0.0 >= heights[1]
+        least = 1e-9 * self.test.size
+        if before.distance <= 0.0 and abs(heights[0]) <= least:
+            return heights[1] < -least
+        return heights[0] > least >= heights[1]
 
     def flat(self, left: float, right: float) -> First:
         """Where faces meet flat."""
