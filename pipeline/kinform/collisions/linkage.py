@@ -81,7 +81,7 @@ class _Linkage:
             if up >= 0:
                 move = across.get(k)
                 if move is not None and self.edges[k][1] != node:
-                    move = np.linalg.inv(move)
+                    move = np.asarray(np.linalg.inv(move), dtype=np.float64)
                 out[node] = out[up] if move is None else out[up] @ move
         return out
 
@@ -181,8 +181,8 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
         if x == n:
             return np.asarray(path.q[n])
         guess = path.q[n] + (x - n) * (path.q[n + 1] - path.q[n])
-        found = linkage.closed(guess)
-        return np.asarray(guess) if found is None else found
+        found = linkage.closed(np.asarray(guess, float))
+        return np.asarray(guess, float) if found is None else found
 
     nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), lambda x: linkage.poses(at(x)))
     pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)

@@ -34,6 +34,8 @@ PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
 SAMPLES = 16
 """Ends of crossing segments between which the depth is looked for."""
+LEAST = 2e-5
+"""Share of the smaller part's diagonal that counts as no depth: what vertices may be off their surfaces."""
 INSIDE = 40
 """Places between them that are asked whether they are inside both parts, the deepest first."""
 MOST = 200_000
@@ -216,25 +218,39 @@ class PairTest:
         self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
         return np.asarray(X)
 
-    def distance(self, D: Array) -> float:
-        """Distance (m) of the facets at a displacement (4, 4); 0 where they touch or cross."""
+    def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
+        """Distance (m) of the facets that count at a displacement (4, 4), 0 where they touch or cross; and the nearest."""
         if self.empty:
-            return float("inf")
+            return float("inf"), (0, 0)
         self._place(D)
-        found = fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult())
-        return max(float(found), 0.0)
+        result = fcl.DistanceResult()
+        found = fcl.distance(*self._objects, fcl.DistanceRequest(), result)
+        return max(float(found), 0.0), (result.b1, result.b2)
+
+    def height(self, D: Array, nearest: tuple[int, int]) -> float:
+        """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
+        f, g = self.facets[0][nearest[0]], self.facets[1][nearest[1]]
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        corners = self._meshes[0].vertices[self._meshes[0].faces[f]]
+        middle = X[:3, :3] @ self._meshes[1].vertices[self._meshes[1].faces[g]].mean(axis=0) + X[:3, 3]
+        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
+        return float(normal @ (middle - corners[0])) / max(float(np.linalg.norm(normal)), 1e-300)
+
+    def middle(self, D: Array, f: int, g: int) -> Array:
+        """(3,) m, first part's frame: between two facets that count."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        own = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
+        return np.asarray(0.5 * (own.mean(axis=0) + far.mean(axis=0)))
 
     def crossing(self, D: Array) -> Crossing:
-        """Facets that cross at a displacement (4, 4), other than along mates."""
+        """Facets that count and cross at a displacement (4, 4), other than along mates."""
         if self.empty:
             return NONE
         X = self._place(D)
-        request = fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False)
-        result = fcl.CollisionResult()
-        fcl.collide(*self._objects, request, result)
-        if not result.contacts:
+        hits = np.unique(_hits(self._objects[0], self._objects[1]), axis=0)
+        if not len(hits):
             return NONE
-        hits = np.unique(np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64), axis=0)
         f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
@@ -242,7 +258,7 @@ class PairTest:
         pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
-        slack = 0.0
+        slack = LEAST * self.size
         for pair in sorted({(int(a), int(b)) for a, b in pairs}):
             own = segments[(pairs == pair).all(axis=1)]
             own = own[~self._along_mate(pair, own)]
@@ -282,6 +298,13 @@ class PairTest:
             if away is not None:
                 out |= (away.reshape(-1, 2) <= slack).all(axis=1)
         return out
+
+
+def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
+    """(n, 2) facets of two models that FCL finds to touch."""
+    result = fcl.CollisionResult()
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False), result)
+    return np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
 
 
 _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,10 +52,10 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
         return First(None, None, None)
+    resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
     search = _Search(test, course)
     search.muted = bool(search.state(start).crossing.surfaces)
     search.overlaps = search.muted and (test.overlapping or search.too_deep(start))
-    resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
     left, stack = start, [end]
     while stack:
         right = stack[-1]
@@ -72,6 +73,11 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
             if search.muted or search.real(right, end, resolution):
                 return search.narrow(left, right, fine)
             search.muted = True
+        if search.through(left, right):
+            if right - left <= fine:
+                return search.flat(left, right)
+            stack.append(0.5 * (left + right))
+            continue
         left = stack.pop()
         search.pass_(left)
     return First(None, None, None, search.overlaps)
@@ -80,7 +86,13 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
 @dataclass(frozen=True, eq=False)
 class _State:
     distance: float
-    crossing: Crossing
+    nearest: tuple[int, int]
+    look: Callable[[], Crossing] | None
+    """None: too far apart to cross."""
+
+    @cached_property
+    def crossing(self) -> Crossing:
+        return NONE if self.look is None else self.look()
 
 
 class _Search:
@@ -96,14 +108,32 @@ class _Search:
         if s not in self._known:
             self.tried += 1
             D = self.course.displacement(s)
-            distance = self.test.distance(D)
-            self._known[s] = _State(distance, NONE if distance > 0.0 else self.test.crossing(D))
+            distance, nearest = self.test.distance(D)
+            self._known[s] = _State(distance, nearest, None if distance > 0.0 else partial(self.test.crossing, D))
         return self._known[s]
 
     def crosses(self, s: float) -> bool:
         if not self.muted:
             return bool(self.state(s).crossing.surfaces)
         return not self.overlaps and self.too_deep(s)
+
+    def through(self, left: float, right: float) -> bool:
+        """Whether faces that are parallel may have passed through each other, crossing nowhere."""
+        before, after = self.state(left), self.state(right)
+        if self.muted or before.distance <= 0.0 and after.distance <= 0.0:
+            return False
+        nearest = before.nearest if before.distance > 0.0 else after.nearest
+        heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]
+        least = 1e-9 * self.test.size
+        if before.distance <= 0.0 and abs(heights[0]) <= least:
+            return heights[1] < -least
+        return heights[0] > least >= heights[1]
+
+    def flat(self, left: float, right: float) -> First:
+        """Where faces meet flat."""
+        f, g = self.state(left).nearest
+        place = self.test.middle(self.course.displacement(right), f, g)
+        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3])
 
     def pass_(self, s: float) -> None:
         """Parts that overlapped so far, and have parted at s, count from here on."""

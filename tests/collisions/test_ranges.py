@@ -1,0 +1,147 @@
+"""The range of a joint is where geometry says that parts meet, and mating surfaces stop nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import acos, asin, atan2, degrees, hypot, pi
+
+import numpy as np
+import pytest
+from known import FIXTURES
+from solids import assembly, box, part, random_pose, rod
+
+from kinform import collisions, contacts, kinematics, surfaces
+from kinform.consistency import check
+from kinform.model.function import Law
+
+
+def found(X=None, **solids):
+    """Ranges of the joints of solids (mm), all under one pose."""
+    X = np.eye(4) if X is None else X
+    made = assembly(*(part(name, solid, X) for name, solid in solids.items()), ground=None)
+    known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, known)
+    derived = kinematics.derive(made, known, touching)
+    return collisions.ranges(made, known, touching, derived), derived
+
+
+def lever_between_pegs():
+    plate = box(-50, 50, -50, 50, -5, 0) + rod(5, -1, 11) + rod(8, 10, 13)
+    base = plate + box(28, 32, 12, 16, -1, 8) + box(20, 24, -20, -16, -1, 8)
+    lever = box(-8, 40, -4, 4, 0, 10) + rod(9, 0, 10) - rod(5.02, -1, 11, 32, 3.0)
+    return {"base": base, "lever": lever}
+
+
+def ends(joint, axis, item):
+    """(lower, upper) about `axis`, whatever the sign of the joint's own."""
+    lower, upper = item.lower, item.upper
+    return (
+        (lower, upper)
+        if joint.axis @ axis > 0
+        else (replace(upper, value=-upper.value), replace(lower, value=-lower.value))
+    )
+
+
+@pytest.mark.parametrize("seed", [None, 3])
+def test_a_lever_goes_from_peg_to_peg(seed):
+    X = np.eye(4) if seed is None else random_pose(np.random.default_rng(seed))
+    (item,), derived = found(X, **lever_between_pegs())
+    (joint,) = derived.joints
+    assert joint.type == "revolute"
+    lower, upper = ends(joint, X[:3, 2], item)
+    assert degrees(upper.value) == pytest.approx(degrees(atan2(12, 32) - asin(4 / hypot(32, 12))), abs=0.01)
+    assert degrees(lower.value) == pytest.approx(-degrees(atan2(16, 24) - asin(4 / hypot(24, 16))), abs=0.01)
+    assert upper.parts == lower.parts == ("base", "lever")
+    place = np.linalg.inv(X) @ np.append(upper.place, 1.0)
+    assert place[:2] == pytest.approx([0.032, 0.012], abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("stops", "expected"), [((-50, 50), (-0.040, 0.025)), ((-50, None), (-0.040, None)), ((None, None), (None, None))]
+)
+def test_a_slider_goes_from_stop_to_stop(stops, expected):
+    rail = box(-60, 60, -15, 15, -5, 0) + box(-60, 60, -15, -10, -1, 10) + box(-60, 60, 10, 15, -1, 10)
+    for stop, sign in zip(stops, (-1, 1), strict=True):
+        if stop is not None:
+            rail += box(*sorted((stop, stop + 5 * sign)), -11, 11, -1, 10)
+    (item,), derived = found(rail=rail, slider=box(-10, 25, -10, 10, 0, 8))
+    (joint,) = derived.joints
+    assert joint.type == "prismatic"
+    for end, value in zip((item.lower, item.upper), expected, strict=True):
+        assert end.status == ("unbounded" if value is None else "found")
+        assert end.value == (None if value is None else pytest.approx(value, abs=2e-6))
+    assert item.status == ("unbounded" if expected == (None, None) else "found")
+    if expected[1] is None:
+        assert item.upper.leaves == pytest.approx(0.070, abs=1e-6)
+
+
+@pytest.fixture
+def seeker(derive_design):
+    return derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+
+
+REACH = acos(-40 / hypot(11, 50))
+"""Where a corner of the pitch motor meets the back of the housing, seen from the yaw axis."""
+
+
+def test_the_gimbal_goes_until_its_motor_meets_the_back_of_the_housing(seeker):
+    yaw, pitch = seeker.simulation.ranges
+    assert degrees(yaw.upper.value) == pytest.approx(degrees(REACH - pi / 2 - atan2(11, 50)), abs=0.05)
+    assert degrees(yaw.lower.value) == pytest.approx(-degrees(REACH + pi / 2 - atan2(11, 50)), abs=0.05)
+    assert yaw.upper.parts == ("housing", "pitch_motor/stator")
+    assert pitch.status == "unbounded"
+    assert seeker.simulation.collisions == ()
+
+
+def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seeker):
+    from kinform import stages
+
+    function = seeker.assembly.function
+    yaw = next(joint for joint in function.joints if joint.name == "yaw")
+    others = tuple(joint for joint in function.joints if joint is not yaw)
+
+    def asked(limit):
+        joints = (replace(yaw, range=(-limit, limit)), *others)
+        drives = tuple(
+            replace(d, law=Law("sine", amplitude=degrees(limit), frequency=0.5)) if d.joint == "yaw" else d
+            for d in function.drives
+        )
+        made = replace(seeker.assembly, function=replace(function, joints=joints, drives=drives))
+        design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+        return design, {f.code: f for f in check(design).findings}
+
+    design, codes = asked(45 * pi / 180)
+    assert {"KF412", "KF505"} <= set(codes)
+    assert "KF904" not in codes
+    (met,) = design.simulation.collisions
+    stop = REACH - pi / 2 - atan2(11, 50)
+    assert met.time == pytest.approx(asin(stop / (45 * pi / 180)) / pi, abs=1e-3)
+    assert met.parts == ("housing", "pitch_motor/stator")
+    assert 0.0 < met.depth < 0.01
+    assert not {"KF412", "KF505", "KF904"} & set(asked(38 * pi / 180)[1])
+
+
+FREE = ["revolute_collars", "revolute_cone", "revolute_fork", "prismatic_spline", "prismatic_dovetail", "prismatic_two_dowels",
+        "prismatic_hexagon", "prismatic_drawer", "screw_right"]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_mating_surfaces_stop_nothing(derive_design, name):
+    design = derive_design(FIXTURES / "pairs" / name / f"{name}.toml")
+    assert [item.status for item in design.simulation.ranges] == ["unbounded"]
+
+
+def test_a_slider_crank_turns_freely_and_its_slider_goes_by_twice_the_crank(derive_design):
+    design = derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml")
+    known = {item.joint: item for item in design.simulation.ranges}
+    slide = known["frame~slider_unit"]
+    assert slide.upper.value - slide.lower.value == pytest.approx(0.050, abs=2e-6)
+    assert slide.upper.parts == ()
+    assert known["crank_unit~frame"].status == "unbounded"
+
+
+def test_the_clearance_of_two_parts_is_their_distance(seeker):
+    distance, places = collisions.clearance(seeker.assembly, [("camera", "housing")], {})
+    assert distance.shape == (1, 1)
+    assert np.linalg.norm(places[0, 0, 1] - places[0, 0, 0]) == pytest.approx(distance[0, 0], abs=1e-9)
+    assert distance[0, 0] == pytest.approx(0.015, abs=1e-6)
