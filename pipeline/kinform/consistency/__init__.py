@@ -7,7 +7,9 @@ what a code means.
 
 from __future__ import annotations
 
+from kinform.consistency import _words as words
 from kinform.consistency._check import check, verdict
+from kinform.consistency._compare import Comparison, compare
 from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
 from kinform.consistency._rule import Outcome, Rule
 from kinform.consistency.rules import RULES
@@ -15,13 +17,16 @@ from kinform.consistency.rules import RULES
 __all__ = [
     "CODE_VERSION",
     "RULES",
+    "Comparison",
     "Outcome",
     "Rule",
     "UnknownRuleError",
     "check",
+    "compare",
     "explain",
     "rules_markdown",
     "verdict",
+    "words",
 ]
 
 CODE_VERSION: int = 2
