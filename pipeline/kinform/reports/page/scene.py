@@ -150,7 +150,7 @@ class Scene:
 
     def _joint(self, joint: Joint) -> dict[str, Any]:
         number = {body.name: k for k, body in enumerate(self.bodies)}
-        point, size = self._placed(joint)
+        point, size = self.placed(joint)
         return {
             "name": joint.name,
             "type": joint.type,
@@ -165,7 +165,7 @@ class Scene:
             "size": size,
         }
 
-    def _placed(self, joint: Joint) -> tuple[Array, float]:
+    def placed(self, joint: Joint) -> tuple[Array, float]:
         """Where the joint's sign stands, and how large it is: about as large as its contact."""
         points = [self._patch(k).points for k in joint.patches]
         extent, centre = 0.0, None
