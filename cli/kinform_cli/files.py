@@ -26,6 +26,7 @@ __all__ = [
     "needing",
     "read",
     "read_by",
+    "write_bytes",
     "write_text",
 ]
 
@@ -100,10 +101,14 @@ def needing(path: Path) -> Iterator[None]:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file in one step, as UTF-8."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a file in one step."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
-        with draft.open("w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        draft.write_bytes(data)
         os.replace(draft, path)
     except BaseException:
         draft.unlink(missing_ok=True)

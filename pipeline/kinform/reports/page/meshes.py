@@ -6,6 +6,7 @@ Which facets belong together the recovered surfaces say; where there are none, t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,13 +38,19 @@ class Shape:
     lines: Ints
     """(E, 2)."""
 
+    @cached_property
     def normals(self) -> Array:
         """(V, 3) unit, from the facets around each vertex by area."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         facet = np.cross(b - a, c - a)
-        out = np.zeros_like(self.vertices)
-        for k in range(3):
-            np.add.at(out, self.faces[:, k], facet)
+        count = len(self.vertices)
+        out = np.stack(
+            [
+                sum(np.bincount(self.faces[:, k], facet[:, i], minlength=count) for k in range(3))
+                for i in range(3)
+            ],
+            axis=1,
+        )
         return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-300))
 
 

@@ -6,13 +6,13 @@ marked by a ring, overlaps red. The background is transparent.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.reports.page.colours import OVERLAP, SIGNAL, rgb
-from kinform.reports.page.meshes import Shape
 from kinform.reports.page.png import png
 from kinform.reports.page.raster import Buffers, View, rasterise, view_of
 from kinform.reports.page.scene import Scene, subjects
@@ -38,7 +38,7 @@ class _Item:
     colour: tuple[float, float, float]
 
 
-def overview_picture(scene: Scene, width: int = 1200, height: int = 750) -> bytes:
+def overview_picture(scene: Scene, width: int = 960, height: int = 600) -> bytes:
     """The whole assembly, with overlaps in red, as PNG."""
     names = [part.name for part in scene.design.assembly.parts]
     items = _items(scene, names)
@@ -52,7 +52,7 @@ def overview_picture(scene: Scene, width: int = 1200, height: int = 750) -> byte
     return png(_reduced(image))
 
 
-def finding_picture(scene: Scene, index: int, width: int = 560, height: int = 380) -> bytes:
+def finding_picture(scene: Scene, index: int, width: int = 480, height: int = 320) -> bytes:
     """What a finding is about, as PNG."""
     report = scene.design.report
     assert report is not None
@@ -95,25 +95,18 @@ def _items(scene: Scene, names: list[str]) -> list[_Item]:
     for part in scene.design.assembly.parts:
         if part.mesh is None or part.name not in wanted or not len(part.mesh.faces):
             continue
-        colour = rgb(scene.colours[scene.body_index[part.name]])
-        out.append(_placed(scene.shapes[part.mesh.digest], part.X_WP, colour))
+        corners, normals = scene.placed_corners(part.name)
+        out.append(_Item(corners, normals, rgb(scene.colours[scene.body_index[part.name]])))
     return out
 
 
-def _red(scene: Scene, wanted: object) -> list[_Item]:
+def _red(scene: Scene, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
     found = [] if scene.design.contacts is None else scene.design.contacts.interferences
-    assert callable(wanted)
     return [
-        _placed(shape, np.eye(4), rgb(OVERLAP))
+        _Item(shape.vertices[shape.faces], shape.normals[shape.faces], rgb(OVERLAP))
         for item, shape in zip(found, scene.overlaps, strict=True)
         if shape is not None and len(shape.faces) and wanted(item.parts)
     ]
-
-
-def _placed(shape: Shape, pose: Array, colour: tuple[float, float, float]) -> _Item:
-    places = shape.vertices @ pose[:3, :3].T + pose[:3, 3]
-    normals = shape.normals() @ pose[:3, :3].T
-    return _Item(places[shape.faces], normals[shape.faces], colour)
 
 
 def _cloud(items: list[_Item]) -> Array:

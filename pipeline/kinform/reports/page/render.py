@@ -27,7 +27,7 @@ from kinform.reports.page.verdict import verdict
 
 __all__ = ["page"]
 
-MOST_PICTURES = 40
+MOST_PICTURES = 24
 """Findings with a picture on the page; the others can be shown in the interactive view."""
 
 
@@ -61,7 +61,7 @@ def page(design: Design, scene: Scene | None = None) -> str:
         motions=packed["motions"],
         graph=Markup(graph_drawing(design.kinematics, scene.colours) if design.kinematics is not None else ""),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plots(design)],
-        overview=Markup(_data(overview_picture(scene, 960, 600))),
+        overview=Markup(_data(overview_picture(scene))),
         style=Markup(_asset("page.css")),
         program=Markup(program),
         digest=digest,

@@ -51,6 +51,21 @@ class Scene:
         return list(found.values())
 
     @cached_property
+    def _placed_corners(self) -> dict[str, tuple[Array, Array]]:
+        return {}
+
+    def placed_corners(self, name: str) -> tuple[Array, Array]:
+        """Corners (t, 3, 3) m of a part's facets in the world and the normals there; kept for the next picture."""
+        known = self._placed_corners
+        if name not in known:
+            part = self.design.assembly.part(name)
+            assert part.mesh is not None
+            shape = self.shapes[part.mesh.digest]
+            places = shape.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
+            known[name] = places[shape.faces], (shape.normals @ part.X_WP[:3, :3].T)[shape.faces]
+        return known[name]
+
+    @cached_property
     def bodies(self) -> tuple[Body, ...]:
         """Bodies; each part by itself where joints are not known."""
         if self.design.kinematics is not None:
