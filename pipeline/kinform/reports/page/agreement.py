@@ -15,7 +15,7 @@ from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.page.words import axis, contact, joint_sentence
+from kinform.reports.page.words import axis, contact, joint_sentence, place
 
 __all__ = ["MARKS", "Row", "rows"]
 
@@ -177,7 +177,7 @@ class _Table:
             text += f" {'along' if joint.type == 'prismatic' else 'normal to' if joint.type == 'planar' else 'about'} "
             text += axis(joint.axis) + (f" and {axis(joint.axis2)}" if joint.axis2 is not None else "")
         if joint.point is not None and joint.type not in ("prismatic", "planar", "fixed"):
-            text += f" through {words.place(joint.point, self.units)}"
+            text += f" through {place(joint.point, self.units)}"
         if joint.range is not None:
             text += f", range {_limits(joint, self.units)}"
         return text

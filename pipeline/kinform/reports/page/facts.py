@@ -9,7 +9,7 @@ from kinform.consistency import explain, words
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint
-from kinform.reports.page.words import assumption, joint_sentence, patch_words
+from kinform.reports.page.words import assumption, joint_sentence, patch_words, place
 from kinform.reports.words import where
 
 __all__ = ["Assumed", "FindingFacts", "JointFacts", "RuleFacts", "assumed", "findings", "joints", "rules"]
@@ -83,9 +83,9 @@ def findings(design: Design) -> list[FindingFacts]:
     units = design.assembly.units
     out = []
     for index, finding in enumerate(report.findings):
-        place = None if finding.place is None else words.place(finding.place, units)
+        spot = None if finding.place is None else place(finding.place, units)
         given = (
-            ("found", finding.found), ("intended", finding.intended), ("place", place),
+            ("found", finding.found), ("intended", finding.intended), ("place", spot),
             ("declared at", where(finding) or None),
         )  # fmt: skip
         out.append(

@@ -7,19 +7,21 @@ marked by a ring, overlaps red. The background is transparent.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.reports.page.colours import OVERLAP, SIGNAL, rgb
+from kinform.reports.page.meshes import Shape
 from kinform.reports.page.png import png
-from kinform.reports.page.raster import Buffers, View, rasterise, view_of
+from kinform.reports.page.raster import AXES, Buffers, View, rasterise, view_of
 from kinform.reports.page.scene import Scene, subjects
 
-__all__ = ["finding_picture", "overview_picture"]
+__all__ = ["Artist"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 FINER = 2
 """Pixels of the drawing to a pixel of the picture, each way."""
@@ -29,107 +31,145 @@ FAINT = 0.22
 
 @dataclass(frozen=True, eq=False)
 class _Item:
-    """A shape in the world with its colour."""
+    """A shape with its colour, in the axes of the eye."""
 
-    corners: Array
-    """(t, 3, 3) m."""
+    vertices: Array
+    """(V, 3) m."""
+    faces: Ints
+    """(t, 3), those that may be seen."""
     normals: Array
-    """(t, 3, 3) unit, at the corners."""
+    """(V, 3) unit."""
     colour: tuple[float, float, float]
 
 
-def overview_picture(scene: Scene, width: int = 960, height: int = 600) -> bytes:
-    """The whole assembly, with overlaps in red, as PNG."""
-    names = [part.name for part in scene.design.assembly.parts]
-    items = _items(scene, names)
-    if not items:
-        return png(np.zeros((height, width, 4), np.uint8))
-    view = view_of(_cloud(items), FINER * width, FINER * height)
-    image = _drawn(view, items)
-    red = _red(scene, lambda item: True)
-    if red:
-        image = _over(_drawn(view, red), image, 0.75)
-    return png(_reduced(image))
+class Artist:
+    """Draws one scene; what parts look like from the eye's side is worked out once."""
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+        self.known: dict[str, _Item] = {}
+
+    def overview(self, width: int = 960, height: int = 600) -> bytes:
+        """The whole assembly, with overlaps in red, as PNG."""
+        items = self._items([part.name for part in self.scene.design.assembly.parts])
+        if not items:
+            return png(np.zeros((height, width, 4), np.uint8))
+        view = view_of(_cloud(items), FINER * width, FINER * height)
+        image = _drawn(view, items)
+        red = self._red(lambda parts: True)
+        if red:
+            image = _over(_drawn(view, red), image, 0.75)
+        return png(_reduced(image))
+
+    def finding(self, index: int, width: int = 480, height: int = 320) -> bytes:
+        """What a finding is about, as PNG."""
+        scene = self.scene
+        report = scene.design.report
+        assert report is not None
+        finding = report.findings[index]
+        parts, joints = subjects(scene.design, finding.subject)
+        ends = {body for joint in scene.joints if joint.name in joints for body in joint.bodies}
+        parts += [p for body in scene.bodies if body.name in ends for p in body.parts if p not in parts]
+        names = [part.name for part in scene.design.assembly.parts]
+        chosen, rest = [n for n in names if n in parts], [n for n in names if n not in parts]
+        if not chosen:
+            chosen, rest = names, []
+        items, others = self._items(chosen), self._items(rest)
+        if not items:
+            return png(np.zeros((height, width, 4), np.uint8))
+        view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
+        place = None if finding.place is None else AXES @ np.array(finding.place)
+        if place is not None:
+            view = replace(view, target=0.4 * view.target + 0.6 * place, scale=1.25 * view.scale)
+        image = _drawn(view, items)
+        if others:
+            image = _over(image, _drawn(view, others), 1.0, FAINT)
+        red = self._red(lambda both: set(both) <= set(chosen))
+        if red:
+            image = _over(_drawn(view, red), image, 0.8)
+        for joint in scene.joints:
+            if joint.name in joints and joint.axis is not None:
+                point, size = scene.placed(joint)
+                ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
+                _stroke(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
+        if place is not None:
+            _ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
+        return png(_reduced(image))
+
+    def _items(self, names: list[str]) -> list[_Item]:
+        wanted = set(names)
+        out = []
+        for part in self.scene.design.assembly.parts:
+            if part.mesh is None or part.name not in wanted or not len(part.mesh.faces):
+                continue
+            if part.name not in self.known:
+                health = part.mesh.health
+                closed = health.watertight and health.consistent_winding and health.volume > 0.0
+                colour = rgb(self.scene.colours[self.scene.body_index[part.name]])
+                self.known[part.name] = _item(self.scene.shapes[part.mesh.digest], part.X_WP, colour, closed)
+            out.append(self.known[part.name])
+        return out
+
+    def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
+        found = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
+        return [
+            _item(shape, np.eye(4), rgb(OVERLAP), False)
+            for item, shape in zip(found, self.scene.overlaps, strict=True)
+            if shape is not None and len(shape.faces) and wanted(item.parts)
+        ]
 
 
-def finding_picture(scene: Scene, index: int, width: int = 480, height: int = 320) -> bytes:
-    """What a finding is about, as PNG."""
-    report = scene.design.report
-    assert report is not None
-    finding = report.findings[index]
-    parts, joints = subjects(scene.design, finding.subject)
-    ends = {body for joint in scene.joints if joint.name in joints for body in joint.bodies}
-    parts += [p for body in scene.bodies if body.name in ends for p in body.parts if p not in parts]
-    names = [part.name for part in scene.design.assembly.parts]
-    chosen, rest = [n for n in names if n in parts], [n for n in names if n not in parts]
-    if not chosen:
-        chosen, rest = names, []
-    items, others = _items(scene, chosen), _items(scene, rest)
-    if not items:
-        return png(np.zeros((height, width, 4), np.uint8))
-    view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
-    image = _drawn(view, items)
-    if others:
-        image = _over(image, _drawn(view, others), 1.0, FAINT)
-    red = _red(scene, lambda item: set(item) <= set(chosen))
-    if red:
-        image = _over(_drawn(view, red), image, 0.8)
-    lines = [_axis(scene, k) for k, joint in enumerate(scene.joints) if joint.name in joints and joint.axis is not None]
-    for line in lines:
-        _stroke(image, view.project(line)[:, :2], 2.0 * FINER)
-    if finding.place is not None:
-        _ring(image, view.project(np.array([finding.place]))[0, :2], 15.0 * FINER, 2.0 * FINER)
-    return png(_reduced(image))
-
-
-def _axis(scene: Scene, k: int) -> Array:
-    point, size = scene.placed(scene.joints[k])
-    axis = scene.joints[k].axis
-    assert axis is not None
-    return np.array([point - 1.6 * size * axis, point + 1.6 * size * axis])
-
-
-def _items(scene: Scene, names: list[str]) -> list[_Item]:
-    wanted = set(names)
-    out = []
-    for part in scene.design.assembly.parts:
-        if part.mesh is None or part.name not in wanted or not len(part.mesh.faces):
-            continue
-        corners, normals = scene.placed_corners(part.name)
-        out.append(_Item(corners, normals, rgb(scene.colours[scene.body_index[part.name]])))
-    return out
-
-
-def _red(scene: Scene, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
-    found = [] if scene.design.contacts is None else scene.design.contacts.interferences
-    return [
-        _Item(shape.vertices[shape.faces], shape.normals[shape.faces], rgb(OVERLAP))
-        for item, shape in zip(found, scene.overlaps, strict=True)
-        if shape is not None and len(shape.faces) and wanted(item.parts)
-    ]
+def _item(shape: Shape, pose: Array, colour: tuple[float, float, float], closed: bool) -> _Item:
+    """The shape at this pose in the world; of a closed one only what faces the eye."""
+    turn = AXES @ pose[:3, :3]
+    vertices = shape.vertices @ turn.T + AXES @ pose[:3, 3]
+    faces = shape.faces
+    if closed:
+        x, y = vertices[:, 0], vertices[:, 1]
+        a, b, c = faces.T
+        faces = faces[(x[b] - x[a]) * (y[c] - y[a]) > (y[b] - y[a]) * (x[c] - x[a])]
+    return _Item(vertices, faces, shape.normals @ turn.T, colour)
 
 
 def _cloud(items: list[_Item]) -> Array:
-    return np.concatenate([item.corners.reshape(-1, 3) for item in items])
+    return np.concatenate([item.vertices for item in items])
+
+
+def _within(view: View, projected: Array, faces: Ints) -> Ints:
+    """Those of the faces that may cover the middle of a pixel of the picture."""
+    a, b, c = faces.T
+    keep = np.ones(len(faces), bool)
+    for k, end in ((0, view.width), (1, view.height)):
+        at = projected[:, k] - 0.5
+        low = np.minimum(np.minimum(at[a], at[b]), at[c])
+        high = np.maximum(np.maximum(at[a], at[b]), at[c])
+        keep &= (high >= 0.0) & (low <= end - 1) & (np.floor(high) >= np.ceil(low))
+    return faces[keep]
 
 
 def _drawn(view: View, items: list[_Item]) -> Array:
     """(height, width, 4) of 0 … 1, colours not multiplied by their weight."""
-    corners = np.concatenate([item.corners for item in items])
-    normals = np.concatenate([item.normals for item in items])
-    colours = np.repeat(np.array([item.colour for item in items]), [len(item.corners) for item in items], axis=0)
-    owner = np.repeat(np.arange(len(items)), [len(item.corners) for item in items])
-    projected = view.project(corners.reshape(-1, 3)).reshape(-1, 3, 3)
-    buffers = rasterise(view, projected)
+    projected = [view.project(item.vertices) for item in items]
+    kept = [_within(view, places, item.faces) for places, item in zip(projected, items, strict=True)]
+    starts = np.cumsum([0, *(len(item.vertices) for item in items)])
+    faces = np.concatenate([own + start for own, start in zip(kept, starts, strict=False)])
+    owner = np.repeat(np.arange(len(items)), [len(own) for own in kept])
     image = np.zeros((view.height, view.width, 4))
+    if not len(faces):
+        return image
+    corners = np.concatenate(projected)[faces]
+    buffers = rasterise(view, corners)
     seen = buffers.facet >= 0
     facet = buffers.facet[seen]
     rows, columns = np.nonzero(seen)
-    weights = _weights(projected[facet], columns + 0.5, rows + 0.5)
-    normal = np.einsum("nk,nki->ni", weights, normals[facet]) @ view.R.T
+    weights = _weights(corners[facet], columns + 0.5, rows + 0.5)
+    normals, own = np.concatenate([item.normals for item in items]), faces[facet]
+    normal = sum(weights[:, k, None] * normals[own[:, k]] for k in range(3))
+    assert not isinstance(normal, int)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     normal *= np.where(normal[:, 2:] < 0.0, -1.0, 1.0)
-    image[seen, :3] = _lit(colours[facet], normal)
+    colours = np.array([item.colour for item in items])[owner[facet]]
+    image[seen, :3] = _lit(colours, normal)
     image[seen, 3] = 1.0
     _outline(image, buffers, seen, owner, normal, view)
     return image

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 
 import numpy as np
@@ -103,7 +103,7 @@ def _efforts(design: Design, run: Simulation) -> list[Plot]:
     for name, _, unit, column in coordinates(run):
         values = run.joint_effort[:, column] if run.joint_effort.size else np.zeros(0)
         if len(values) and np.isfinite(values).any() and np.nanmax(np.abs(values)) > 0.0:
-            out.append(Plot(name, "N" if unit == "m" else "N·m", (Series("", values),)))
+            out.append(_scaled(Plot(name, "N" if unit == "m" else "N·m", (Series("", values),))))
     return out
 
 
@@ -116,7 +116,7 @@ def _reactions(run: Simulation) -> list[Plot]:
     for k, name in enumerate(run.joint_names):
         for unit, part, what in (("N", slice(3, 6), "force"), ("N·m", slice(0, 3), "torque")):
             size = np.linalg.norm(wrenches[:, k, part], axis=1)
-            out.append(Plot(f"{name}: {what}", unit, (Series("", size),)))
+            out.append(_scaled(Plot(f"{name}: {what}", unit, (Series("", size),))))
     return out
 
 
@@ -128,9 +128,20 @@ def _energy(run: Simulation) -> list[Plot]:
     series = tuple(Series(name, run.energy[:, k] - base[k]) for k, name in enumerate(names))
     balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
     return [
-        Plot("Energy (potential from its start)", "J", series),
-        Plot("Error of the balance: kinetic + potential − work", "J", (Series("", balance - balance[0]),)),
+        _scaled(Plot("Energy, potential from its start", "J", series)),
+        _scaled(Plot("Error of the balance", "J", (Series("", balance - balance[0]),))),
     ]
+
+
+def _scaled(plot: Plot) -> Plot:
+    """The plot with a prefix before its unit, so that its numbers are short."""
+    largest = max((float(np.nanmax(np.abs(s.values), initial=0.0)) for s in plot.series), default=0.0)
+    for factor, prefix in ((1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"), (1e-15, "f")):
+        if largest >= factor:
+            return replace(
+                plot, unit=prefix + plot.unit, series=tuple(replace(s, values=s.values / factor) for s in plot.series)
+            )
+    return plot
 
 
 def _scale(unit: str, units: str, metres: float) -> tuple[float, str]:
@@ -172,14 +183,14 @@ def drawn(plot: Plot, time: Array) -> str:
         for k, series in enumerate(plot.series):
             at = LEFT + 104.0 * k
             parts.append(
-                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{HEIGHT - 5}" y2="{HEIGHT - 5}"/>'
-                f'<text class="tick" x="{at + 23}" y="{HEIGHT - 1.5}">{escape(series.label)}</text>'
+                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{HEIGHT + 8}" y2="{HEIGHT + 8}"/>'
+                f'<text class="tick" x="{at + 23}" y="{HEIGHT + 12}">{escape(series.label)}</text>'
             )
     parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{TOP}" y2="{BOTTOM}"/>')
     spoken = escape(_spoken(plot, start, end), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
+        f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
         f'data-to="{end!r}" data-left="{LEFT}" data-right="{RIGHT}">{"".join(parts)}</svg></figure>'
     )
 
@@ -207,7 +218,7 @@ def _ticks(plot: Plot) -> list[float]:
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= 0.999 * raw)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
-    return [k * step for k in range(first, last + 1)]
+    return [k * step if k else 0.0 for k in range(first, last + 1)]
 
 
 def _path(x: Array, y: Array) -> str:
@@ -236,6 +247,4 @@ def _thinned(y: Array) -> Sequence[int]:
 
 def _number(value: float) -> str:
     text = f"{value + 0.0:.4g}"
-    if abs(value) < 1e-12:
-        return "0"
     return text.replace("-", "−")

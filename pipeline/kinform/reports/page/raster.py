@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Buffers", "View", "rasterise", "view_of"]
+__all__ = ["AXES", "Buffers", "View", "rasterise", "view_of"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -21,25 +21,36 @@ PORTION = 3_000_000
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
 
 
+TURN, RISE = -0.95, 0.42
+"""Whence everything is seen: angle about z, and above the ground (rad)."""
+
+
+def _axes() -> Array:
+    """(3, 3) rows: right, up, towards the eye."""
+    back = np.array([np.cos(RISE) * np.cos(TURN), np.cos(RISE) * np.sin(TURN), np.sin(RISE)])
+    right = np.array([-np.sin(TURN), np.cos(TURN), 0.0])
+    return np.array([right, np.cross(back, right), back])
+
+
+AXES = _axes()
+
+
 @dataclass(frozen=True, eq=False)
 class View:
-    """An eye: world to picture, with parallel rays."""
+    """What part of the world, turned into the axes of the eye, a picture shows; rays are parallel."""
 
-    R: Array
-    """(3, 3) rows: right, up, towards the eye."""
     target: Array
-    """(3,) m, in the middle of the picture."""
+    """(3,) m, in the axes of the eye, in the middle of the picture."""
     scale: float
     """Pixels a metre."""
     width: int
     height: int
 
-    def project(self, points: Array) -> Array:
-        """(n, 3) pixels to the right, pixels down, nearness (m)."""
-        seen = (points - self.target) @ self.R.T
-        return np.stack(
-            [0.5 * self.width + self.scale * seen[:, 0], 0.5 * self.height - self.scale * seen[:, 1], seen[:, 2]], axis=1
-        )
+    def project(self, seen: Array) -> Array:
+        """(n, 3) pixels to the right, pixels down, nearness (m), of places (n, 3) in the axes of the eye."""
+        out = (seen - self.target) * np.array([self.scale, -self.scale, 1.0])
+        out += np.array([0.5 * self.width, 0.5 * self.height, 0.0])
+        return np.asarray(out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,17 +61,12 @@ class Buffers:
     near: Array
 
 
-def view_of(points: Array, width: int, height: int, turn: float = -0.95, rise: float = 0.42, margin: float = 1.08) -> View:
-    """The view that holds all points (n, 3), seen from `turn` about z and `rise` above the ground (rad)."""
-    back = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
-    right = np.cross([0.0, 0.0, 1.0], back)
-    right /= np.linalg.norm(right)
-    R = np.array([right, np.cross(back, right), back])
-    seen = points @ R.T
+def view_of(seen: Array, width: int, height: int, margin: float = 1.08) -> View:
+    """The view that holds all places (n, 3), given in the axes of the eye."""
     low, high = seen.min(axis=0), seen.max(axis=0)
     span = np.maximum(high - low, 1e-9 * max(float((high - low).max()), 1e-9))
     scale = min(width / (margin * span[0]), height / (margin * span[1]))
-    return View(R, 0.5 * (low + high) @ R, float(scale), width, height)
+    return View(0.5 * (low + high), float(scale), width, height)
 
 
 def rasterise(view: View, corners: Array) -> Buffers:
@@ -93,9 +99,8 @@ class _Rows:
 
 
 def _rows(view: View, corners: Array) -> _Rows:
-    y = corners[..., 1]
-    top = np.clip(np.ceil(y.min(axis=1) - 0.5), 0, view.height).astype(np.int64)
-    bottom = np.clip(np.floor(y.max(axis=1) - 0.5), -1, view.height - 1).astype(np.int64)
+    top = np.clip(np.ceil(_least(corners[..., 1]) - 0.5), 0, view.height).astype(np.int64)
+    bottom = np.clip(np.floor(-_least(-corners[..., 1]) - 0.5), -1, view.height - 1).astype(np.int64)
     count = np.maximum(bottom - top + 1, 0)
     facet = np.repeat(np.arange(len(corners)), count)
     row = np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count) + top[facet]
@@ -116,6 +121,11 @@ def _rows(view: View, corners: Array) -> _Rows:
     last = np.clip(np.floor(right - 0.5), -1, view.width - 1).astype(np.int64)
     some = last >= first
     return _Rows(facet[some], row[some], first[some], last[some])
+
+
+def _least(values: Array) -> Array:
+    """Of each row of three; much faster than a reduction over a short axis."""
+    return np.asarray(np.minimum(np.minimum(values[:, 0], values[:, 1]), values[:, 2]))
 
 
 def _fill(

@@ -20,7 +20,7 @@ from kinform.model.design import Design
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.colours import FITS
 from kinform.reports.page.drawing import graph_drawing
-from kinform.reports.page.pictures import finding_picture, overview_picture
+from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plots
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.verdict import verdict
@@ -38,7 +38,8 @@ def page(design: Design, scene: Scene | None = None) -> str:
     program = _asset_program()
     digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii")
     found = facts.findings(design)
-    pictures = {f.index: _data(finding_picture(scene, f.index)) for f in found[:MOST_PICTURES]}
+    artist = Artist(scene)
+    pictures = {f.index: _data(artist.finding(f.index)) for f in found[:MOST_PICTURES]}
     template = _environment().from_string(_asset("page.html.j2"))
     return template.render(
         version=__version__,
@@ -61,7 +62,7 @@ def page(design: Design, scene: Scene | None = None) -> str:
         motions=packed["motions"],
         graph=Markup(graph_drawing(design.kinematics, scene.colours) if design.kinematics is not None else ""),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plots(design)],
-        overview=Markup(_data(overview_picture(scene))),
+        overview=Markup(_data(artist.overview())),
         style=Markup(_asset("page.css")),
         program=Markup(program),
         digest=digest,

@@ -51,21 +51,6 @@ class Scene:
         return list(found.values())
 
     @cached_property
-    def _placed_corners(self) -> dict[str, tuple[Array, Array]]:
-        return {}
-
-    def placed_corners(self, name: str) -> tuple[Array, Array]:
-        """Corners (t, 3, 3) m of a part's facets in the world and the normals there; kept for the next picture."""
-        known = self._placed_corners
-        if name not in known:
-            part = self.design.assembly.part(name)
-            assert part.mesh is not None
-            shape = self.shapes[part.mesh.digest]
-            places = shape.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-            known[name] = places[shape.faces], (shape.normals @ part.X_WP[:3, :3].T)[shape.faces]
-        return known[name]
-
-    @cached_property
     def bodies(self) -> tuple[Body, ...]:
         """Bodies; each part by itself where joints are not known."""
         if self.design.kinematics is not None:
@@ -113,6 +98,15 @@ class Scene:
         return () if self.design.kinematics is None else self.design.kinematics.joints
 
     @cached_property
+    def wanted(self) -> dict[str, list[str]]:
+        """Names that the designer gave to derived joints."""
+        names: dict[str, list[str]] = {}
+        for joint in self.design.assembly.function.joints:
+            for found in subjects(self.design, [joint.name])[1]:
+                names.setdefault(found, []).append(joint.name)
+        return names
+
+    @cached_property
     def freedoms(self) -> list[Showing]:
         """Freedoms as motions."""
         return [] if self.design.kinematics is None else freedom_motions(self.design.kinematics, self.size)
@@ -130,6 +124,7 @@ class Scene:
             "high": high,
             "unit": self.design.assembly.units,
             "metres": metres_per(self.design.assembly.units),
+            "meshes": meshes,
             "bodies": [
                 {"name": body.name, "ground": body.ground, "colour": colour}
                 for body, colour in zip(self.bodies, self.colours, strict=True)
@@ -168,6 +163,7 @@ class Scene:
         point, size = self.placed(joint)
         return {
             "name": joint.name,
+            "wanted": ", ".join(self.wanted.get(joint.name, [])),
             "type": joint.type,
             "status": joint.status,
             "text": joint_sentence(joint, self.design.assembly.units),
@@ -263,7 +259,9 @@ class Scene:
             moving = [index[name] for name in showing.bodies]
             poses = showing.poses[:, moving]
             what = "turn" if showing.turns else "slide"
-            subject = showing.driver if showing.driver is not None else ", ".join(showing.bodies)
+            subject = ", ".join(showing.bodies)
+            if showing.driver is not None:
+                subject = ", ".join(self.wanted.get(showing.driver, [showing.driver]))
             motions.append(
                 {
                     "kind": "freedom",

@@ -6,7 +6,7 @@ import re
 
 from kinform.model.design import Design
 from kinform.reports.page import agreement, facts
-from kinform.reports.page.pictures import finding_picture, overview_picture
+from kinform.reports.page.pictures import Artist
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.verdict import verdict
 
@@ -18,9 +18,10 @@ MOST = 40
 
 def pictures(scene: Scene) -> dict[str, bytes]:
     """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first."""
-    out = {"overview.png": overview_picture(scene)}
+    artist = Artist(scene)
+    out = {"overview.png": artist.overview(1200, 750)}
     for name, finding in _named(scene.design):
-        out[name] = finding_picture(scene, finding.index)
+        out[name] = artist.finding(finding.index, 720, 480)
     return out
 
 

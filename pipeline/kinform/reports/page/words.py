@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from kinform.consistency import words
 from kinform.model.assembly import Assumption
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Body, Joint
+from kinform.model.kinematics import Joint
 
-__all__ = ["assumption", "axis", "contact", "joint_sentence", "number", "parts_of", "patch_words"]
+__all__ = ["assumption", "axis", "contact", "gap_words", "joint_sentence", "number", "patch_words", "place"]
 
 number = words.number
 
@@ -39,7 +39,7 @@ def joint_sentence(joint: Joint, units: str) -> str:
     if joint.pitch is not None:
         text += f", {words.length(joint.pitch, units)} a turn"
     if joint.point is not None and joint.type not in ("fixed", "prismatic", "planar"):
-        text += f" through {words.place(joint.point, units)}"
+        text += f" through {place(joint.point, units)}"
     return text
 
 
@@ -48,9 +48,7 @@ def patch_words(patch: Patch, units: str) -> str:
     text = patch.kind + (" (surface on one side)" if patch.one_sided else "")
     if patch.kind in ("cylinder", "sphere") and max(patch.radii) > 0.0:
         text += f" ⌀{words.length(2.0 * max(patch.radii), units)}"
-    gap = 0.0 if abs(patch.gap) < 1e-9 else patch.gap
-    fit = patch.fit if not gap else f"{patch.fit}, gap {words.length(gap, units, 3)}"
-    return f"{text}, {fit}, {words.area(patch.area, units)}"
+    return f"{text}, {patch.fit}{gap_words(patch.gap, units)}, {words.area(patch.area, units)}"
 
 
 def contact(patches: list[Patch], units: str) -> str:
@@ -71,6 +69,16 @@ def assumption(item: Assumption) -> str:
     return "do not touch" if item.ignore else f"are joined: {item.type}"
 
 
-def parts_of(body: Body) -> str:
-    """The parts of a body, in one line."""
-    return ", ".join(body.parts)
+def place(point: Iterable[float], units: str) -> str:
+    """A point (m) as "(12.345, 0, −4) mm", to a thousandth of the unit."""
+    values = [float(v) for v in point]
+    unit, metres = ("m", 1.0) if max(map(abs, values), default=0.0) >= 1.0 else ("mm", 1e-3)
+    if units in ("in", "ft"):
+        unit, metres = "in", 0.0254
+    texts = (f"{round(v / metres, 3) + 0.0:.3f}".rstrip("0").rstrip(".").replace("-", "−") for v in values)
+    return f"({', '.join(texts)}) {unit}"
+
+
+def gap_words(gap: float, units: str) -> str:
+    """ ", gap 0.05 mm"; nothing below a ten-millionth of a metre."""
+    return "" if abs(gap) < 1e-7 else f", gap {words.length(gap, units, 3)}".replace("-", "−")

@@ -7,7 +7,10 @@ async function start() {
   const renderer = new Renderer(canvas, scene, blob);
   const controls = new Controls(new State(scene, motions), renderer);
   canvas.addEventListener("webglcontextlost", () => { document.body.dataset.viewer = "lost"; });
+  controls.state.camera.aspect = renderer.resize();
+  controls.state.fit([]);
   controls.paint();
+  performance.mark("viewer ready");
   document.body.dataset.viewer = "ready";
   return controls;
 }

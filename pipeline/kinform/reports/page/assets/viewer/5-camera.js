@@ -3,20 +3,33 @@
 class Camera {
   constructor(low, high) {
     this.home = { low, high };
+    this.whole = Math.max(V.length(V.sub(high, low)), 1e-9);
     this.angle = (28 * Math.PI) / 180;
-    this.reset();
+    this.aspect = 1.4;
+    this.target = V.scale(V.add(low, high), 0.5);
+    this.distance = this.whole / Math.sin(this.angle / 2) / 2;
+    this.first();
   }
 
-  reset() {
+  first() {
     this.turn = -0.95;
     this.rise = 0.42;
-    this.fit(this.home.low, this.home.high);
   }
 
-  fit(low, high) {
-    this.target = V.scale(V.add(low, high), 0.5);
-    this.radius = Math.max(V.length(V.sub(high, low)) / 2, 1e-9);
-    this.distance = (1.06 * this.radius) / Math.sin(this.angle / 2);
+  get wide() { return this.aspect < 1 ? 2 * Math.atan(Math.tan(this.angle / 2) / this.aspect) : this.angle; }
+
+  // Come as near as lets all points be seen.
+  fit(points) {
+    const view = this.view();
+    const axes = [[view[0], view[4], view[8]], [view[1], view[5], view[9]], [view[2], view[6], view[10]]];
+    const seen = points.map((p) => axes.map((axis) => V.dot(axis, p)));
+    const low = [0, 1, 2].map((k) => Math.min(...seen.map((p) => p[k])));
+    const high = [0, 1, 2].map((k) => Math.max(...seen.map((p) => p[k])));
+    const middle = [0, 1, 2].map((k) => (low[k] + high[k]) / 2);
+    this.target = axes.reduce((sum, axis, k) => V.add(sum, V.scale(axis, middle[k])), [0, 0, 0]);
+    const up = Math.tan(this.wide / 2), across = up * this.aspect;
+    const needed = seen.map((p) => Math.max(Math.abs(p[0] - middle[0]) / across, Math.abs(p[1] - middle[1]) / up) * 1.12 + p[2] - middle[2]);
+    this.distance = Math.max(...needed, this.whole * 0.01);
   }
 
   get eye() {
@@ -26,11 +39,11 @@ class Camera {
 
   view() { return M.look(this.eye, this.target, [0, 0, 1]); }
 
-  projection(aspect) {
-    const whole = V.length(V.sub(this.home.high, this.home.low)) * 2 + V.length(V.sub(this.target, V.scale(V.add(this.home.low, this.home.high), 0.5)));
-    const near = Math.max(this.distance - whole, this.distance * 0.02);
-    const wide = aspect < 1 ? 2 * Math.atan(Math.tan(this.angle / 2) / aspect) : this.angle;
-    return M.perspective(wide, aspect, near, this.distance + whole);
+  projection() {
+    const middle = V.scale(V.add(this.home.low, this.home.high), 0.5);
+    const reach = 2.2 * this.whole + V.length(V.sub(this.target, middle));
+    const near = Math.max(this.distance - reach, this.distance * 0.02);
+    return M.perspective(this.wide, this.aspect, near, this.distance + reach);
   }
 
   orbit(dx, dy) {
@@ -47,8 +60,7 @@ class Camera {
   }
 
   zoom(factor) {
-    const least = this.home ? V.length(V.sub(this.home.high, this.home.low)) * 0.01 : 0;
-    this.distance = Math.max(least, this.distance * factor);
+    this.distance = Math.max(this.whole * 0.01, this.distance * factor);
   }
 
   from(direction) {

@@ -27,6 +27,7 @@ class Renderer {
     const height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     this.ratio = ratio;
+    return width / height;
   }
 
   use(name) {
@@ -41,7 +42,7 @@ class Renderer {
   begin(camera, colour) {
     const { gl, canvas } = this;
     this.view = camera.view();
-    this.projection = camera.projection(canvas.width / canvas.height);
+    this.projection = camera.projection();
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...colour, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -60,7 +61,7 @@ class Renderer {
   // state: camera, poses of parts (models) and bodies, how each part is shown, layers, selection, theme.
   draw(state) {
     const { gl, scene } = this;
-    this.resize();
+    state.camera.aspect = this.resize();
     this.begin(state.camera, state.theme.back);
     const opaque = [], ghosts = [];
     scene.parts.forEach((part, k) => {
@@ -76,7 +77,8 @@ class Renderer {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
     this.parts(state, ghosts, 1);
-    if (state.layers.edges) this.edges(state, ghosts, 0.16);
+    if (state.layers.edges) this.edges(state, ghosts, 0.05);
+    gl.enable(gl.BLEND);
     // what lies behind something opaque shows through it faintly
     gl.depthFunc(gl.GREATER);
     if (state.layers.overlaps) this.red(state, 0.4);
@@ -159,7 +161,7 @@ class Renderer {
     scene.joints.forEach((joint, k) => {
       if (state.jointHidden(k)) return;
       const chosen = state.joint === k;
-      gl.uniform1f(at.width, (numbered ? 5 : chosen ? 2.4 : 1.5) * this.ratio);
+      gl.uniform1f(at.width, (numbered ? 5 : chosen ? 1.9 : 1.1) * this.ratio);
       gl.uniformMatrix4fv(at.model, false, state.shown[joint.bodies[0]]);
       const colour = numbered ? colourOfNumber(this.firstJoint + k) : [...(chosen ? state.theme.chosen : state.theme.sign), strength];
       gl.uniform4f(at.colour, ...colour);

@@ -94,20 +94,18 @@ class State {
     }
   }
 
-  // The box of parts at their present pose.
+  // Look at parts at their present pose; at all that are shown where the list is empty.
   fit(parts) {
     const list = parts.length ? parts : this.scene.parts.map((_, k) => k).filter((k) => !this.hidden.has(k));
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const points = [];
     for (const k of list) {
       const part = this.scene.parts[k];
-      const mesh = part.mesh >= 0 ? this.scene.meshes[part.mesh] : { low: [0, 0, 0], size: [0, 0, 0] };
-      for (let c = 0; c < 8; c++) {
-        const corner = [0, 1, 2].map((i) => mesh.low[i] + ((c >> i) & 1) * mesh.size[i]);
-        const at = M.point(this.models[k], corner);
-        for (let i = 0; i < 3; i++) { low[i] = Math.min(low[i], at[i]); high[i] = Math.max(high[i], at[i]); }
-      }
+      if (part.mesh < 0) continue;
+      const mesh = this.scene.meshes[part.mesh];
+      for (let c = 0; c < 8; c++) points.push(M.point(this.models[k], [0, 1, 2].map((i) => mesh.low[i] + ((c >> i) & 1) * mesh.size[i])));
     }
-    if (!list.length || !(high[0] > low[0] || high[1] > low[1] || high[2] > low[2])) this.camera.fit(this.scene.low, this.scene.high);
-    else this.camera.fit(low, high);
+    const { low, high } = this.scene;
+    if (!points.length) for (let c = 0; c < 8; c++) points.push([0, 1, 2].map((i) => (((c >> i) & 1) ? high : low)[i]));
+    this.camera.fit(points);
   }
 }

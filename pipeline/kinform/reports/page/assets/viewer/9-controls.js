@@ -64,7 +64,7 @@ class Controls {
       mark(`[data-body="${part.body}"]`);
     } else if (kind === "joint") {
       const joint = scene.joints[index];
-      text = `Joint ${joint.name}: ${joint.text}, ${joint.status}`;
+      text = `Joint ${joint.wanted ? joint.wanted + ", " : ""}${joint.name}: ${joint.text}, ${joint.status}`;
       mark(`[data-joint="${index}"]`);
       joint.bodies.forEach((body) => mark(`svg [data-body="${body}"]`));
     } else if (kind === "body") {
@@ -184,7 +184,7 @@ class Controls {
       ArrowDown: (e) => (e.shiftKey ? camera.pan(0, -0.06) : camera.orbit(0, -0.12)),
       "+": () => camera.zoom(0.85), "=": () => camera.zoom(0.85), "-": () => camera.zoom(1.18),
       "1": () => camera.from("front"), "2": () => camera.from("right"), "3": () => camera.from("top"),
-      "0": () => camera.reset(),
+      "0": () => { camera.first(); state.fit([]); },
       f: () => this.fit(), x: () => this.flip("xray"), c: () => this.flip("contacts"), a: () => this.flip("joints"),
       e: () => this.explode(state.explosion > 0 ? 0 : 0.6),
       h: () => this.hide(), s: () => this.showAll(),
