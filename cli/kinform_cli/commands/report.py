@@ -65,7 +65,5 @@ def _folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise refuse(
-            f"the folder cannot be made: {error.strerror}", file=path, remedy="name another folder"
-        ) from None
+        raise refuse(f"the folder cannot be made: {error.strerror}", file=path, remedy="name another folder") from None
     files.check_text_output(path / "summary.md")

@@ -133,7 +133,9 @@ class _Table:
     def _motion(self) -> Row:
         run = self.design.simulation
         assert run is not None
-        drives = [f"{d.joint}: {d.kind}" + (f" ({d.law.type})" if d.law else "") for d in self.design.assembly.function.drives]
+        drives = [
+            f"{d.joint}: {d.kind}" + (f" ({d.law.type})" if d.law else "") for d in self.design.assembly.function.drives
+        ]
         codes = ("KF409", "KF410", "KF501", "KF502", "KF503", "KF504")
         findings = [k for k, f in enumerate(self.findings) if f.code in codes or f.code[:3] == "KF5"]
         level = f"{run.level} simulation " if run.level else "simulation "
@@ -143,12 +145,21 @@ class _Table:
         mark = (run.status == "done") or None
         return self._made("motion", form, text, "; ".join(drives), findings, mark if drives else None, "KF501")
 
-    def _row(self, name: str, form: str, behaviour: str, function: str, names: tuple[str, ...], right: bool | None) -> Row:
+    def _row(
+        self, name: str, form: str, behaviour: str, function: str, names: tuple[str, ...], right: bool | None
+    ) -> Row:
         findings = [k for k, f in enumerate(self.findings) if set(f.subject) & set(names)]
         return self._made(name, form, behaviour, function, findings, right, None)
 
     def _made(
-        self, name: str, form: str, behaviour: str, function: str, findings: list[int], right: bool | None, rule: str | None
+        self,
+        name: str,
+        form: str,
+        behaviour: str,
+        function: str,
+        findings: list[int],
+        right: bool | None,
+        rule: str | None,
     ) -> Row:
         """`right`: what was found is what was asked for; None: there is nothing to compare, or no answer."""
         self.used.update(findings)

@@ -43,7 +43,10 @@ def graph_drawing(kinematics: Kinematics, colours: list[str]) -> str:
             at[k] = (x + wide[k] / 2, 26.0 + ROW * level)
             x += wide[k] + GAP
     height = 26.0 + ROW * (len(rows) - 1) + 34.0
-    drawn = [_joint(k, joint, at[edges[k][0]], at[edges[k][1]], _twins(edges, k)) for k, joint in enumerate(kinematics.joints)]
+    drawn = [
+        _joint(k, joint, at[edges[k][0]], at[edges[k][1]], _twins(edges, k))
+        for k, joint in enumerate(kinematics.joints)
+    ]
     for k, body in enumerate(bodies):
         x, y = at[k]
         ground_mark = f'<path class="earth" d="{_earth(x, y + BOX / 2, wide[k])}"/>' if body.ground else ""

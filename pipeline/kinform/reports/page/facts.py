@@ -120,7 +120,9 @@ def joints(design: Design) -> list[JointFacts]:
     for joint in design.assembly.function.joints:
         ends = frozenset(kinematics.body_of(design.assembly.parts_of(side)[0]).name for side in joint.between)
         wanted.setdefault(ends, []).append(joint.name)
-    return [_joint(design, k, joint, wanted.get(frozenset(joint.bodies), [])) for k, joint in enumerate(kinematics.joints)]
+    return [
+        _joint(design, k, joint, wanted.get(frozenset(joint.bodies), [])) for k, joint in enumerate(kinematics.joints)
+    ]
 
 
 def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> JointFacts:
@@ -172,7 +174,9 @@ def assumed(design: Design) -> list[Assumed]:
         for part in assembly.parts
         if part.override is not None
     ]
-    out += [Assumed(you, part.name, "surfaces only, not a solid") for part in assembly.parts if not part.solid and part.mesh]
+    out += [
+        Assumed(you, part.name, "surfaces only, not a solid") for part in assembly.parts if not part.solid and part.mesh
+    ]
     out += [Assumed(we, "reading", note) for note in assembly.notes]
     if design.kinematics is not None:
         if assembly.ground is None:

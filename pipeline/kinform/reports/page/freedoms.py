@@ -68,7 +68,7 @@ def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Arra
     diagonal = np.abs(np.diag(triangle))
     rank = int(np.count_nonzero(diagonal > 1e-7 * max(float(diagonal.max(initial=0.0)), 1e-300)))
     chosen = np.sort(order[:rank])
-    return [int(k) for k in chosen], np.linalg.pinv(rates[:, chosen])
+    return [int(k) for k in chosen], np.asarray(np.linalg.pinv(rates[:, chosen]), dtype=np.float64)
 
 
 def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, size: float) -> list[Showing]:

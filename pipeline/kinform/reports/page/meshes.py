@@ -45,10 +45,7 @@ class Shape:
         facet = np.cross(b - a, c - a)
         count = len(self.vertices)
         out = np.stack(
-            [
-                sum(np.bincount(self.faces[:, k], facet[:, i], minlength=count) for k in range(3))
-                for i in range(3)
-            ],
+            [sum(np.bincount(self.faces[:, k], facet[:, i], minlength=count) for k in range(3)) for i in range(3)],
             axis=1,
         )
         return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-300))
@@ -89,9 +86,11 @@ def _split(vertices: Array, faces: Ints, labels: Ints, loose: NDArray[np.bool_])
     drawn = (angle > LINE) & (~same | (loose[first] & (angle > CREASE)))
     # each line at the vertices of its first facet
     owner = first[drawn]
-    lines = np.stack(
-        [_corner_of(faces, index.reshape(-1, 3), owner, ends[drawn, k]) for k in (0, 1)], axis=1
-    ) if len(owner) else np.zeros((0, 2), np.int64)
+    lines = (
+        np.stack([_corner_of(faces, index.reshape(-1, 3), owner, ends[drawn, k]) for k in (0, 1)], axis=1)
+        if len(owner)
+        else np.zeros((0, 2), np.int64)
+    )
     order, renamed = _first_use(index)
     return Shape(vertices[at[order]], renamed[index].reshape(-1, 3), renamed[lines])
 

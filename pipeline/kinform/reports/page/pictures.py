@@ -6,7 +6,7 @@ marked by a ring, overlaps red. The background is transparent.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -96,7 +96,7 @@ class Artist:
             _ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         return png(_reduced(image))
 
-    def _items(self, names: list[str]) -> list[_Item]:
+    def _items(self, names: Sequence[str]) -> list[_Item]:
         wanted = set(names)
         out = []
         for part in self.scene.design.assembly.parts:
@@ -162,7 +162,7 @@ def _drawn(view: View, items: list[_Item]) -> Array:
     seen = buffers.facet >= 0
     facet = buffers.facet[seen]
     rows, columns = np.nonzero(seen)
-    weights = _weights(corners[facet], columns + 0.5, rows + 0.5)
+    weights = _weights(corners[facet], columns.astype(np.float64) + 0.5, rows.astype(np.float64) + 0.5)
     normals, own = np.concatenate([item.normals for item in items]), faces[facet]
     normal = sum(weights[:, k, None] * normals[own[:, k]] for k in range(3))
     assert not isinstance(normal, int)
@@ -256,4 +256,4 @@ def _reduced(image: Array) -> NDArray[np.uint8]:
     height, width = (n // FINER for n in image.shape[:2])
     mean = weighted.reshape(height, FINER, width, FINER, 4).mean(axis=(1, 3))
     mean[..., :3] /= np.maximum(mean[..., 3:], 1e-9)
-    return np.rint(255.0 * np.clip(mean, 0.0, 1.0)).astype(np.uint8)
+    return np.asarray(np.rint(255.0 * np.clip(mean, 0.0, 1.0)).astype(np.uint8))

@@ -129,7 +129,14 @@ def _least(values: Array) -> Array:
 
 
 def _fill(
-    view: View, corners: Array, rows: _Rows, lengths: Ints, part: slice, depth: NDArray[np.uint64], low: float, reach: float
+    view: View,
+    corners: Array,
+    rows: _Rows,
+    lengths: Ints,
+    part: slice,
+    depth: NDArray[np.uint64],
+    low: float,
+    reach: float,
 ) -> None:
     facet, count = rows.facet[part], lengths[part]
     start = np.cumsum(count) - count

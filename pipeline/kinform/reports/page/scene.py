@@ -16,6 +16,7 @@ from kinform.model.assembly import Mesh
 from kinform.model.contacts import Patch
 from kinform.model.design import Design
 from kinform.model.kinematics import Body, Joint
+from kinform.model.names import PartName
 from kinform.reports.json_views import plain
 from kinform.reports.page.colours import FITS, OVERLAP, body_colours
 from kinform.reports.page.freedoms import Showing, freedom_motions
@@ -238,7 +239,7 @@ class Scene:
     def _motions(self, blob: Blob) -> list[dict[str, Any]]:
         motions = []
         run = self.design.simulation
-        index = {body.name: k for k, body in enumerate(self.bodies)}
+        index: dict[str, int] = {body.name: k for k, body in enumerate(self.bodies)}
         if run is not None and len(run.time) > 1:
             frames = np.unique(np.linspace(0, len(run.time) - 1, min(len(run.time), MOST_FRAMES)).round().astype(int))
             kept = [k for k, name in enumerate(run.body_names) if name in index]
@@ -283,7 +284,9 @@ def subjects(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]
     assembly, kinematics = design.assembly, design.kinematics
     known = {part.name for part in assembly.parts}
     groups = {group.name: group.parts for group in assembly.groups}
-    bodies = {} if kinematics is None else {body.name: body.parts for body in kinematics.bodies}
+    bodies: dict[str, tuple[PartName, ...]] = {}
+    if kinematics is not None:
+        bodies.update((body.name, body.parts) for body in kinematics.bodies)
     derived = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
     wanted = {joint.name: joint for joint in assembly.function.joints}
     for name in names:

@@ -39,12 +39,23 @@ def summary(design: Design) -> str:
         lines += ["| about | form | behaviour | function | verdict |", "|---|---|---|---|---|"]
         for row in rows:
             codes = "".join(f" {design.report.findings[k].code}" for k in row.findings) if design.report else ""
-            cells = (row.name, row.form or "–", row.behaviour or "–", row.function or "–", f"{row.sign} {row.mark}{codes}")
+            cells = (
+                row.name,
+                row.form or "–",
+                row.behaviour or "–",
+                row.function or "–",
+                f"{row.sign} {row.mark}{codes}",
+            )
             lines.append("| " + " | ".join(map(_plain, cells)) + " |")
         lines.append("")
     named = _named(design)
     for file, finding in named:
-        lines += [f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}", "", _plain(finding.message), ""]
+        lines += [
+            f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}",
+            "",
+            _plain(finding.message),
+            "",
+        ]
         lines += [f"- {key}: {_plain(value)}" for key, value in finding.facts]
         lines += [f"- remedy: {_plain(finding.remedy)}"] if finding.remedy else []
         lines += ["", f"![{finding.code}]({file})", ""]
