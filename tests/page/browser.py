@@ -8,6 +8,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -17,6 +18,16 @@ FLAGS = (
     "--disable-extensions", "--disable-background-networking", "--no-first-run", "--hide-scrollbars",
     "--remote-debugging-pipe",
 )  # fmt: skip
+
+
+START = """
+import os, sys, fcntl
+high = [fcntl.fcntl(int(fd), fcntl.F_DUPFD, 64) for fd in sys.argv[1:3]]
+for fd, place in zip(high, (3, 4)):
+    os.dup2(fd, place)
+os.execvp(sys.argv[3], sys.argv[3:])
+"""
+"""The protocol is spoken on descriptors 3 and 4."""
 
 
 def program() -> str | None:
@@ -34,9 +45,8 @@ class Browser:
         to_browser, self.out = os.pipe()
         self.back, from_browser = os.pipe()
         command = [str(program()), *FLAGS, f"--user-data-dir={self.profile.name}", f"--window-size={width},{height}"]
-        # the protocol is spoken on descriptors 3 and 4
         self.process = subprocess.Popen(
-            ["/bin/sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", *command],
+            [sys.executable, "-c", START, str(to_browser), str(from_browser), *command],
             pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         os.close(to_browser)
