@@ -142,7 +142,7 @@ def test_keys_turn_choose_explode_and_let_go(shown):
     shown.key("p")
     assert chosen(shown).startswith("Part camera")
     shown.key("j")
-    assert chosen(shown).startswith("Joint yaw, base~outer: revolute about z")
+    assert chosen(shown).startswith("Joint yaw, yaw_motor/spin, base~outer: revolute about z")
     shown.key("Escape")
     assert chosen(shown) == "Nothing is chosen"
     shown.key("e")

@@ -117,7 +117,7 @@ def joints(design: Design) -> list[JointFacts]:
     if kinematics is None:
         return []
     wanted: dict[frozenset[str], list[str]] = {}
-    for joint in design.assembly.function.joints:
+    for joint in sorted(design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
         ends = frozenset(kinematics.body_of(design.assembly.parts_of(side)[0]).name for side in joint.between)
         wanted.setdefault(ends, []).append(joint.name)
     return [

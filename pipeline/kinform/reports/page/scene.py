@@ -100,9 +100,9 @@ class Scene:
 
     @cached_property
     def wanted(self) -> dict[str, list[str]]:
-        """Names that the designer gave to derived joints."""
+        """Names that the designer gave to derived joints; those of sub-assemblies last."""
         names: dict[str, list[str]] = {}
-        for joint in self.design.assembly.function.joints:
+        for joint in sorted(self.design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
             for found in subjects(self.design, [joint.name])[1]:
                 names.setdefault(found, []).append(joint.name)
         return names
@@ -262,7 +262,7 @@ class Scene:
             what = "turn" if showing.turns else "slide"
             subject = ", ".join(showing.bodies)
             if showing.driver is not None:
-                subject = ", ".join(self.wanted.get(showing.driver, [showing.driver]))
+                subject = self.wanted.get(showing.driver, [showing.driver])[0]
             motions.append(
                 {
                     "kind": "freedom",
