@@ -8,7 +8,6 @@ import zlib
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
-
 NASTY = '<script>document.title="hacked"<script><img src=x onerror="document.title=1"> &amp; [m6] {{ 7*7 }} `x` |'
 """The name of a part; names have no stroke, reasons may."""
 

@@ -17,7 +17,7 @@ __all__ = ["EXAMPLES", "report"]
 
 EXAMPLES = examples(
     "kinform report arm.h5 -o arm.html",
-    "kinform report arm.h5 -o arm.html --png pictures   # also PNG, and summary.md that shows them",
+    "kinform report arm.h5 -o arm.html --png out   # also PNG and summary.md",
 )
 
 

@@ -10,7 +10,7 @@ BODIES = (
 )  # fmt: skip
 FITS = {"clearance": "#3f7fbf", "touch": "#2e9e76", "transition": "#c9962b", "interference": "#c2410c"}
 """Of contact patches by their fit."""
-OVERLAP = "#d01f2e"
+OVERLAP = "#f0283a"
 """Solids that occupy the same space."""
 SIGNAL = "#e8590c"
 """What a finding is about."""

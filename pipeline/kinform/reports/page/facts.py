@@ -9,6 +9,7 @@ from kinform.consistency import explain, words
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint
+from kinform.reports.page.scene import wanted_names
 from kinform.reports.page.words import assumption, joint_sentence, patch_words, place
 from kinform.reports.words import where
 
@@ -116,13 +117,8 @@ def joints(design: Design) -> list[JointFacts]:
     kinematics = design.kinematics
     if kinematics is None:
         return []
-    wanted: dict[frozenset[str], list[str]] = {}
-    for joint in sorted(design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
-        ends = frozenset(kinematics.body_of(design.assembly.parts_of(side)[0]).name for side in joint.between)
-        wanted.setdefault(ends, []).append(joint.name)
-    return [
-        _joint(design, k, joint, wanted.get(frozenset(joint.bodies), [])) for k, joint in enumerate(kinematics.joints)
-    ]
+    wanted = wanted_names(design)
+    return [_joint(design, k, joint, wanted.get(joint.name, [])) for k, joint in enumerate(kinematics.joints)]
 
 
 def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> JointFacts:

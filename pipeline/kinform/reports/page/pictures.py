@@ -80,7 +80,7 @@ class Artist:
         view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
         place = None if finding.place is None else AXES @ np.array(finding.place)
         if place is not None:
-            view = replace(view, target=0.4 * view.target + 0.6 * place, scale=1.25 * view.scale)
+            view = replace(view, target=0.6 * view.target + 0.4 * place, scale=1.12 * view.scale)
         image = _drawn(view, items)
         if others:
             image = _over(image, _drawn(view, others), 1.0, FAINT)

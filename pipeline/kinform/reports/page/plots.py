@@ -18,6 +18,7 @@ from kinform.function import resolve
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
+from kinform.reports.page.scene import wanted_names
 
 __all__ = ["Plot", "Series", "drawn", "plots"]
 
@@ -54,10 +55,11 @@ def plots(design: Design) -> list[tuple[str, list[str], str]]:
     run = design.simulation
     if run is None or len(run.time) < 2:
         return []
+    titles = {name: f"{', '.join(known)}, {name}" for name, known in wanted_names(design).items()}
     groups = [
-        ("Joint values", _values(design, run)),
-        ("Drive efforts", _efforts(design, run)),
-        ("Reactions in the joints", _reactions(run)),
+        ("Joint values", _values(design, run, titles)),
+        ("Drive efforts", _efforts(run, titles)),
+        ("Reactions in the joints", _reactions(run, titles)),
         ("Energy", _energy(run)),
     ]
     out = []
@@ -68,7 +70,7 @@ def plots(design: Design) -> list[tuple[str, list[str], str]]:
     return out
 
 
-def _values(design: Design, run: Simulation) -> list[Plot]:
+def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
     metres = metres_per(design.assembly.units)
     out = []
     for name, kind, unit, column in coordinates(run):
@@ -83,7 +85,7 @@ def _values(design: Design, run: Simulation) -> list[Plot]:
                 ends += [("required", *wanted)] if wanted is not None else []
                 for word, low, high in ends:
                     limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
-        out.append(Plot(name, shown, (Series("", values),), tuple(limits)))
+        out.append(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits)))
     return out
 
 
@@ -98,16 +100,16 @@ def _required(design: Design, name: str) -> tuple[float, float] | None:
     return None
 
 
-def _efforts(design: Design, run: Simulation) -> list[Plot]:
+def _efforts(run: Simulation, titles: dict[str, str]) -> list[Plot]:
     out = []
     for name, _, unit, column in coordinates(run):
         values = run.joint_effort[:, column] if run.joint_effort.size else np.zeros(0)
         if len(values) and np.isfinite(values).any() and np.nanmax(np.abs(values)) > 0.0:
-            out.append(_scaled(Plot(name, "N" if unit == "m" else "N·m", (Series("", values),))))
+            out.append(_scaled(Plot(titles.get(name, name), "N" if unit == "m" else "N·m", (Series("", values),))))
     return out
 
 
-def _reactions(run: Simulation) -> list[Plot]:
+def _reactions(run: Simulation, titles: dict[str, str]) -> list[Plot]:
     """Force and torque that each joint carries, where the simulation gives them."""
     wrenches = getattr(run, "F_B", np.zeros((0, 0, 6)))
     if wrenches.ndim != 3 or len(wrenches) != len(run.time):
@@ -116,7 +118,7 @@ def _reactions(run: Simulation) -> list[Plot]:
     for k, name in enumerate(run.joint_names):
         for unit, part, what in (("N", slice(3, 6), "force"), ("N·m", slice(0, 3), "torque")):
             size = np.linalg.norm(wrenches[:, k, part], axis=1)
-            out.append(_scaled(Plot(f"{name}: {what}", unit, (Series("", size),))))
+            out.append(_scaled(Plot(f"{titles.get(name, name)}: {what}", unit, (Series("", size),))))
     return out
 
 

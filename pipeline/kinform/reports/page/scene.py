@@ -25,7 +25,7 @@ from kinform.reports.page.overlaps import overlap_shapes
 from kinform.reports.page.packing import Blob, quantised
 from kinform.reports.page.words import joint_sentence, patch_words
 
-__all__ = ["MOST_FRAMES", "Scene", "subjects"]
+__all__ = ["MOST_FRAMES", "Scene", "subjects", "wanted_names"]
 
 Array = NDArray[np.float64]
 
@@ -100,12 +100,8 @@ class Scene:
 
     @cached_property
     def wanted(self) -> dict[str, list[str]]:
-        """Names that the designer gave to derived joints; those of sub-assemblies last."""
-        names: dict[str, list[str]] = {}
-        for joint in sorted(self.design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
-            for found in subjects(self.design, [joint.name])[1]:
-                names.setdefault(found, []).append(joint.name)
-        return names
+        """Names that the designer gave to derived joints."""
+        return wanted_names(self.design)
 
     @cached_property
     def freedoms(self) -> list[Showing]:
@@ -303,6 +299,15 @@ def subjects(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]
             if not direct:
                 parts.update(dict.fromkeys(p for side in wanted[name].between for p in assembly.parts_of(side)))
     return list(parts), list(joints)
+
+
+def wanted_names(design: Design) -> dict[str, list[str]]:
+    """Names that the designer gave to derived joints, by kinform's; those of sub-assemblies last."""
+    names: dict[str, list[str]] = {}
+    for joint in sorted(design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
+        for found in subjects(design, [joint.name])[1]:
+            names.setdefault(found, []).append(joint.name)
+    return names
 
 
 def _corners(mesh: Mesh) -> Array:

@@ -82,7 +82,7 @@ class Renderer {
     // what lies behind something opaque shows through it faintly
     gl.depthFunc(gl.GREATER);
     if (state.layers.overlaps) this.red(state, 0.4);
-    if (state.layers.joints) this.strokes(state, 0.28);
+    if (state.layers.joints) this.strokes(state, 0.42);
     gl.depthFunc(gl.LEQUAL);
     gl.depthMask(true);
     gl.disable(gl.BLEND);

@@ -89,8 +89,8 @@ class State {
     for (const n of parts) this.hidden.delete(n);
     this.fit(parts);
     if (finding.place && parts.length) {
-      this.camera.target = [...finding.place];
-      this.camera.distance *= 0.8;
+      this.camera.target = V.scale(V.add(this.camera.target, finding.place), 0.5);
+      this.camera.distance *= 0.9;
     }
   }
 
