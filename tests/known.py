@@ -23,6 +23,37 @@ def truth_of(manifest: Path):
     return json.loads(path.read_text()) if path.exists() else None
 
 
+def mobility_of(found, truth):
+    """What was found and what is expected of a mobility, key by key.
+
+    Loops through a higher pair, and axes blurred by rounding, leave the finite count unknown (None): then it is not
+    compared, and `effective`
+    follows from the instantaneous count, as the results contract says.
+    """
+    expected = dict(truth)
+    if found.finite is None and "finite" in expected:
+        assert found.finite_reason
+        del expected["finite"]
+        expected["effective"] = expected["instantaneous"] - expected.get("idle", 0)
+    return {key: getattr(found, key) for key in expected}, expected
+
+
+def rate_ratio(kinematics, first, second):
+    """Rate of one joint over that of another, both (bodies, as the truth has them), in the only motion there is.
+
+    Values are of the second body relative to the first about the joint's axis.
+    """
+    index = {body.name: k for k, body in enumerate(kinematics.bodies)}
+    (motion,) = kinematics.mobility.freedoms
+
+    def rate(pair):
+        joint = next(j for j in kinematics.joints if j.bodies == tuple(pair))
+        relative = motion[index[pair[1]]] - motion[index[pair[0]]]
+        return joint.axis @ (relative[3:] if joint.type == "prismatic" else relative[:3])
+
+    return rate(first) / rate(second)
+
+
 def shared(name: str) -> Path:
     """A file of the shared data; skips the test where it is missing."""
     path = SHARED / name

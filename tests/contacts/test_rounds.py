@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from manifold3d import CrossSection, Manifold
 from solids import ball, box, derived, random_pose, rod
 
 BLOCK = box(-20, 20, -20, 20, -5, 0)
@@ -11,6 +12,19 @@ BLOCK = box(-20, 20, -20, 20, -5, 0)
 
 def tube(segments):
     return rod(10, -20, 20, segments) - rod(5, -21, 21, segments, 2.0)
+
+
+def grooved(n, tube=5.0, middle=15.0):
+    """A ring with a groove inside, up to 50° from its bottom."""
+    a = np.radians(np.linspace(-50, 50, 11))
+    groove = np.stack([middle + tube * np.cos(a), tube * np.sin(a)], axis=1)
+    outline = np.vstack([groove, [[middle + 8, groove[-1, 1]], [middle + 8, groove[0, 1]]]])
+    return Manifold.revolve(CrossSection([outline[::-1]]), n)
+
+
+def torus(n, tube=4.0, middle=15.0):
+    a = np.linspace(0, 2 * np.pi, n // 2, endpoint=False)
+    return Manifold.revolve(CrossSection([np.stack([middle + tube * np.cos(a), tube * np.sin(a)], axis=1)]), n)
 
 
 def cases(n):
@@ -21,6 +35,10 @@ def cases(n):
         "ball in a larger bore": (5, "point", {"a": ball(4, n).translate((1, 0, 0)), "b": tube(n)}),
         "crossed rollers": (5, "point", {"a": rod(5, -20, 20, n), "b": rod(3, -20, 20, n, 1.0).rotate((90, 0, 0)).translate((8, 0, 0))}),
         "rollers side by side": (4, "line", {"a": rod(5, -20, 20, n), "b": rod(3, -15, 15, n, 1.0).translate((8, 0, 0))}),
+        "ball in the groove of a ring": (4, "line", {"a": ball(5, n, 1.0).translate((0, 15, 0)), "b": grooved(n)}),
+        "ball in a wider groove": (5, "point", {"a": ball(3, n).translate((17, 0, 0)), "b": grooved(n)}),
+        "ball on a ring": (5, "point", {"a": ball(5, n).translate((24, 0, 0)), "b": torus(n)}),
+        "pin in a slot with play": (4, "line", {"a": rod(3, -15, 15, n), "b": box(-20, 20, -10, 10, -5, 5) - box(-9, 9, -3.1, 3.1, -6, 6)}),
         "two balls": (5, "point", {"a": ball(5, n), "b": ball(4, n, 3.0).translate((9, 0, 0))}),
     }  # fmt: skip
 
@@ -32,7 +50,7 @@ def test_a_higher_pair_holds_what_it_touches(name, segments, swap):
     if swap:
         solids = {"a": solids["b"], "b": solids["a"]}
     kinematics, contacts = derived(random_pose(np.random.default_rng(segments)), **solids)
-    assert [patch.kind for patch in contacts.patches] == [kind]
+    assert {patch.kind for patch in contacts.patches} == {kind}
     (joint,) = kinematics.joints
     assert joint.type == "general"
     assert joint.freedoms == freedoms
@@ -47,3 +65,17 @@ def test_what_does_not_touch_is_no_pair(apart):
     ):
         _, contacts = derived(np.eye(4), a=a, b=b)
         assert not contacts.patches
+
+
+def test_a_pin_on_a_disc_beside_a_slot_is_held_across_it_and_by_the_disc():
+    pin = rod(3, -10, 10, 48) + rod(8, 5.1, 10, 48)
+    slotted = box(-20, 20, -10, 10, -5, 5) - box(-9, 9, -3.05, 3.05, -6, 6)
+    kinematics, contacts = derived(random_pose(np.random.default_rng(5)), a=pin, b=slotted)
+    assert sorted({patch.kind for patch in contacts.patches}) == ["line", "plane"]
+    assert kinematics.joints[0].freedoms == 2
+
+
+def test_a_pin_beside_one_wall_and_a_face_is_not_in_a_slot():
+    pin = rod(3, -10, 10, 48) + rod(8, 5.1, 10, 48)
+    _, contacts = derived(np.eye(4), a=pin, b=box(-20, 20, -15, -3.0, -5, 5))
+    assert {patch.kind for patch in contacts.patches} == {"plane"}

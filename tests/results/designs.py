@@ -18,7 +18,7 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
-from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Release
+from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Redundancy, Release
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -154,6 +154,12 @@ def releases() -> st.SearchStrategy[Any]:
     return of(Release, twist=array(6))
 
 
+@st.composite
+def redundancies(draw: Any) -> Redundancy:
+    """Redundancies with any number of wrenches."""
+    return draw(of(Redundancy, wrenches=array(draw(st.integers(0, 3)), 6), patches=lists(st.integers(0, 99))))
+
+
 def mass_properties() -> st.SearchStrategy[Any]:
     """Mass properties, known or not."""
     return of(MassProperties, inertia=array(3, 3), principal_axes=array(3, 3))
@@ -176,7 +182,7 @@ def simulations(draw: Any) -> Simulation:
 
 SPECIAL: dict[Any, Any] = {
     Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
-    Mobility: mobilities, Release: releases, MassProperties: mass_properties, Simulation: simulations,
+    Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip
 
 

@@ -23,6 +23,7 @@ EXAMPLES = examples(
     "kinform show arm.h5 joints --format json | jq '.joints[].type'",
     "kinform show arm.h5 joints --joint base~shoulder",
     "kinform show arm.h5 contacts | grep shoulder",
+    "kinform show arm.h5 mobility --graph arm.svg",
 )
 
 
@@ -60,12 +61,21 @@ def show(
             help="With joints: all the evidence of this joint, and what would make it another.",
         ),
     ] = None,
+    graph: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Draw bodies, joints and loops instead, for mobility or joints: FILE.svg or FILE.dot."
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Show what a results file holds: tables for people, or JSON."""
     if joint is not None and topic is not Topic.joints:
         raise typer.BadParameter("goes with joints, as in: kinform show F.h5 joints --joint NAME", param_hint="--joint")
+    if graph is not None:
+        _draw(source, topic, graph)
+        return
     design = files.read(source)
     from kinform import reports
     from kinform_cli import views
@@ -95,3 +105,22 @@ def _one(design: Design, joint: str, source: Path, format: TableFormat) -> None:
                 console.out(views.render_joint(design, joint))
     except KeyError as error:
         raise refuse(str(error.args[0]), file=source, remedy="name one of them") from None
+
+
+def _draw(source: Path, topic: Topic | None, path: Path) -> None:
+    """Write the kinematic graph to `path`."""
+    if topic not in (Topic.mobility, Topic.joints):
+        raise typer.BadParameter(
+            "draws mobility or joints: kinform show F.h5 mobility --graph OUT.svg", param_hint="--graph"
+        )
+    if path.suffix not in (".svg", ".dot"):
+        raise typer.BadParameter(f"{path.name!r} ends neither in .svg nor in .dot", param_hint="--graph")
+    files.check_text_output(path, inputs=[source])
+    design = files.read(source)
+    from kinform.errors import StageError
+    from kinform.reports.graph import graph_dot, graph_svg
+
+    with files.needing(source):
+        if design.kinematics is None:
+            raise StageError("`kinform show --graph`", "joints")
+        files.write_text(path, (graph_svg if path.suffix == ".svg" else graph_dot)(design.kinematics))

@@ -50,6 +50,7 @@ def render(design: Design) -> RenderableType:
     for joint in kinematics.joints:
         if joint.status != "determined":
             items += _doubt(joint, lengths)
+    items += [Text(f"\n{j.name}: {j.motion}") for j in kinematics.joints if j.type == "general" and j.motion]
     items += _bodies(kinematics)
     note = ground_note(design)
     if note is not None:

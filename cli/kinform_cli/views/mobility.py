@@ -6,13 +6,18 @@ import math
 
 from rich.console import Group, RenderableType
 
+from kinform.kinematics import Motions
 from kinform.model.design import Design
-from kinform.model.kinematics import Mobility
+from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.json_views import mobility_counts
+from kinform.reports.motions import follower_rates, freedom_text
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths
 
 __all__ = ["render"]
+
+_MOST = 8
+"""So many bodies or joints are listed for a freedom; the JSON has them all."""
 
 _MEANINGS = (
     ("effective", "without idle freedoms: what `mobility` is compared with"),
@@ -20,16 +25,17 @@ _MEANINGS = (
     ("finite", "of these, motions that go on over a distance"),
     ("idle", "of one body within surfaces that slide on themselves"),
     ("redundant", "constraints more than are needed"),
+    ("gruebler", "6(N−1) − Σ(6−f): the count that knows no geometry"),
     ("blocked_mobility", "instantaneous, with everything that blocks"),
 )
 
 
 def render(design: Design) -> RenderableType:
-    """The counts with their meaning."""
+    """The counts with their meaning, the freedoms by name, and what is held more than once."""
     assert design.kinematics is not None
     mobility = design.kinematics.mobility
     grid = Rows("count", "", "meaning", title="Mobility relative to ground", right=["count"], keys=2)
-    values = mobility_counts(mobility)
+    values = mobility_counts(mobility) | {"gruebler": mobility.gruebler}
     for name, meaning in _MEANINGS:
         value = values[name]
         grid.add(
@@ -46,7 +52,12 @@ def render(design: Design) -> RenderableType:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
+    items += [_coupling(coupling) for coupling in design.kinematics.couplings]
     items.append(_misfit(design))
+    if mobility.named:
+        items += ["", _freedoms(design)]
+    if mobility.redundancies:
+        items += ["", _redundancies(design)]
     return Group(*items)
 
 
@@ -59,6 +70,48 @@ def _certified(mobility: Mobility) -> str:
         f"loops close again after steps of {step:g} in every freedom: {100.0 * kept:.3g} % of the step kept, "
         f"residual below {residual:.0e}"
     )
+
+
+def _coupling(coupling: Coupling) -> str:
+    """One coupling: "gear: a = -1.5 · b through c"."""
+    first, second = coupling.joints
+    known = f" ± {coupling.uncertainty:.1g}" if math.isfinite(coupling.uncertainty) else ""
+    pose = ", at this pose" if coupling.kind == "cam" else ""
+    sure = "" if coupling.status == "determined" else f" ({coupling.status})"
+    return f"{coupling.kind}: {first} = {coupling.ratio:.6g}{known} · {second} through {coupling.through}{pose}{sure}"
+
+
+def _freedoms(design: Design) -> Rows:
+    """Each freedom with the bodies that it moves and the joints that follow."""
+    kinematics = design.kinematics
+    assert kinematics is not None
+    lengths, motions = Lengths.of(design.assembly), Motions.of(kinematics)
+    joints = {str(joint.name): joint for joint in kinematics.joints}
+    grid = Rows("freedom", "driven at", "moves", "follow", title="Freedoms")
+    for freedom in kinematics.mobility.named:
+        rates = follower_rates(freedom, joints, lengths.unit, lengths.metres)
+        grid.add(
+            freedom_text(freedom, lambda point: f"({lengths.point(point)}) {lengths.unit}"),
+            freedom.driver or NONE,
+            _some([str(name) for name in motions.twists(freedom)]),
+            _some([f"{name} {rate}" for name, rate in rates]) or NONE,
+        )
+    return grid
+
+
+def _redundancies(design: Design) -> Rows:
+    """Where constraints hold nothing more."""
+    assert design.kinematics is not None
+    grid = Rows("rows", "too many, and where", title="Redundant constraints", right=["rows"], keys=2)
+    for one in design.kinematics.mobility.redundancies:
+        within = " (contacts of one joint: not counted above)" if one.kind == "pair" else ""
+        grid.add(str(one.rows), one.text + within)
+    return grid
+
+
+def _some(items: list[str]) -> str:
+    """All of a few, the first of many."""
+    return ", ".join(items) if len(items) <= _MOST else ", ".join(items[:_MOST]) + f" and {len(items) - _MOST} more"
 
 
 def _misfit(design: Design) -> str:

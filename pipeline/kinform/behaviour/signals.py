@@ -125,6 +125,10 @@ class Spline:
         self.deviation = float(np.abs(gap).max())
         """Greatest difference from the straight lines of the table."""
 
+    def coefficients(self, stretch: int) -> list[float]:
+        """Coefficients of the powers 0 … 3 of the time since the knot that begins the stretch."""
+        return [float(c) for c in self._value.c[::-1, stretch]]
+
     def value(self, t: float) -> float:
         if t <= self.knots[0]:
             return self._ends[0]

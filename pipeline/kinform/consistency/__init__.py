@@ -29,4 +29,4 @@ __all__ = [
     "words",
 ]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 4

@@ -144,6 +144,8 @@ def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> 
     if doubtful:
         return "undecided", f"joint '{doubtful[0].name}' is ambiguous: {doubtful[0].reason}"
     if intended.type not in FROM_GEOMETRY and found != intended.type:
+        if intended.type == "screw":
+            return "undecided", f"a {found} joint is no screw joint, but geometry shows those only by modelled threads"
         article = "an" if intended.type[0] in "aeio" else "a"
         return "undecided", f"{article} {intended.type} joint is not recognised from geometry yet"
     return "found", ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kinform.consistency._context import Context
+from kinform.consistency._coupled import coupled_through
 from kinform.consistency._rule import Outcome, skipped
 from kinform.model.kinematics import Joint
 
@@ -10,11 +11,17 @@ __all__ = ["unintended"]
 
 
 def unintended(context: Context) -> tuple[Joint, ...] | Outcome:
-    """Joints between two bodies that intended joints name, where no intended joint joins these two."""
+    """Joints between two bodies that intended joints name, where no intended joint joins these two, and no stated
+    coupling goes through them."""
     if not context.function.joints:
         return skipped("the function states no joint")
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics
     wanted, named = context.intended_pairs, context.intended_bodies
-    return tuple(j for j in kinematics.joints if tuple(sorted(j.bodies)) not in wanted and named.issuperset(j.bodies))
+    meshing = {name for stated in context.function.couplings for name in coupled_through(context, kinematics, stated)}
+    return tuple(
+        j
+        for j in kinematics.joints
+        if tuple(sorted(j.bodies)) not in wanted and named.issuperset(j.bodies) and str(j.name) not in meshing
+    )

@@ -1,4 +1,5 @@
-"""Contacts between facets that fit no surface on either side: kind "freeform".
+"""Contacts between facets that fit no surface on either side: kind "freeform"; and of surfaces that turn or slide
+on themselves in one common way: kinds "torus", "revolution" and "extrusion".
 
 Their normals are those of the facets, which is good enough to say that and where two parts touch, and too
 coarse to decide what they may do: such a patch carries the angle by which its facets disagree as the
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.contacts.coaxial import aligned
-from kinform.contacts.mates import EDGE, box_centre, mean_axes
+from kinform.contacts.mates import EDGE, box_centre, mean_axes, mean_direction
 from kinform.contacts.narrow import Probes, Verdict, join, verify
 from kinform.contacts.patches import classify_fit
 from kinform.contacts.placed import NearSurfaces, PlacedPart
@@ -35,6 +36,8 @@ _PROBES = 400
 """Greatest number of probes from either side of a pair of surfaces."""
 _FACING = 0.93
 """Facets rest on each other when their normals oppose within about 20°."""
+_STEADY = 0.1
+"""Scatter of the gap, in contact tolerances, of profiles that lie along each other."""
 _LEAST = 4.0
 """Least area of a patch, in squared tolerances: less is a stray touch of two rounded edges."""
 
@@ -69,7 +72,8 @@ def freeform_patches(
         weights = shares[here - end + len(shares)]
         if weights.sum() >= _LEAST * tolerance**2:
             patch = _patch(a, b, near, (row, column), asked, verdict, here, weights, tolerance)
-            patches.append(_turning(patch, near, (row, column), tolerance, tolerances))
+            patch = _turning(patch, near, (row, column), tolerance, tolerances)
+            patches.append(_drawn(patch, near, (row, column), tolerance, tolerances))
     return patches
 
 
@@ -174,4 +178,40 @@ def _turning(
         misalignment=axes.misalignment,
         offset=axes.offset,
         uncertainty=axes.uncertainty,
+    )
+
+
+def _encloses(normals: Array, axis: Array) -> bool:
+    """Whether normals (n, 3) across the axis point to all sides."""
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    azimuth = np.sort(np.arctan2(normals @ np.cross(axis, u), normals @ u))
+    return bool(np.diff(np.append(azimuth, azimuth[0] + 2.0 * np.pi)).max() < 0.95 * np.pi)
+
+
+def _drawn(
+    patch: Patch, near: tuple[NearSurfaces, NearSurfaces], rows: tuple[int, int], tolerance: float,
+    tolerances: Tolerances,
+) -> Patch:  # fmt: skip
+    """The patch as one of two extrusions in one direction, where they are that: a spline in its hub, a dovetail of
+    curved profile. Its normals then leave the slide along it exactly free."""
+    if any(KINDS[side.kinds[row]] != "extrusion" for side, row in zip(near, rows, strict=True)):
+        return patch
+    own, other = (side.axes[row] for side, row in zip(near, rows, strict=True))
+    spread = tuple(float(side.axis_uncertainty[row]) for side, row in zip(near, rows, strict=True))
+    axis, angle, uncertainty = mean_direction(own, other if own @ other > 0.0 else -other, (spread[0], spread[1]))
+    if max(spread) > tolerances.alignment or angle > tolerances.alignment + 2.0 * uncertainty:
+        return patch
+    scatter = math.sqrt(float(patch.weights @ (patch.gaps - patch.gap) ** 2) / patch.area)
+    if scatter > max(_STEADY * tolerance, 0.3 * patch.chord) and not _encloses(patch.normals, axis):
+        # two cams: they curve away from each other, and touch along a line
+        return patch
+    normals = patch.normals - (patch.normals @ axis)[:, None] * axis
+    return replace(
+        patch,
+        kind="extrusion",
+        one_sided=False,
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+        axis=axis,
+        misalignment=angle,
+        uncertainty=(uncertainty, patch.chord),
     )

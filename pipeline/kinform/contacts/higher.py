@@ -9,7 +9,7 @@ are within 1 % of the contact tolerance of each other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,15 +23,17 @@ from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["higher_pairs"]
+__all__ = ["higher_pairs", "pins_in_slots"]
 
 Array = NDArray[np.float64]
 
 _TOUCH = 0.12
 """Share of the contact tolerance within which a point or a line touches: the band of full weight."""
+_CAPTIVE = 0.42
+"""Share within which a pin in a slot, or a ball in a groove, counts as held by both sides: their play."""
 _ZONE = 0.01
 """Share of the contact tolerance that bounds the zone whose area is stated."""
-_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder")]
+_ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus")]
 _ALONG = 17
 """Samples along a line."""
 
@@ -54,6 +56,8 @@ class _Touch:
     slack: float
     uncertainty: tuple[float, float]
     chord: float
+    tube: bool = False
+    """A ball in a bore or a groove not much wider."""
 
 
 def higher_pairs(
@@ -62,9 +66,14 @@ def higher_pairs(
     near: tuple[NearSurfaces, NearSurfaces],
     tolerance: float,
     tolerances: Tolerances,
+    pieces: tuple[frozenset[int], frozenset[int]] = (frozenset(), frozenset()),
 ) -> list[Patch]:
-    """Points and lines in which two parts touch, in the frame of the pair."""
+    """Points and lines in which two parts touch, in the frame of the pair.
+
+    `pieces`: surfaces of a and of b that are pieces of other curves, and are left out against each other.
+    """
     overlap = box_overlap(*near, tolerance)
+    overlap &= ~np.outer(*(np.isin(side.ids, sorted(own)) for side, own in zip(near, pieces, strict=True)))
     touches: list[_Touch] = []
     for first, flags in ((True, overlap), (False, overlap.T)):
         round_side, flat_side = near if first else near[::-1]
@@ -80,6 +89,7 @@ def higher_pairs(
                 touch = _round_touch(round_side, flat_side, int(row), int(column), first, tolerance, tolerances)
                 if touch is not None:
                     touches.append(touch)
+    touches = _held(touches, tolerance)
     if not touches:
         return []
     probes = [_probes(touch, near, tolerance) for touch in touches]
@@ -116,7 +126,7 @@ def _touch(
     centres = ball.points[row] + along[:, None] * ball.axes[row]
     gaps = (centres - flat.points[column]) @ normal - radius
     shift = float(ball.point_uncertainty[row] + flat.point_uncertainty[column])
-    close = np.abs(gaps) <= _TOUCH * tolerance
+    close = np.abs(gaps) <= _CAPTIVE * tolerance
     if shift > _TOUCH * tolerance or not close.any():
         return None
     return _Touch(
@@ -150,7 +160,7 @@ def _round_touch(
     if found is None:
         return None
     shift = float(ball.point_uncertainty[row] + other.point_uncertainty[column])
-    close = np.abs(found.gaps) <= _TOUCH * tolerance
+    close = np.abs(found.gaps) <= _CAPTIVE * tolerance
     if shift > _TOUCH * tolerance or not close.any():
         return None
     return _Touch(
@@ -166,7 +176,52 @@ def _round_touch(
         slack=float(ball.slacks[row] + other.slacks[column]),
         uncertainty=(max(turns), shift),
         chord=float(ball.chords[row] + other.chords[column]),
+        tube=found.clearance is not None and found.clearance <= _CAPTIVE * tolerance,
     )
+
+
+def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
+    """Those that touch, and those with some play that are held from the other side too."""
+    out = []
+    for touch in touches:
+        captive = touch.tube or any(_opposes(touch, other) for other in touches)
+        close = np.abs(touch.gaps) <= _TOUCH * tolerance
+        if captive or close.all():
+            out.append(touch)
+        elif close.any():
+            kept = {name: getattr(touch, name)[close] for name in ("points", "normals", "gaps")}
+            out.append(replace(touch, kind=touch.kind if close.sum() > 1 else "point", **kept))
+    return out
+
+
+def _opposes(touch: _Touch, other: _Touch) -> bool:
+    """Whether the other surface holds the same ball or pin from the opposite side."""
+    same = touch.first == other.first and touch.rows[not touch.first] == other.rows[not other.first]
+    return same and float((touch.normals @ other.normals.T).min()) < -0.999
+
+
+def pins_in_slots(
+    a: PlacedPart,
+    b: PlacedPart,
+    near: tuple[NearSurfaces, NearSurfaces],
+    patches: list[Patch],
+    tolerance: float,
+    tolerances: Tolerances,
+) -> list[Patch]:
+    """Pins that run in slots beside `patches` of faces across them, which leave them free: both sides of the slot hold
+    the pin. Other points and lines beside patches are many and say little."""
+    axis = patches[0].axis if patches else np.zeros(3)
+    if not all(p.kind == "plane" and float(np.linalg.norm(np.cross(p.axis, axis))) < 1e-3 for p in patches):
+        return []
+    lines = [p for p in higher_pairs(a, b, near, tolerance, tolerances) if p.kind == "line"] if patches else []
+    lines = [p for p in lines if float(np.linalg.norm(np.cross(p.axis, axis))) < 1e-3]
+    return [p for p in lines if any(_faces(p, other) for other in lines)]
+
+
+def _faces(patch: Patch, other: Patch) -> bool:
+    side = 0 if patch.radii[0] > 0.0 else 1
+    same = other.radii[side] > 0.0 and patch.surfaces[side] == other.surfaces[side]
+    return same and float((patch.normals @ other.normals.T).min()) < -0.999
 
 
 def _normals(touch: _Touch) -> Array:

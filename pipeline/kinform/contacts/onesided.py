@@ -98,6 +98,8 @@ def _pairs(
     large = giver.areas >= _LEAST * tolerance**2
     loose = ~np.isin(taker.kinds, [KINDS.index(kind) for kind in _ANALYTIC])
     flags = (analytic & large)[:, None] & loose[None]
+    # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
+    flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])
     plane = KINDS.index("plane")
     planes = (giver.kinds == plane)[:, None] & (taker.kinds == plane)[None]
     angle = np.arccos(np.clip(-(giver.axes @ taker.axes.T), -1.0, 1.0))

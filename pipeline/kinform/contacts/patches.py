@@ -198,4 +198,5 @@ def placed_in_world(patch: Patch, X_WF: Array) -> Patch:
         uncertainty=patch.uncertainty,
         chord=patch.chord,
         fit=patch.fit,
+        pitch=patch.pitch,
     )

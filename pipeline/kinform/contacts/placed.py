@@ -156,11 +156,15 @@ class NearSurfaces:
     """(s, 2) m along the axis from the point."""
     areas: Array
     """(s,) m² of the whole surface."""
+    pitches: Array
+    """(s,) m a turn, of helicoids."""
     lows: Array
     """(s, 3) box of the near facets."""
     highs: Array
     facets: tuple[Ints, ...]
     """Near facets of each surface."""
+    minor_radii: Array
+    """(s,) m: of the tube of a torus."""
 
     def of_kind(self, *kinds: str) -> Ints:
         """Positions of the surfaces of these kinds."""
@@ -200,7 +204,9 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         rims=table.rims[ids],
         extents=table.extents[ids],
         areas=table.areas[ids],
+        pitches=table.pitches[ids],
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
+        minor_radii=table.minor_radii[ids],
     )

@@ -1,4 +1,4 @@
-"""Where two round surfaces come closest: balls and rollers on each other, balls in bores.
+"""Where two round surfaces come closest: balls and rollers on each other, balls in bores and in grooves of rings.
 
 Everything is analytic, so that the tessellation of neither side matters.
 """
@@ -34,6 +34,8 @@ class Meeting:
     gaps: Array
     line: bool
     spacing: float
+    clearance: float | None = None
+    """m: by how much a bore or groove is wider than the ball in it, as a radius."""
 
 
 def meeting(a: NearSurfaces, b: NearSurfaces, row: int, column: int, parallel: float) -> Meeting | None:
@@ -44,6 +46,8 @@ def meeting(a: NearSurfaces, b: NearSurfaces, row: int, column: int, parallel: f
         return _single(a.points[row], b.points[column], float(a.radii[row]), float(b.radii[column]))
     if kinds == ("sphere", "cylinder"):
         return _ball(a, b, row, column)
+    if kinds == ("sphere", "torus"):
+        return _ball_on_ring(a, b, row, column)
     if kinds == ("cylinder", "cylinder") and b.sides[column] > 0:
         return _rollers(a, b, row, column, parallel)
     return None
@@ -72,13 +76,35 @@ def _ball(a: NearSurfaces, b: NearSurfaces, row: int, column: int) -> Meeting | 
         return _single(centre, foot, radius, bore)
     aside = centre - foot
     base = perpendicular(axis, aside if np.linalg.norm(aside) > 1e-9 * bore else None)
+    return _in_tube(centre, foot, axis, base, radius, bore)
+
+
+def _ball_on_ring(a: NearSurfaces, b: NearSurfaces, row: int, column: int) -> Meeting | None:
+    """A ball on a ring, or in the groove of one: beside the ball, a torus is a tube along its middle circle."""
+    centre, axis, tube = a.points[row], b.axes[column], float(b.minor_radii[column])
+    arm = centre - b.points[column]
+    radial = arm - axis * float(axis @ arm)
+    far = float(np.linalg.norm(radial))
+    if tube <= 0.0 or far <= 1e-6 * float(b.radii[column]):
+        return None
+    radial /= far
+    foot = b.points[column] + float(b.radii[column]) * radial
+    if b.sides[column] > 0:
+        return _single(centre, foot, float(a.radii[row]), tube)
+    return _in_tube(centre, foot, np.cross(axis, radial), radial, float(a.radii[row]), tube)
+
+
+def _in_tube(centre: Array, foot: Array, axis: Array, base: Array, radius: float, bore: float) -> Meeting:
+    """A ball at `centre` in a tube whose middle line passes `foot`, beside the ball, along `axis`; samples start
+    in the direction `base`."""
+    aside = centre - foot
     angle = 2 * math.pi * np.arange(_AROUND) / _AROUND
     outward = np.cos(angle)[:, None] * base + np.sin(angle)[:, None] * np.cross(axis, base)
     # how far the bore is from the ball, straight out from the ball's middle
     reach = outward @ aside
     gaps = np.sqrt(np.maximum(bore**2 - float(aside @ aside) + reach**2, 0.0)) - reach - radius
     points = centre + (radius + 0.5 * gaps)[:, None] * outward
-    return Meeting(points, -outward, gaps, True, 2 * math.pi * bore / _AROUND)
+    return Meeting(points, -outward, gaps, True, 2 * math.pi * bore / _AROUND, bore - radius)
 
 
 def _rollers(a: NearSurfaces, b: NearSurfaces, row: int, column: int, parallel: float) -> Meeting | None:

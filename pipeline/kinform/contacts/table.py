@@ -39,6 +39,10 @@ class SurfaceTable:
     """(s, 2) m along the axis from the point."""
     areas: Array
     """(s,) m² of the whole surface."""
+    pitches: Array
+    """(s,) m a turn of helicoids."""
+    minor_radii: Array
+    """(s,) m, of tori."""
     slack: float
     """The greatest of `slacks`."""
     radius: float
@@ -71,6 +75,8 @@ class SurfaceTable:
             rims=rims,
             extents=stacked("extent", 2),
             areas=column("area"),
+            pitches=column("pitch"),
+            minor_radii=column("minor_radius"),
             slack=float(slacks.max(initial=0.0)),
             radius=float(radii.max(initial=0.0)),
         )

@@ -3,6 +3,7 @@
 from kinform.kinematics.derive import derive, functional, mobility_within
 from kinform.kinematics.insight import Insight, insight
 from kinform.kinematics.intended import IntendedAnswer, IntendedMotion, intended_answers
+from kinform.kinematics.motions import Motions
 from kinform.kinematics.query import QueryAnswer, QueryBlocker, query
 
 __all__ = [
@@ -10,6 +11,7 @@ __all__ = [
     "Insight",
     "IntendedAnswer",
     "IntendedMotion",
+    "Motions",
     "QueryAnswer",
     "QueryBlocker",
     "derive",
@@ -20,5 +22,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 5
+CODE_VERSION = 9
 """Bumped when the results of this stage change for the same input."""

@@ -18,6 +18,7 @@ class Merger:
     def __init__(self, assembly: Assembly):
         self._assembly = assembly
         self._names = [part.name for part in assembly.parts]
+        self._parts = {part.name: part for part in assembly.parts}
         self._index = {name: k for k, name in enumerate(self._names)}
         self._sets = UnionFind(len(self._names))
         self._reasons: list[tuple[int, str]] = []
@@ -72,7 +73,7 @@ class Merger:
         def size(root: int) -> tuple[float, str]:
             total = 0.0
             for name in members[root]:
-                part = self._assembly.part(name)
+                part = self._parts[name]
                 volume = abs(part.mesh.health.volume) if part.mesh is not None else 0.0
                 if not weighed:
                     total += volume

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.graph import UnionFind
-from kinform.kinematics.screws import perpendicular
+from kinform.kinematics.screws import cross, perpendicular
 
 __all__ = ["Locus", "meeting_shifts"]
 
 Array = NDArray[np.float64]
 
+EXACT = 1e-15
+"""Relative to the coordinates: what meets within this meets as well as numbers can say."""
 SKEW = 0.05
 """Lines at a smaller angle (sine) meet nowhere in particular."""
 
@@ -66,6 +68,8 @@ def meeting_shifts(loci: Sequence[Locus], sigmas: float) -> Array:
 
 def _agreed(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas: float) -> Array:
     """Shifts for these points, without the loci that would have to move by more than their uncertainty."""
+    if all(_distance(loci[k], place) <= EXACT * _reach(loci[k], place) for members, place in points for k in members):
+        return np.zeros((len(loci), 3))
     while points:
         shifts = _solve(loci, points)
         excess = {
@@ -83,7 +87,8 @@ def _agreed(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas
 def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Array]]:
     """Points where two or more loci meet: their members, ascending, and a place near the point."""
     found: list[tuple[set[int], Array, float]] = []
-    for i, j in _neighbours(loci):
+    points_of: dict[int, set[int]] = {}
+    for i, j in _neighbours(loci, sigmas):
         place, sine = _between(loci[i], loci[j])
         if place is None:
             continue
@@ -91,27 +96,70 @@ def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Arr
         if _distance(loci[i], place) + _distance(loci[j], place) > spread:
             continue
         reach = 2.0 * spread / sine
-        for members, other, wide in found:
-            if members & {i, j} and np.linalg.norm(other - place) <= reach + wide:
+        for n in sorted(points_of.get(i, set()) | points_of.get(j, set())):
+            members, other, wide = found[n]
+            if np.linalg.norm(other - place) <= reach + wide:
                 members |= {i, j}
                 break
         else:
+            n = len(found)
             found.append(({i, j}, place, reach))
+        for k in (i, j):
+            points_of.setdefault(k, set()).add(n)
     return [(sorted(members), place) for members, place, _ in found]
 
 
-def _neighbours(loci: Sequence[Locus]) -> list[tuple[int, int]]:
-    """Pairs (i < j) of loci that share a body, sorted."""
+def _neighbours(loci: Sequence[Locus], sigmas: float) -> list[tuple[int, int]]:
+    """Pairs (i < j) of loci that share a body and may meet, sorted."""
     around: dict[str, list[int]] = {}
     for k, locus in enumerate(loci):
-        for body in locus.bodies:
+        for body in sorted(locus.bodies):
             around.setdefault(body, []).append(k)
-    return sorted({(i, j) for members in around.values() for n, i in enumerate(members) for j in members[n + 1 :]})
+    lines = _Lines(loci)
+    pairs: set[tuple[int, int]] = set()
+    for members in around.values():
+        own = np.array(members)
+        for n, i in enumerate(members[:-1]):
+            others = own[n + 1 :]
+            pairs.update((i, int(j)) for j in others[lines.may_meet(i, others, sigmas)])
+    return sorted(pairs)
+
+
+class _Lines:
+    """All loci as arrays, to leave out at once those that cannot meet; what is left is tested one by one."""
+
+    def __init__(self, loci: Sequence[Locus]):
+        self.points = np.array([locus.point for locus in loci]).reshape(-1, 3)
+        self.axes = np.array([np.zeros(3) if locus.axis is None else locus.axis for locus in loci]).reshape(-1, 3)
+        self.centre = np.array([locus.axis is None for locus in loci], dtype=bool)
+        self.angle = np.array([locus.angle for locus in loci])
+        self.position = np.array([locus.position for locus in loci])
+
+    def may_meet(self, i: int, others: NDArray[np.int64], sigmas: float) -> NDArray[np.bool_]:
+        """Which of the others are not parallel to line i, and near enough to it."""
+        a, b = self.axes[i], self.axes[others]
+        if not self.centre[i] and not self.centre[others].any() and float(np.abs(b - a).max()) < 0.5 * SKEW:
+            return np.zeros(len(others), dtype=bool)
+        normal = cross(b, a)
+        sine = np.linalg.norm(normal, axis=1)
+        apart = self.points[others] - self.points[i]
+        along = np.linalg.norm(apart, axis=1)
+        skew = sine >= SKEW
+        near = np.abs((apart * normal).sum(axis=1)) / np.where(skew, sine, 1.0)
+        # the places where both are closest lie at most so far from the points of the lines
+        reach = 2.0 * along / np.where(skew, sine, 1.0)
+        spread = sigmas * (self.position[i] + self.position[others] + (self.angle[i] + self.angle[others]) * reach)
+        # a centre and a line, or two centres, are few: no test
+        return np.asarray(self.centre[i] | self.centre[others] | (skew & (near <= 1.001 * spread)))
+
+
+def _reach(locus: Locus, place: Array) -> float:
+    return float(np.abs(locus.point).max() + np.abs(place).max())
 
 
 def _distance(locus: Locus, place: Array) -> float:
     arm = place - locus.point
-    return float(np.linalg.norm(arm if locus.axis is None else np.cross(arm, locus.axis)))
+    return float(np.linalg.norm(arm if locus.axis is None else cross(arm, locus.axis)))
 
 
 def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
@@ -121,13 +169,13 @@ def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
         arm = centre.point - other.point
         foot = other.point if other.axis is None else other.point + other.axis * float(other.axis @ arm)
         return 0.5 * (centre.point + foot), 1.0
-    normal = np.cross(a.axis, b.axis)
+    normal = cross(a.axis, b.axis)
     sine = float(np.linalg.norm(normal))
     if sine < SKEW:
         return None, sine
     apart = b.point - a.point
-    along_a = float(np.cross(apart, b.axis) @ normal) / sine**2
-    along_b = float(np.cross(apart, a.axis) @ normal) / sine**2
+    along_a = float(cross(apart, b.axis) @ normal) / sine**2
+    along_b = float(cross(apart, a.axis) @ normal) / sine**2
     return 0.5 * (a.point + along_a * a.axis + b.point + along_b * b.axis), sine
 
 

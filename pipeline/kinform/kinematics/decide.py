@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.certainty import certainty
-from kinform.kinematics.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.certainty import certainty, momentary
+from kinform.kinematics.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.freedoms import INDEPENDENT, fits, freedoms
 from kinform.kinematics.hypotheses import Motion, motions
+from kinform.kinematics.screws import cross
 from kinform.kinematics.subspace import JointForm, name_space
 from kinform.model.tolerances import Tolerances
 
@@ -67,7 +68,8 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
     if chosen is None or basis.shape[1] <= strict.shape[1]:
         status, reason = certainty(evidence, twists, strict, values, tolerances)
         kept = tuple(range(len(evidence.items)))
-        return Decision(name_space(strict, evidence.frame), strict, strict, status, reason, kept, (), values)
+        form = JointForm("general") if momentary(evidence, strict) else name_space(strict, evidence.frame)
+        return Decision(form, strict, strict, status, reason, kept, (), values)
     out = tuple((int(k), motion) for k in np.flatnonzero(~keep))
     area = evidence.areas
     share = float(area[~keep].sum() / area.sum())
@@ -115,7 +117,7 @@ def _frees_thrust(evidence: Evidence, motion: Motion, keep: NDArray[np.bool_]) -
         return False
 
     def along(item: Item) -> bool:
-        return float(np.linalg.norm(np.cross(item.patch.axis, motion.axis))) < 0.01
+        return float(np.linalg.norm(cross(item.patch.axis, motion.axis))) < 0.01
 
     shaft = any(item.patch.kind in COAXIAL and along(item) for item, k in zip(evidence.items, keep, strict=True) if k)
     faces = (item for item, k in zip(evidence.items, keep, strict=True) if not k)
@@ -140,7 +142,7 @@ def _excusable(evidence: Evidence, motion: Motion, out: NDArray[np.bool_], speed
     senses: set[int] = set()
     for k in np.flatnonzero(out):
         item = evidence.items[k]
-        curved = item.patch.kind in (*COAXIAL, "sphere")
+        curved = item.patch.kind in GUIDES
         if curved and not item.patch.one_sided:
             return False
         if not curved and item.patch.one_sided and not stops_only:

@@ -10,18 +10,23 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
+from kinform.kinematics.couplings import couplings
 from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.finite import finite_mobility
+from kinform.kinematics.higher import agree
 from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
-from kinform.kinematics.mobility import body_twists, close
+from kinform.kinematics.mobility import Closure, body_twists, close
+from kinform.kinematics.motions import named_freedoms
+from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.screws import twist_at_origin
 from kinform.kinematics.separations import links_between, separations
-from kinform.kinematics.snapping import snap
+from kinform.kinematics.sites import redundancy_within
+from kinform.kinematics.snapping import snap, uncertainties
 from kinform.model.assembly import Assembly, Assumption
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
@@ -34,6 +39,9 @@ __all__ = ["derive", "evidence_between", "functional", "mobility_within"]
 Array = NDArray[np.float64]
 Pair = tuple[BodyName, BodyName]
 
+MOST_NUMBERS = 1_000_000
+"""Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
+
 
 def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts) -> Kinematics:
     """Bodies, joints, J and mobility of an assembly whose contacts are known.
@@ -41,7 +49,6 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function].
     """
-    del surfaces  # the patches carry the analytic geometry already
     merger, extents = Merger(assembly), Extents(assembly)
     decided = _decide_all(assembly, contacts, merger, extents)
     if fasten(assembly, contacts, merger):
@@ -66,9 +73,10 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
             misaligned.append((joint.name, angle, offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
     snapped, misfit = snap(joints, contacts.patches, extents.assembly)
+    closed = agree(bodies, snapped, contacts.patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
-        assembly, bodies, snapped, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
-        _clusters(assembly, contacts),
+        assembly, bodies, closed, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
+        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches),
     )  # fmt: skip
 
 
@@ -116,6 +124,7 @@ def _decide_all(
     stated = _stated_roots(assembly, merger)
     while True:
         bodies = merger.bodies()
+        of_name = {body.name: body for body in bodies}
         of_part = {part: body.name for body in bodies for part in body.parts}
         touching: dict[Pair, list[tuple[int, Patch, bool]]] = defaultdict(list)
         for index, patch in enumerate(contacts.patches):
@@ -128,8 +137,7 @@ def _decide_all(
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
-                between = [body for body in bodies if body.name in pair]
-                evidence = evidence_between(members, between, assembly, contacts, extents)
+                evidence = evidence_between(members, [of_name[n] for n in pair], assembly, contacts, extents)
                 known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
             found = known[key]
             if found is None:
@@ -182,11 +190,7 @@ def _pair(assembly: Assembly, of_part: Mapping[PartName, BodyName], between: tup
 def _stated(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> dict[Pair, Joint]:
     """Joints that assumptions state, and joints of stick bodies that the function states."""
     out: dict[Pair, Joint] = {}
-    formless = {
-        body
-        for body in set(of_part.values())
-        if all(part.mesh is None for part in assembly.parts if of_part[part.name] == body)
-    }
+    formless = set(of_part.values()) - {of_part[part.name] for part in assembly.parts if part.mesh is not None}
     for joint in assembly.function.joints:
         pair = _pair(assembly, of_part, joint.between)
         if pair is not None and formless.intersection(pair):
@@ -228,17 +232,23 @@ def _finish(
     misaligned: tuple[tuple[str, float, float], ...],
     size: float,
     clusters: tuple[Body, ...],
+    balls: Mapping[tuple[int, PartName], Array] | None = None,
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     ground = next(k for k, body in enumerate(bodies) if body.ground)
     spaces = [joint.twists for joint in joints]
-    closure = close(len(bodies), edges, spaces, ground, size)
+    doubts = uncertainties(joints, patches)
+    closure = close(len(bodies), edges, spaces, ground, size, doubts)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
-    blocked = close(len(bodies), edges, hard, ground, size).mobility if strict else closure.mobility
-    idle = _idle(assembly, bodies, joints, patches, size)
+    blocked = close(len(bodies), edges, hard, ground, size, doubts).mobility if strict else closure.mobility
+    turns = _idle(assembly, bodies, joints, patches, size, balls or {})
+    idle = {name: len(own) for name, own in turns.items()}
     count = closure.mobility
     finite = finite_mobility(edges, joints, len(bodies), count, size)
+    poses = {part.name: part.X_WP for part in assembly.parts}
+    places = [poses[body.parts[0]][:3, 3] for body in bodies]
+    within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
     mobility = Mobility(
         instantaneous=count,
         finite=finite.count,
@@ -246,13 +256,15 @@ def _finish(
         idle=sum(idle.values()),
         redundant=count - (6 * (len(bodies) - 1) - sum(6 - joint.freedoms for joint in joints)),
         blocked=blocked,
-        freedoms=_orthonormal(body_twists(closure, edges, spaces)),
+        freedoms=_freedoms(closure, edges, spaces),
         idle_bodies=tuple(sorted(name for name, n in idle.items() if n)),
         uncertain=tuple(j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"),
         finite_reason=finite.reason,
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
         certificates=finite.certificates,
+        named=named_freedoms(bodies, joints, closure, turns, places),
+        redundancies=(*filter(None, within), *redundancies_of_loops(joints, edges, closure, size)),
     )
     matrix = assemble(bodies, joints, patches)
     rows = ContactRows(matrix, bodies, patches)
@@ -260,21 +272,29 @@ def _finish(
     links = links_between(clusters, bodies, joints, patches, rows)
     first = next(k for k, item in enumerate(clusters) if item.ground)
     apart, reason = separations([item.name for item in clusters], first, links)
-    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason)
+    tied = couplings(assembly, bodies, joints, patches, closure)
+    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason, tied)
 
 
-def _orthonormal(twists: Array) -> Array:
-    count, nodes, _ = twists.shape
-    if count == 0:
-        return twists
+def _freedoms(closure: Closure, edges: Sequence[tuple[int, int]], spaces: Sequence[Array]) -> Array:
+    """Orthonormal basis (k, bodies, 6) of the twists of all bodies; none where it would be very large."""
+    count, nodes = closure.mobility, len(closure.tree.parent)
+    if count == 0 or 6 * count * nodes > MOST_NUMBERS:
+        return np.zeros((0, nodes, 6))
+    twists = body_twists(closure, edges, spaces)
     basis, _ = np.linalg.qr(twists.reshape(count, -1).T)
     return basis.T.reshape(count, nodes, 6)
 
 
 def _idle(
-    assembly: Assembly, bodies: tuple[Body, ...], joints: tuple[Joint, ...], patches: tuple[Patch, ...], size: float
-) -> dict[BodyName, int]:
-    """Idle freedoms of each body."""
+    assembly: Assembly,
+    bodies: tuple[Body, ...],
+    joints: tuple[Joint, ...],
+    patches: tuple[Patch, ...],
+    size: float,
+    balls: Mapping[tuple[int, PartName], Array],
+) -> dict[BodyName, Array]:
+    """Idle turns (k, 6) of each body."""
     of_part = {part: body.name for body in bodies for part in body.parts}
     intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
     for wanted in assembly.function.joints:
@@ -285,12 +305,35 @@ def _idle(
     for joint in joints:
         for name in joint.bodies:
             around[name].append(joint)
-    out: dict[BodyName, int] = {}
+    out: dict[BodyName, Array] = {}
     for body in bodies:
         mine = around[body.name]
-        carried = [patches[k] for j in mine for k in j.patches]
+        indices = [k for j in mine for k in j.patches]
+        carried = [patches[k] for k in indices]
         if any(not j.patches for j in mine):
             continue
+        own = {}
+        if len(mine) > 1:
+            # a ball between others rolls; what lies on one other body only is there to move on it
+            own = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
         named = [w for j in mine for w in intended[j.bodies]]
-        out[body.name] = idle_freedoms(body, mine, carried, named, size)
+        out[body.name] = idle_freedoms(body, mine, carried, named, size, own)
+    return out
+
+
+def _balls(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], patches: Sequence[Patch]
+) -> dict[tuple[int, PartName], Array]:
+    """Centres (3,) of the spheres that touch at points or along lines, by patch and part."""
+    parts = {part.name: part for part in assembly.parts}
+    out = {}
+    for k, patch in enumerate(patches):
+        if patch.kind not in ("point", "line"):
+            continue
+        for name, number in zip(patch.parts, patch.surfaces, strict=True):
+            mesh, X_WP = parts[name].mesh, parts[name].X_WP
+            known = None if mesh is None or number < 0 else surfaces.get(mesh.digest)
+            surface = None if known is None else known.surfaces[number]
+            if surface is not None and surface.kind == "sphere":
+                out[k, name] = X_WP[:3, :3] @ surface.point + X_WP[:3, 3]
     return out

@@ -17,13 +17,18 @@ from kinform.kinematics.screws import Frame, rows
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["COAXIAL", "FAR", "Evidence", "Item", "gather"]
+__all__ = ["COAXIAL", "FAR", "GUIDES", "PITCH", "Evidence", "Item", "gather"]
 
 Array = NDArray[np.float64]
 
-COAXIAL = ("cylinder", "cone", "torus", "revolution")
+COAXIAL = ("cylinder", "cone", "torus", "revolution", "helicoid")
+"""Kinds of patches with an axis that is a line."""
+GUIDES = (*COAXIAL, "sphere", "extrusion")
+"""Kinds of curved patches that slide on themselves in a way that both sides share."""
 GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
 """(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
+PITCH = 5e-3
+"""Relative difference of pitches that are one."""
 FAR = GAP_BANDS[1][0]
 """Gaps beyond this share of the contact tolerance have the least weight."""
 
@@ -136,7 +141,7 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
     # facets of no known surface have no axis of their own: how uneven the gap is says how far off it may be
     offset = 0.5 * float(np.ptp(patch.gaps)) if patch.one_sided else 0.5 * patch.offset
     direction, position = patch.uncertainty
-    loose = patch.one_sided and patch.kind not in ("plane", "sphere", *COAXIAL)
+    loose = patch.one_sided and patch.kind not in ("plane", *GUIDES)
     return Item(
         index=index,
         patch=patch,

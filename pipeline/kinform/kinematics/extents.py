@@ -18,6 +18,7 @@ class Extents:
 
     def __init__(self, assembly: Assembly):
         self._boxes: dict[PartName, NDArray[np.float64]] = {}
+        self._known: dict[tuple[PartName, ...], float] = {}
         for part in assembly.parts:
             if part.mesh is not None and len(part.mesh.vertices):
                 placed = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
@@ -25,11 +26,12 @@ class Extents:
 
     def diagonal(self, names: Iterable[PartName]) -> float:
         """Diagonal of the box of some parts (m); 0 without meshes."""
-        boxes = [self._boxes[name] for name in names if name in self._boxes]
-        if not boxes:
-            return 0.0
-        low, high = np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)
-        return float(np.linalg.norm(high - low))
+        key = tuple(names)
+        if key not in self._known:
+            boxes = [self._boxes[name] for name in key if name in self._boxes]
+            size = np.ptp(np.concatenate(boxes), axis=0) if boxes else np.zeros(3)
+            self._known[key] = float(np.linalg.norm(size))
+        return self._known[key]
 
     @property
     def assembly(self) -> float:

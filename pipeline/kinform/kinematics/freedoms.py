@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.evidence import Evidence
-from kinform.kinematics.screws import span
+from kinform.kinematics.evidence import PITCH, Evidence
+from kinform.kinematics.screws import cross, span
 from kinform.kinematics.subspace import name_space, nearest_pair
 from kinform.model.tolerances import Tolerances
 
@@ -30,7 +30,7 @@ RESIDUAL = 2.0
 def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> NDArray[np.bool_]:
     """(items, motions): does the patch slide on itself, within `slack` times its tolerances?"""
     length = evidence.frame.length
-    velocity = twists[3:].T[None] + np.cross(twists[:3].T[None], evidence.arms[:, None])
+    velocity = twists[3:].T[None] + cross(twists[:3].T[None], evidence.arms[:, None])
     speed = np.linalg.norm(velocity, axis=2)
     turning = np.linalg.norm(twists[:3], axis=0)
     allowed = evidence.angle[:, None] * speed + evidence.position[:, None] / length * turning
@@ -44,7 +44,38 @@ def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -
     first = evidence.start[:-1]
     found = np.add.reduceat(weight * speeds**2, first, axis=0)
     limit = np.add.reduceat(weight * allowed**2, first, axis=0)
-    return np.asarray(found <= slack**2 * limit + 1e-24)
+    kept = np.asarray(found <= slack**2 * limit + 1e-24)
+    for k, item in enumerate(evidence.items):
+        if item.patch.kind == "helicoid":
+            kept[k] = _screws(evidence, k, twists, slack)
+    return kept
+
+
+def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> NDArray[np.bool_]:
+    """(motions,): is it the screw motion of this thread? Its slope is a fact, like that of a cone: however small,
+    no tolerance makes a turn or a slide of it. Only the axis may be off."""
+    item, frame = evidence.items[number], evidence.frame
+    row = int(evidence.start[number])
+    angular, linear = twists[:3] / frame.length, twists[3:]
+    square = np.einsum("ij,ij->j", angular, angular)
+    turning = square > (1e-3 / frame.length) ** 2
+    square = np.where(turning, square, 1.0)
+    advance = np.einsum("ij,ij->j", angular, linear) / square
+    foot = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
+    axis, middle = item.patch.axis, item.points.mean(axis=0)
+    direction = angular / np.sqrt(square)
+    tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
+    own = item.patch.point + axis * float(axis @ (middle - item.patch.point))
+    apart = own[:, None] - foot
+    apart = np.linalg.norm(apart - direction * np.einsum("ij,ij->j", direction, apart), axis=0)
+    angle, reach = float(evidence.angle[row]), float(np.linalg.norm(item.points - middle, axis=1).max())
+    wanted = item.patch.pitch / (2.0 * np.pi)
+    return np.asarray(
+        turning
+        & (tilt <= slack * angle)
+        & (apart <= slack * (float(evidence.position[row]) + angle * reach))
+        & (np.abs(advance - wanted) <= slack * PITCH * abs(wanted))
+    )
 
 
 def freedoms(

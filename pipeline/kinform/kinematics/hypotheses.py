@@ -1,4 +1,4 @@
-"""Elementary motions that the surfaces of a pair suggest: turns about axes, slides along directions.
+"""Elementary motions that the surfaces of a pair suggest: turns and screws about axes, slides along directions.
 
 Every lower pair is spanned by such motions, so it is enough to test each of them against each patch.
 Axes that agree within what clearances and fits allow are one axis, fitted to all that support it.
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.evidence import COAXIAL, Evidence, Item
-from kinform.kinematics.screws import canonical, perpendicular, rotation, translation
+from kinform.kinematics.evidence import COAXIAL, PITCH, Evidence, Item
+from kinform.kinematics.screws import canonical, cross, perpendicular, rotation, translation
 
 __all__ = ["Line", "Motion", "describe", "motions"]
 
@@ -34,7 +34,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One candidate freedom: `turn` about `line`'s axis and point, or a slide along it."""
+    """One candidate freedom: `turn` about an axis through a point, or a slide along it."""
 
     turn: bool
     twist: Array
@@ -43,6 +43,8 @@ class Motion:
     point: Array
     curved: bool
     """Suggested by a cylinder, cone or sphere rather than by planes alone."""
+    pitch: float = 0.0
+    """m a turn; of a turn that advances, right-handed positive."""
 
 
 def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
@@ -54,6 +56,10 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
     frame, out = evidence.frame, []
     for line in lines:
         out.append(Motion(True, rotation(line.axis, line.point, frame), line.axis, line.point, True))
+    for line in lines:
+        for pitch in _pitches(evidence, line):
+            twist = rotation(line.axis, line.point, frame, pitch)
+            out.append(Motion(True, twist, line.axis, line.point, True, pitch))
     for centre in centres:
         turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
         turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > 1e-3 * frame.length]
@@ -64,6 +70,21 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
         centre = _middle(evidence, normal, alignment)
         out.append(Motion(True, rotation(normal, centre, frame), normal, centre, False))
     return tuple(out)
+
+
+def _pitches(evidence: Evidence, line: Line) -> list[float]:
+    """Pitches (m a turn) of the threads on a line; those that agree are one, by their areas."""
+    found: list[tuple[float, float]] = []
+    threads = [evidence.items[k] for k in line.items if evidence.items[k].patch.kind == "helicoid"]
+    for item in sorted(threads, key=lambda i: (-i.area, i.index)):
+        for n, (pitch, area) in enumerate(found):
+            if abs(item.patch.pitch - pitch) <= PITCH * abs(pitch):
+                total = area + item.area
+                found[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
+                break
+        else:
+            found.append((item.patch.pitch, item.area))
+    return [pitch for pitch, _ in found]
 
 
 def _axes(evidence: Evidence, alignment: float) -> list[Line]:
@@ -84,8 +105,8 @@ def _axes(evidence: Evidence, alignment: float) -> list[Line]:
 
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
-    cross = float(np.linalg.norm(np.cross(a.patch.axis, b.patch.axis)))
-    if cross > np.sin(max(a.angle, b.angle, alignment)):
+    sine = float(np.linalg.norm(cross(a.patch.axis, b.patch.axis)))
+    if sine > np.sin(max(a.angle, b.angle, alignment)):
         return False
     middle = b.points.mean(axis=0)
     foot = a.patch.point + a.patch.axis * float(a.patch.axis @ (middle - a.patch.point))
@@ -152,7 +173,7 @@ def _directions(candidates: list[tuple[Array, float]], alignment: float) -> list
     merged: list[tuple[Array, float]] = []
     for axis, weight in sorted(candidates, key=lambda c: -c[1]):
         for n, (other, total) in enumerate(merged):
-            if np.linalg.norm(np.cross(axis, other)) <= np.sin(alignment):
+            if np.linalg.norm(cross(axis, other)) <= np.sin(alignment):
                 signed = axis if axis @ other > 0.0 else -axis
                 merged[n] = ((other * total + signed * weight) / (total + weight), total + weight)
                 merged[n] = (merged[n][0] / np.linalg.norm(merged[n][0]), merged[n][1])
@@ -168,25 +189,29 @@ def _slides(
     """Directions that surfaces leave free: axes, and lines in which two planes meet."""
     planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
     found: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
+    drawn = [(item.patch.axis, item.area) for item in evidence.items if item.patch.kind == "extrusion"]
+    for axis, _ in _directions(drawn, alignment):
+        if all(np.linalg.norm(cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+            found.append((axis, True))
 
     def add(direction: Array, curved: bool) -> None:
         direction = _refined(direction, planes, alignment)
-        if all(np.linalg.norm(np.cross(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+        if all(np.linalg.norm(cross(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
             found.append((direction, curved))
 
     heavy = normals[: MOST_DIRECTIONS // 2]
     for k, (a, _) in enumerate(heavy):
         for b, _ in heavy[:k]:
-            cross = np.cross(a, b)
-            if np.linalg.norm(cross) > 0.1:
-                add(canonical(cross), False)
+            line_of_both = cross(a, b)
+            if np.linalg.norm(line_of_both) > 0.1:
+                add(canonical(line_of_both), False)
     for normal, _ in heavy[:6]:
         for axis in perpendicular(normal):
             add(canonical(axis), False)
         for line in lines:
-            cross = np.cross(normal, line.axis)
-            if np.linalg.norm(cross) > 0.1:
-                add(canonical(cross), False)
+            across = cross(normal, line.axis)
+            if np.linalg.norm(across) > 0.1:
+                add(canonical(across), False)
     return found[: 3 * MOST_DIRECTIONS]
 
 
@@ -209,7 +234,7 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     members = [
         i
         for i in evidence.items
-        if i.patch.kind == "plane" and np.linalg.norm(np.cross(i.patch.axis, normal)) <= np.sin(alignment)
+        if i.patch.kind == "plane" and np.linalg.norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
     ]
     points = np.concatenate([i.points for i in members])
     return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))
@@ -218,4 +243,6 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
 def describe(motion: Motion) -> str:
     """In words: "rotation about (0, 0, 1)"."""
     axis = ", ".join(f"{x:.3g}" for x in np.where(np.abs(motion.axis) < 5e-4, 0.0, motion.axis))
+    if motion.pitch:
+        return f"screw motion about ({axis}), {1e3 * motion.pitch:.4g} mm a turn"
     return f"{'rotation about' if motion.turn else 'translation along'} ({axis})"

@@ -7,13 +7,14 @@ that slides on a table leaves its place, a bolt that spins does not.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.evidence import COAXIAL
-from kinform.kinematics.screws import Frame, perpendicular, rotation, scaled, span
+from kinform.kinematics.screws import Frame, cross, perpendicular, rotation, scaled, span, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint
@@ -32,17 +33,24 @@ def idle_freedoms(
     patches: Sequence[Patch],
     intended: Sequence[IntendedJoint],
     size: float,
-) -> int:
-    """How many independent idle turns the body has.
+    balls: Mapping[int, Array] | None = None,
+) -> Array:
+    """(k, 6) independent idle turns of the body (ω; v at the world's origin).
 
     `joints`: all joints of the body; `patches`: the contacts that carry them; `intended`: intended
-    joints between this body and its neighbours in `joints`; `size` of the assembly (m).
+    joints between this body and its neighbours in `joints`; `size` of the assembly (m); `balls`: by
+    position in `patches`, the centre (3,) of the body's own surface where that is a sphere that touches at points
+    or along a line.
     """
     if not joints or not patches or body.ground:
-        return 0
+        return np.zeros((0, 6))
     frame = Frame.of(np.concatenate([p.points for p in patches]))
+    patches = [
+        replace(p, kind="sphere", point=balls[k]) if balls is not None and k in balls else p
+        for k, p in enumerate(patches)
+    ]
     found = []
-    for axis, point in _candidates(patches):
+    for axis, point in _candidates(patches, size):
         twist = rotation(axis, point, frame)
         if not all(_contains(joint, twist, frame) for joint in joints):
             continue
@@ -50,17 +58,28 @@ def idle_freedoms(
             continue
         if not any(_names(wanted, axis, point, len(joints) == 1, size) for wanted in intended):
             found.append(twist)
-    return span(np.array(found).T).shape[1] if found else 0
+    return _independent(found, frame)
 
 
-def _candidates(patches: Sequence[Patch]) -> list[tuple[Array, Array]]:
+def _independent(found: Sequence[Array], frame: Frame) -> Array:
+    """The first of the turns that are independent, of rate 1."""
+    kept: list[Array] = []
+    for twist in found:
+        if span(np.array([*kept, twist]).T).shape[1] > len(kept):
+            kept.append(twist)
+    turns = twist_at_origin(np.array(kept).reshape(-1, 6).T, frame).T
+    unit: Array = turns / np.linalg.norm(turns[:, :3], axis=1)[:, None]
+    return unit
+
+
+def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Array]]:
     """Axes of revolution: of coaxial patches, through two centres, and three at a single centre."""
     lines = [(p.axis, p.point) for p in patches if p.kind in COAXIAL]
     centres = [p.point for p in patches if p.kind == "sphere"]
     for k, a in enumerate(centres):
         for b in centres[:k]:
             far = float(np.linalg.norm(b - a))
-            if far > 0.0:
+            if far > 1e-4 * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
         lines = [(e, centres[0]) for e in np.eye(3)]
@@ -76,13 +95,13 @@ def _contains(joint: Joint, twist: Array, frame: Frame) -> bool:
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the patch, as bounded as it is, turn onto itself?"""
     if patch.kind in COAXIAL:
-        parallel = float(np.linalg.norm(np.cross(patch.axis, axis))) < 1e-3
-        away = np.cross(patch.point - point, axis)
+        parallel = float(np.linalg.norm(cross(patch.axis, axis))) < 1e-3
+        away = cross(patch.point - point, axis)
         return parallel and float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
     if patch.kind == "sphere":
-        away = np.cross(patch.point - point, axis)
+        away = cross(patch.point - point, axis)
         return float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
-    if patch.kind != "plane" or float(np.linalg.norm(np.cross(patch.axis, axis))) > 1e-3:
+    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > 1e-3:
         return False
     u, v = perpendicular(axis)
     arm = patch.points - point
@@ -100,5 +119,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = float(np.linalg.norm(np.cross(wanted.axis, axis))) < 0.02
-    return parallel and float(np.linalg.norm(np.cross(wanted.point - point, axis))) < 1e-2 * size
+    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < 0.02
+    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < 1e-2 * size

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.decide import Decision
 from kinform.kinematics.evidence import COAXIAL, Evidence
+from kinform.kinematics.groups import in_words
 from kinform.kinematics.hypotheses import describe
-from kinform.kinematics.screws import canonical, perpendicular, twist_at_origin
+from kinform.kinematics.screws import canonical, cross, perpendicular, twist_at_origin
 from kinform.model.kinematics import Blocker, Joint
 from kinform.model.names import BodyName, JointName
 
@@ -34,7 +35,7 @@ def twists_of(
 
     def turn(about: Array, lead: float = 0.0) -> Array:
         assert point is not None
-        return np.concatenate([about, np.cross(point, about) + lead * about])
+        return np.concatenate([about, cross(point, about) + lead * about])
 
     if kind == "spherical":
         return np.array([turn(e) for e in np.eye(3)])
@@ -100,6 +101,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         patches=tuple(sorted(item.index for item in kept)),
         blockers=blockers,
         singular_values=decision.singular_values,
+        motion=in_words(decision.basis, frame),
     )
 
 

@@ -11,126 +11,110 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from kinform.kinematics.graph import Forest, blocks, forest
-from kinform.kinematics.screws import Frame, scaled
+from kinform.kinematics.loops import FEW, Block, Solution, close_block
 
 __all__ = ["Closure", "body_twists", "close"]
 
 Array = NDArray[np.float64]
 
-CLOSED = 1e-7
-"""Relative singular value below which a combination of joint rates closes its loops; the axes have
-been made exactly parallel and coaxial before, so true zeros are rounding."""
-
 
 @dataclass(frozen=True, eq=False)
 class Closure:
-    """Solutions of the closure equations."""
+    """Solutions of the closure equations. Rates: freedoms of all joints, in order, then 6 a loose tree."""
 
-    rates: Array
-    """(k, n) independent joint rates; n = freedoms of all joints, in order, then 6 a loose tree."""
+    solutions: tuple[Solution, ...]
+    """Independent joint rates, sparse: block by block, then those of loose trees."""
+    blocks: tuple[Block, ...]
+    block_of: tuple[int, ...]
+    """Block of each solution; −1 for those of loose trees."""
     tree: Forest
     offset: tuple[int, ...]
-    """First rate of each joint."""
+    """First rate of each joint, and their number."""
     loose: tuple[int, ...]
     """Roots of the trees that are not connected to ground."""
 
     @property
     def mobility(self) -> int:
         """Dimension of the null space of the bilateral constraints, relative to ground."""
-        return len(self.rates)
+        return len(self.solutions)
+
+    @property
+    def sparse_rates(self) -> csr_array:
+        """(k, n) the solutions as a sparse matrix."""
+        counts = [len(s.columns) for s in self.solutions]
+        rows = np.repeat(np.arange(len(counts)), counts)
+        columns = np.concatenate([np.zeros(0, np.int64), *(s.columns for s in self.solutions)])
+        values = np.concatenate([np.zeros(0), *(s.rates for s in self.solutions)])
+        shape = (len(counts), self.offset[-1] + 6 * len(self.loose))
+        return csr_array((values, (rows, columns)), shape=shape)
+
+    @property
+    def rates(self) -> Array:
+        """(k, n) the solutions as a dense matrix: for small assemblies."""
+        out = np.zeros((len(self.solutions), self.offset[-1] + 6 * len(self.loose)))
+        for row, solution in zip(out, self.solutions, strict=True):
+            row[solution.columns] = solution.rates
+        return out
 
 
 def close(
-    nodes: int, edges: Sequence[tuple[int, int]], spaces: Sequence[Array], ground: int, size: float = 1.0
-) -> Closure:
+    nodes: int, edges: Sequence[tuple[int, int]], spaces: Sequence[Array], ground: int, size: float = 1.0,
+    doubts: Array | None = None, few: int = FEW,
+) -> Closure:  # fmt: skip
     """Closure of joints between bodies 0 … nodes−1; `spaces[k]` is the (f, 6) twist basis of joint k,
-    of its second body relative to its first, at the world's origin; `size` of the assembly (m)."""
+    of its second body relative to its first, at the world's origin; `size` of the assembly (m);
+    `doubts` (joints, 2): uncertainty of the directions (rad) and places (m) of the joints.
+    Blocks of more than `few` joint rates are reduced loop by loop."""
     offset = np.concatenate([[0], np.cumsum([len(s) for s in spaces])]).astype(int)
     tree = forest(nodes, edges, ground)
     loose = sorted({r for r in tree.root if r != tree.root[ground]})
-    total = int(offset[-1]) + 6 * len(loose)
-    rates: list[Array] = []
-    for block in blocks(nodes, edges):
-        for solution in _close_block(edges, spaces, block, size):
-            row, at = np.zeros(total), 0
-            for k in block:
-                row[offset[k] : offset[k + 1]] = solution[at : at + len(spaces[k])]
-                at += len(spaces[k])
-            rates.append(row)
-    for k in range(6 * len(loose)):
-        row = np.zeros(total)
-        row[offset[-1] + k] = 1.0
-        rates.append(row)
-    return Closure(np.array(rates).reshape(len(rates), total), tree, tuple(int(o) for o in offset), tuple(loose))
+    prefer = _preference(edges, spaces, tree)
+    solutions: list[Solution] = []
+    closed: list[Block] = []
+    block_of: list[int] = []
+    for n, block in enumerate(blocks(nodes, edges)):
+        columns = np.concatenate([np.arange(offset[k], offset[k + 1]) for k in block])
+        closed.append(close_block(edges, spaces, block, prefer[columns], size, few, doubts))
+        for own in closed[-1].solutions:
+            solutions.append(Solution(int(columns[own.driver]), columns[own.columns], own.rates))
+            block_of.append(n)
+    for k in range(int(offset[-1]), int(offset[-1]) + 6 * len(loose)):
+        solutions.append(Solution(k, np.array([k]), np.ones(1)))
+        block_of.append(-1)
+    return Closure(
+        tuple(solutions), tuple(closed), tuple(block_of), tree, tuple(int(o) for o in offset), tuple(loose)
+    )  # fmt: skip
 
 
-def _close_block(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], size: float) -> Array:
-    """Null space (k, rates of the block) of the closure of all its independent loops."""
-    count = sum(len(spaces[k]) for k in block)
-    if count == 0:
-        return np.zeros((0, 0))
-    if len(block) == 1:
-        return np.eye(count)
-    local = {n: i for i, n in enumerate(sorted({n for k in block for n in edges[k]}))}
-    inner = [(local[edges[k][0]], local[edges[k][1]]) for k in block]
-    tree = forest(len(local), inner, 0)
-    frame = _frame([spaces[k] for k in block], size)
-    columns = np.concatenate([[0], np.cumsum([len(spaces[k]) for k in block])])
-    twists = [scaled(spaces[k].T, frame) for k in block]
-    twists = [t / np.maximum(np.linalg.norm(t, axis=0), 1e-300) for t in twists]
-    norms = np.concatenate([np.linalg.norm(scaled(spaces[k].T, frame), axis=0) for k in block])
-    loops = [k for k in range(len(block)) if k not in set(tree.edge)]
-    matrix = np.zeros((6 * len(loops), count))
-    for row, k in enumerate(loops):
-        here = slice(6 * row, 6 * row + 6)
-        matrix[here, columns[k] : columns[k + 1]] += twists[k]
-        for end, sign in ((inner[k][0], 1.0), (inner[k][1], -1.0)):
-            node = end
-            while tree.parent[node] >= 0:
-                e = tree.edge[node]
-                forward = 1.0 if inner[e][1] == node else -1.0
-                matrix[here, columns[e] : columns[e + 1]] += sign * forward * twists[e]
-                node = tree.parent[node]
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > CLOSED * max(values[0], 1e-300))) if len(values) else 0
-    null: Array = right[rank:] / norms
-    return null
-
-
-def _frame(spaces: Sequence[Array], size: float) -> Frame:
-    """Centre and size of the axes of a block, so that turns and slides compare. Axes that meet have
-    no size of their own: then a share of the assembly's counts."""
-    turns = np.array([t for space in spaces for t in space if np.any(t[:3])]).reshape(-1, 6)
-    if not len(turns):
-        return Frame(np.zeros(3), size)
-    centre = _feet(turns, np.zeros(3)).mean(axis=0)
-    # the point of an axis nearest to the origin may be far away: take that nearest to the centre
-    frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
-    return Frame(frame.centre, max(frame.length, 0.05 * size))
-
-
-def _feet(turns: Array, centre: Array) -> Array:
-    """(n, 3) points of the axes of the twists (n, 6) nearest to `centre`."""
-    omega = turns[:, :3]
-    velocity = turns[:, 3:] + np.cross(omega, centre)
-    feet: Array = centre + np.cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
-    return feet
+def _preference(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], tree: Forest) -> Array:
+    """(rates,) which rates rather drive: of joints with one freedom, near to ground, in their order."""
+    depth = [0] * len(tree.parent)
+    for node in tree.order:
+        if tree.parent[node] >= 0:
+            depth[node] = depth[tree.parent[node]] + 1
+    rank = sorted(range(len(edges)), key=lambda k: (len(spaces[k]) > 1, min(depth[n] for n in edges[k]), k))
+    place = np.empty(len(edges), dtype=np.int64)
+    place[rank] = np.arange(len(edges))
+    wide = max((len(s) for s in spaces), default=0) + 1
+    found = [wide * place[k] + np.arange(len(space)) for k, space in enumerate(spaces)]
+    return np.concatenate([np.zeros(0), *found])
 
 
 def body_twists(closure: Closure, edges: Sequence[tuple[int, int]], spaces: Sequence[Array]) -> Array:
     """(k, nodes, 6) twists (ω; v at the world's origin) of all bodies for each solution."""
-    tree, offset = closure.tree, closure.offset
+    tree, offset, rates = closure.tree, closure.offset, closure.rates
     out = np.zeros((closure.mobility, len(tree.parent), 6))
     for n, root in enumerate(closure.loose):
         at = offset[-1] + 6 * n
-        out[:, root] = closure.rates[:, at : at + 6]
+        out[:, root] = rates[:, at : at + 6]
     for node in tree.order:
         if tree.parent[node] < 0:
             continue
         k = tree.edge[node]
-        relative = closure.rates[:, offset[k] : offset[k + 1]] @ spaces[k]
+        relative = rates[:, offset[k] : offset[k + 1]] @ spaces[k]
         forward = 1.0 if edges[k][1] == node else -1.0
         out[:, node] = out[:, tree.parent[node]] + forward * relative
     return out

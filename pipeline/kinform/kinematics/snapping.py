@@ -10,18 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.concurrent import Locus, meeting_shifts
 from kinform.kinematics.joints import twists_of
-from kinform.kinematics.screws import canonical, perpendicular
+from kinform.kinematics.screws import canonical, cross, perpendicular
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Misfit
 
-__all__ = ["snap"]
+__all__ = ["snap", "uncertainties"]
 
 Array = NDArray[np.float64]
 
@@ -95,13 +94,24 @@ def snap(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tup
     return tuple(out), misfit
 
 
+def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
+    """(joints, 2): of the direction (rad) and of the place (m) of each joint, by its best patch; 0 where it has none.
+    Patches on facets of no known surface have no say."""
+    out = np.zeros((len(joints), 2))
+    for k, joint in enumerate(joints):
+        own = [patches[p] for p in joint.patches if not patches[p].one_sided]
+        carriers = [p for p in own if p.kind in ("cylinder", "cone", "sphere")] or own
+        out[k] = [min((p.uncertainty[n] for p in carriers), default=0.0) for n in (0, 1)]
+    return out
+
+
 def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     """Axes in bundles of one direction, and those again on common lines."""
-    bundles = _cluster(sorted(axes, key=lambda a: (a.angle, a.name)), _parallel)
+    bundles = _bundles(sorted(axes, key=lambda a: (a.angle, a.name)))
     means = [_mean_direction(bundle) for bundle in bundles]
     found = []
     for bundle, direction in zip(bundles, _squared(means, [b[0].angle for b in bundles]), strict=True):
-        for group in _cluster(bundle, partial(_coaxial, direction)):
+        for group in _coaxial(bundle, direction):
             foot = None
             if len(group) > 1:
                 foot = _mean_foot(group, direction)
@@ -129,26 +139,45 @@ def _axis(index: int, joint: Joint, patches: Sequence[Patch], reach: float) -> _
     )
 
 
-def _cluster(members: Sequence[_Axis], agree: Callable[[_Axis, _Axis], bool]) -> list[list[_Axis]]:
+def _bundles(axes: Sequence[_Axis]) -> list[list[_Axis]]:
+    """Axes of one direction."""
+    directions = np.array([a.direction for a in axes]).reshape(-1, 3)
+    angles = np.array([a.angle for a in axes])
+
+    def parallel(leaders: NDArray[np.int64], k: int) -> NDArray[np.bool_]:
+        sine = np.linalg.norm(cross(directions[leaders], directions[k]), axis=1)
+        return np.asarray(sine <= SIGMAS * (angles[leaders] + angles[k]))
+
+    return _cluster(axes, parallel)
+
+
+def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
+    """Of axes of one direction those on one line."""
+    feet = np.array([a.foot(direction) for a in bundle])
+    positions = np.array([a.position for a in bundle])
+    lines = np.array([a.line for a in bundle])
+
+    def coaxial(leaders: NDArray[np.int64], k: int) -> NDArray[np.bool_]:
+        apart = np.linalg.norm(feet[leaders] - feet[k], axis=1)
+        return np.asarray(lines[leaders] & lines[k] & (apart <= SIGMAS * (positions[leaders] + positions[k])))
+
+    return _cluster(bundle, coaxial)
+
+
+def _cluster(
+    members: Sequence[_Axis], agree: Callable[[NDArray[np.int64], int], NDArray[np.bool_]]
+) -> list[list[_Axis]]:
     """Greedy clusters: each member joins the first cluster whose leader it agrees with."""
     clusters: list[list[_Axis]] = []
-    for member in members:
-        for cluster in clusters:
-            if agree(cluster[0], member):
-                cluster.append(member)
-                break
+    leaders = np.zeros(len(members), dtype=np.int64)
+    for k, member in enumerate(members):
+        good = agree(leaders[: len(clusters)], k)
+        if good.any():
+            clusters[int(np.argmax(good))].append(member)
         else:
+            leaders[len(clusters)] = k
             clusters.append([member])
     return clusters
-
-
-def _parallel(a: _Axis, b: _Axis) -> bool:
-    return float(np.linalg.norm(np.cross(a.direction, b.direction))) <= SIGMAS * (a.angle + b.angle)
-
-
-def _coaxial(direction: Array, a: _Axis, b: _Axis) -> bool:
-    apart = float(np.linalg.norm(a.foot(direction) - b.foot(direction)))
-    return a.line and b.line and apart <= SIGMAS * (a.position + b.position)
 
 
 def _mean_direction(bundle: Sequence[_Axis]) -> Array:
@@ -199,7 +228,7 @@ def _moved(joint: Joint, old: _Axis, line: _Line, misfit: Misfit) -> tuple[Joint
     """The joint on its snapped line, and the misfit with what that moved."""
     direction, point = line.direction, joint.point
     if direction is not None:
-        angle = float(np.linalg.norm(np.cross(old.direction, direction)))
+        angle = float(np.linalg.norm(cross(old.direction, direction)))
         if angle > max(misfit.angle, EXACT):
             misfit = replace(misfit, angle=angle, angle_at=old.name)
     if line.foot is not None:

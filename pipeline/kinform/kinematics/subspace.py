@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.screws import Frame, canonical, perpendicular, rotation, translation
+from kinform.kinematics.screws import Frame, canonical, cross, perpendicular, rotation, translation
 
 __all__ = ["JointForm", "name_space", "nearest_pair"]
 
@@ -74,10 +74,10 @@ def nearest_pair(basis: Array, frame: Frame) -> Array | None:
     axis, point, lead = _axis_of(mixed[:, 0], frame)
     if freedoms == 1:
         return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR * frame.length else None
-    if freedoms == 2 and np.linalg.norm(np.cross(axis, slides[:, 0])) < NEAR:
+    if freedoms == 2 and np.linalg.norm(cross(axis, slides[:, 0])) < NEAR:
         return _orthonormal([rotation(axis, point, frame), translation(axis)])
     if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR:
-        normal = np.cross(slides[:, 0], slides[:, 1])
+        normal = cross(slides[:, 0], slides[:, 1])
         normal /= np.linalg.norm(normal)
         u, v = perpendicular(normal)
         return _orthonormal([rotation(normal, frame.centre, frame), translation(u), translation(v)])
@@ -93,7 +93,7 @@ def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
     """Unit axis, its point nearest to the centre (m), and the slide per turn (m a radian)."""
     omega, velocity = twist[:3] / frame.length, twist[3:]
     square = float(omega @ omega)
-    point = frame.centre + np.cross(omega, velocity) / square
+    point = frame.centre + cross(omega, velocity) / square
     return omega / math.sqrt(square), point, float(omega @ velocity) / square
 
 

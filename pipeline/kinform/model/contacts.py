@@ -25,8 +25,8 @@ class Patch:
     surfaces: tuple[int, int]
     """Index of the surface in each part's MeshSurfaces."""
     kind: str
-    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus and revolution: of facets, so that the
-    common turn stays free. Else: other (planes
+    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus, revolution, extrusion: of facets, so
+    that the common turn or slide stays free; helicoid: of the profile, so that the common screw does. Else: other (planes
     that touch askew), freeform (normals of facets), point and line (higher pairs)."""
     one_sided: bool
     """True: analytic on one side, facets of no known surface on the other."""
@@ -57,6 +57,8 @@ class Patch:
     """m: sum of the chord errors of both surfaces."""
     fit: str
     """clearance, touch, transition or interference, beyond chord errors and uncertainty."""
+    pitch: float = 0.0
+    """m a turn that two helicoids have in common, right-handed positive; 0 for other kinds."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,11 +18,14 @@ __all__ = [
     "Blocker",
     "Body",
     "ConstraintMatrix",
+    "Coupling",
     "FiniteCertificate",
+    "Freedom",
     "Joint",
     "Kinematics",
     "Misfit",
     "Mobility",
+    "Redundancy",
     "Release",
     "Separation",
 ]
@@ -122,6 +125,8 @@ class Joint:
     """How many extreme directions the leaving motions have; None where held, not known, or too many to list."""
     held_reason: str = ""
     """Why it is not known whether they are held."""
+    motion: str = ""
+    """In words what the second body may do: "turns about …, slides along …"; of joints that contact decided."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,6 +208,50 @@ class FiniteCertificate:
 
 
 @dataclass(frozen=True, eq=False)
+class Freedom:
+    """One freedom of the assembly, as a motion that one joint drives and the rates that follow."""
+
+    driver: JointName | None
+    """None: a body that no joint connects to ground."""
+    body: BodyName
+    """What the driver moves: its body further from ground; of an idle freedom the body that spins."""
+    kind: str
+    """turn, slide or screw: of the driving joint's second body relative to its first."""
+    axis: Array
+    """(3,) unit, canonical sign."""
+    point: Array
+    """(3,) m: on the axis, near the joint."""
+    pitch: float
+    """m a turn; 0 unless a screw."""
+    idle: bool
+    """One of the idle freedoms: the others are effective."""
+    looped: bool
+    """Whether loops must close for it: other joints follow."""
+    drives: tuple[tuple[JointName, int, float], ...]
+    """(joint, index of its twist, rate) where not zero, the driver's rate being ±1 (rad/s, m/s); empty without driver."""
+
+
+@dataclass(frozen=True, eq=False)
+class Redundancy:
+    """Constraints that hold nothing more, in a set of joints none of which could be left out of it."""
+
+    kind: str
+    """pair (contacts of one joint), loop, loops (several together), or block (spread, not told apart)."""
+    text: str
+    """One sentence: where, why, how many, and which."""
+    rows: int
+    """Independent constraints too many. Those of pairs are in addition to `Mobility.redundant`."""
+    joints: tuple[JointName, ...]
+    """In the order of walking for a loop, else sorted."""
+    patches: tuple[int, ...]
+    """Indices into Contacts.patches: the contacts that make these joints."""
+    directions: tuple[str, ...]
+    """What can be locked in, one a row: "force along z", "moment about x"; empty where not told apart."""
+    wrenches: Array
+    """(n, 6) N·m, N (τ about the world's origin; f): the same as wrenches through the first joint; n = directions."""
+
+
+@dataclass(frozen=True, eq=False)
 class Mobility:
     """Mobility relative to ground, defined in the results contract."""
 
@@ -214,7 +263,8 @@ class Mobility:
     blocked: int
     """Instantaneous mobility when blockers count as constraints (`blocked_mobility`)."""
     freedoms: Array
-    """(instantaneous, bodies, 6) orthonormal basis of body twists, ground at rest."""
+    """(instantaneous, bodies, 6) orthonormal basis of body twists, ground at rest. Of large assemblies, where it
+    would hold over a million numbers, (0, bodies, 6): `named` says the same."""
     idle_bodies: tuple[BodyName, ...]
     uncertain: tuple[JointName, ...]
     """Joints that are ambiguous or general or blocked: the counts depend on them."""
@@ -226,6 +276,32 @@ class Mobility:
     """The pose has more freedoms than the poses that it can move to."""
     certificates: tuple[FiniteCertificate, ...] = ()
     """One a block of joints with loops and freedoms, in the order of the joints."""
+    named: tuple[Freedom, ...] = ()
+    """A readable basis of the freedoms: block by block of the graph, then bodies that nothing holds."""
+    redundancies: tuple[Redundancy, ...] = ()
+    """Those of loops sum to `redundant`; those of pairs come first and are not counted there."""
+
+    @property
+    def gruebler(self) -> int:
+        """6(N−1) − Σ(6−f): the count that knows no geometry."""
+        return self.instantaneous - self.redundant
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Two joints that one contact, or one screw, ties to each other: value(first) = ratio · value(second)."""
+
+    joints: tuple[JointName, JointName]
+    ratio: float
+    """Of the values as kinform counts them (of the second body about the listed axis relative to the first), SI."""
+    kind: str
+    """gear, rack, screw, or cam: then the ratio is that of this pose."""
+    through: JointName
+    """The joint that ties them: a higher pair or a screw."""
+    status: str
+    """determined or ambiguous."""
+    uncertainty: float
+    """Of the ratio; nan where it is not known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,6 +319,7 @@ class Kinematics:
     """What can leave the assembly, ground held; sorted by bodies."""
     separations_reason: str = ""
     """Why it is not known, or not known of all bodies, whether they can leave."""
+    couplings: tuple[Coupling, ...] = ()
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinform.behaviour.joints import KINDS
 from kinform.errors import StageError
-from kinform.kinematics import insight
+from kinform.kinematics import Motions, insight
 from kinform.model.assembly import Assembly, Part
 from kinform.model.design import Design
 from kinform.model.function import IntendedJoint
@@ -24,6 +24,7 @@ from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
 from kinform.reports import as_json
+from kinform.reports.motions import freedom_text, metres
 
 __all__ = [
     "TOPICS",
@@ -214,7 +215,7 @@ def _joint(joint: Joint) -> dict[str, Any]:
         **({"axis2": joint.axis2} if joint.type == "universal" else {}),
         **_fields(joint, "pitch", "freedoms"),
         **({"twists": joint.twists} if joint.type == "general" else {}),
-        **_fields(joint, "evidence", "status", "reason"),
+        **_fields(joint, "evidence", "status", "reason", "motion"),
         "range": None if unknown else limits,
         "patches": joint.patches,
         "blocked_by": [_fields(blocker, *of_blocker) for blocker in joint.blockers],
@@ -237,12 +238,32 @@ def _mobility(design: Design) -> dict[str, Any]:
         **_fields(mobility, "idle_bodies", "uncertain", "finite_reason", "infinitesimal", "singular"),
         "certificates": [asdict(certificate) for certificate in mobility.certificates],
         "bodies": [body.name for body in kinematics.bodies],
-        "freedoms": mobility.freedoms,
+        "gruebler": mobility.gruebler,
+        "freedoms": mobility.freedoms if len(mobility.freedoms) == mobility.instantaneous else None,
+        "named": _named(kinematics),
+        "redundancies": [
+            _fields(one, "kind", "text", "rows", "joints", "patches", "directions", "wrenches")
+            for one in mobility.redundancies
+        ],
         "misfit": asdict(kinematics.misfit),
         "misaligned": [
             {"joint": joint, "angle": angle, "offset": offset} for joint, angle, offset in kinematics.misaligned
         ],
+        "couplings": [asdict(coupling) for coupling in kinematics.couplings],
     }
+
+
+def _named(kinematics: Kinematics) -> list[dict[str, Any]]:
+    motions = Motions.of(kinematics)
+    return [
+        {
+            "text": freedom_text(freedom, metres),
+            **_fields(freedom, "driver", "body", "kind", "axis", "point", "pitch", "idle", "looped"),
+            "moves": list(motions.twists(freedom)),
+            "drives": [{"joint": joint, "twist": twist, "rate": rate} for joint, twist, rate in freedom.drives],
+        }
+        for freedom in kinematics.mobility.named
+    ]
 
 
 def _mass(design: Design) -> dict[str, Any]:

@@ -37,7 +37,7 @@ _PATCHES = (
     real("area", "m²"), real("gap", "m"), vector("axis", "1"), vector("point", "m"),
     pair("radii", real, ("radius_a", "radius_b"), "m (cones: rad)"), real("misalignment", "rad"),
     real("offset", "m"), pair("uncertainty", real, ("axis_uncertainty", "point_uncertainty"), "rad, m"),
-    real("chord", "m"), text("fit"),
+    real("chord", "m"), text("fit"), real("pitch", "m a turn"),
 )  # fmt: skip
 _SAMPLES = {
     "x": "m", "y": "m", "z": "m", "normal_x": "1", "normal_y": "1", "normal_z": "1", "gap": "m", "weight": "m²",
@@ -72,7 +72,7 @@ def read(group: h5py.Group) -> tuple[Contacts, dict[Pair, str]]:
     pairs = read_rows(group, "pairs", _PAIRS)
     samples = _read_samples(group)
     rows: list[dict[str, Any]] = [
-        row | owned for row, owned in zip(read_rows(group, "patches", _PATCHES), samples, strict=True)
+        row | owned for row, owned in zip(read_rows(group, "patches", _PATCHES, added=("pitch",)), samples, strict=True)
     ]
     contacts = Contacts(
         patches=tuple(Patch(**row) for row in rows),

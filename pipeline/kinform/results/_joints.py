@@ -6,7 +6,7 @@ from typing import Any
 
 import h5py
 
-from kinform.model.kinematics import Blocker, Body, Joint, Kinematics, Misfit, Release, Separation
+from kinform.model.kinematics import Blocker, Body, Coupling, Joint, Kinematics, Misfit, Release, Separation
 from kinform.results._table import (
     flag,
     integer,
@@ -32,7 +32,7 @@ _JOINTS = (
     text("name"), pair("bodies", text, ("body_a", "body_b")), text("type"), vector("axis", "1"),
     vector("point", "m"), vector("axis2", "1"), real("pitch", "m a turn"), integer("freedoms"),
     texts("evidence"), text("status"), text("reason"), real("range_lower", "rad or m"),
-    real("range_upper", "rad or m"), text("range_status"),
+    real("range_upper", "rad or m"), text("range_status"), text("motion"),
 )  # fmt: skip
 _BLOCKERS = (
     integer("joint"), pair("parts", text, ("part_a", "part_b")), integer("patch"), real("area", "m²"),
@@ -48,6 +48,10 @@ _RELEASES = (integer("joint"), *_RELEASE)
 _SEPARATIONS = (texts("bodies"), texts("contacts"))
 _WAYS_APART = (integer("separation"), *_RELEASE)
 _MISFIT = (real("angle", "rad"), real("distance", "m"), text("angle_at"), text("distance_at"))
+_COUPLINGS = (
+    pair("joints", text, ("joint_a", "joint_b")), real("ratio", "rad or m over rad or m"), text("kind"),
+    text("through"), text("status"), real("uncertainty", "rad or m over rad or m"),
+)  # fmt: skip
 _MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
 
 
@@ -74,6 +78,7 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     fields = [column.field for column in _MISALIGNED]
     rows = [dict(zip(fields, row, strict=True)) for row in kinematics.misaligned]
     write_rows(group, "misaligned", _MISALIGNED, rows)
+    write_records(group, "couplings", _COUPLINGS, kinematics.couplings)
 
 
 def _separations(group: h5py.Group) -> dict[str, Any]:
@@ -97,11 +102,12 @@ def read(group: h5py.Group) -> dict[str, Any]:
         "misfit": misfit,
         **_separations(group),
         "misaligned": tuple(tuple(row.values()) for row in read_rows(group, "misaligned", _MISALIGNED)),
+        "couplings": read_records(group, "couplings", _COUPLINGS, Coupling) if "couplings" in group else (),
     }
 
 
 def _read_joints(group: h5py.Group) -> tuple[Joint, ...]:
-    rows = read_rows(group, "joints", _JOINTS)
+    rows = read_rows(group, "joints", _JOINTS, added=("motion",))
     blockers: list[list[Blocker]] = [[] for _ in rows]
     for row in read_rows(group, "blockers", _BLOCKERS):
         blockers[row.pop("joint")].append(Blocker(**row))

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import h5py
 
-from kinform.model.kinematics import FiniteCertificate, Mobility
+from kinform.model.kinematics import FiniteCertificate, Freedom, Mobility, Redundancy
 from kinform.results._table import (
     flag,
     integer,
     read_array,
+    read_ragged,
     read_records,
     read_rows,
     read_texts,
     real,
     text,
     texts,
+    vector,
     write_array,
+    write_ragged,
     write_records,
+    write_rows,
     write_texts,
 )
 
@@ -33,6 +39,12 @@ _CERTIFICATES = (
     real("kept", "1"), real("residual", "rad, or of the size"), integer("stepped", optional=True),
     text("second_order"), texts("moves"), text("statement"),
 )  # fmt: skip
+_NAMED = (
+    text("driver"), text("body"), text("kind"), vector("axis", "1"), vector("point", "m"), real("pitch", "m a turn"),
+    flag("idle"), flag("looped"),
+)  # fmt: skip
+_DRIVES = (integer("freedom"), text("joint"), integer("twist"), real("rate", "rad/s or m/s, or their ratio"))
+_REDUNDANCIES = (text("kind"), text("text"), integer("rows"), texts("joints"), texts("directions"))
 
 
 def write(group: h5py.Group, mobility: Mobility) -> None:
@@ -43,6 +55,10 @@ def write(group: h5py.Group, mobility: Mobility) -> None:
     write_texts(group, "uncertain", mobility.uncertain)
     write_records(group, "finite", _FINITE, [mobility])
     write_records(group, "certificates", _CERTIFICATES, mobility.certificates)
+    _write_named(group, mobility.named)
+    write_records(group, "redundancies", _REDUNDANCIES, mobility.redundancies)
+    write_ragged(group, "redundant_patches", [r.patches for r in mobility.redundancies], "1", dtype="<i8")
+    write_ragged(group, "redundant_wrenches", [r.wrenches for r in mobility.redundancies], "N m, N (τ; f)", width=6)
 
 
 def read(group: h5py.Group) -> Mobility:
@@ -56,4 +72,35 @@ def read(group: h5py.Group) -> Mobility:
         freedoms=read_array(group, "freedoms"),
         idle_bodies=read_texts(group, "idle_bodies"),
         uncertain=read_texts(group, "uncertain"),
+        named=_read_named(group),
+        redundancies=_read_redundancies(group),
+    )
+
+
+def _write_named(group: h5py.Group, named: Sequence[Freedom]) -> None:
+    """One row a freedom, and in `drives` one row for each joint rate that is not zero."""
+    write_records(group, "named", _NAMED, named)
+    fields = [column.field for column in _DRIVES]
+    rows = [dict(zip(fields, (i, *drive), strict=True)) for i, freedom in enumerate(named) for drive in freedom.drives]
+    write_rows(group, "drives", _DRIVES, rows)
+
+
+def _read_named(group: h5py.Group) -> tuple[Freedom, ...]:
+    if "named" not in group:  # written before they were named
+        return ()
+    rows = read_rows(group, "named", _NAMED)
+    drives: list[list[tuple[str, int, float]]] = [[] for _ in rows]
+    for row in read_rows(group, "drives", _DRIVES):
+        drives[row["freedom"]].append((row["joint"], row["twist"], row["rate"]))
+    return tuple(Freedom(**row, drives=tuple(own)) for row, own in zip(rows, drives, strict=True))  # type: ignore[arg-type]
+
+
+def _read_redundancies(group: h5py.Group) -> tuple[Redundancy, ...]:
+    if "redundancies" not in group:
+        return ()
+    rows = read_rows(group, "redundancies", _REDUNDANCIES)
+    ragged = zip(read_ragged(group, "redundant_patches"), read_ragged(group, "redundant_wrenches"), strict=True)
+    return tuple(
+        Redundancy(**row, patches=tuple(patches.tolist()), wrenches=wrenches)
+        for row, (patches, wrenches) in zip(rows, ragged, strict=True)
     )

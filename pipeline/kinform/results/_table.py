@@ -233,9 +233,13 @@ def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], rows: It
     )
 
 
-def read_rows(group: h5py.Group, name: str, columns: Sequence[Column]) -> list[dict[str, Any]]:
-    """The rows that `write_rows` wrote."""
+def read_rows(
+    group: h5py.Group, name: str, columns: Sequence[Column], added: Sequence[str] = ()
+) -> list[dict[str, Any]]:
+    """The rows that `write_rows` wrote. Fields named in `added` came later: files without them give rows without."""
     table = read_columns(group, name)
+    known = set(table.dtype.names or ())
+    columns = [column for column in columns if column.field not in added or known.issuperset(column.labels)]
     stored = {label: table[label].tolist() for column in columns for label in column.labels}
     return [
         {column.field: column.join([stored[label][i] for label in column.labels]) for column in columns}

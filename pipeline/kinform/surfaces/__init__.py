@@ -5,5 +5,5 @@ from kinform.surfaces.congruent import congruent, moved
 
 __all__ = ["CODE_VERSION", "congruent", "moved", "recover"]
 
-CODE_VERSION: int = 5
+CODE_VERSION: int = 6
 """Bumped when results change."""

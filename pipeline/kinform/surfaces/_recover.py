@@ -20,11 +20,14 @@ from kinform.surfaces.kind import Batch
 from kinform.surfaces.merge import coincident_planes, coincident_regions
 from kinform.surfaces.partition import CURVED, Partition, partition
 from kinform.surfaces.sliding import sliding
+from kinform.surfaces.threads import threads
 from kinform.surfaces.topology import Patchwork, Scale, build
 
 __all__ = ["recover"]
 
 EPS32 = float(np.finfo(np.float32).eps)
+SMALL = 2e-2
+"""Share of the area below which a plane may be a facet of a thread."""
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
@@ -91,9 +94,14 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
         merged = np.bincount(group) > 1
         loosest = np.where(merged, scale.fit, loosest)
         out.extend(curved(kind, batch, params[heads], side[heads], loosest, scale))
-    planes = coincident_planes(work, parts.planes, scale)
+    rest, alone = parts.freeform.copy(), parts.planes.copy()
+    small = (alone >= 0) & (work.area < SMALL * work.area.sum())
+    for found in threads(work, (rest >= 0) | small, out, scale):
+        out.append(found)
+        rest[found.polygons] = alone[found.polygons] = -1
+    alone[alone >= 0] = np.unique(alone[alone >= 0], return_inverse=True)[1]
+    planes = coincident_planes(work, alone, scale)
     out.extend(flat(work, planes, scale))
-    rest = parts.freeform.copy()
     for found in sliding(work, rest, scale):
         chord = freeform(work, found.polygons, _inner(work, rest, found.polygons)).chord
         out.append(replace(found, chord=chord))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, cross
+from kinform.surfaces._batch import Array, Ints, Mask, components, cross
 
 __all__ = ["Fabric", "angles", "departures", "fabric", "normalised", "scatter"]
 
@@ -145,6 +145,10 @@ def _departures(points: Array) -> Array:
     return np.asarray(-np.einsum("ij,ij->i", uv, w) / np.sqrt(np.maximum(squares, 1e-300)))
 
 
+REPEATED, ROW = 1e-2, 12
+"""Relative difference of what neighbours show that is no accident, in rows of so many."""
+
+
 def scatter(of: Fabric, smooth_edge: float) -> float:
     """Standard deviation of the vertices about their surfaces in one coordinate, as far as it can be read.
 
@@ -166,7 +170,21 @@ def scatter(of: Fabric, smooth_edge: float) -> float:
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
     ripple = _calmest(of, np.abs(mean - around), spokes >= 3, SHARE_OF_RIPPLE)
-    return mixed / PER_SIGMA if ripple > RIPPLE * mixed else 0.0
+    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
+        return 0.0
+    return _calmest(of, _irregular(of, inner, above, below), seen >= 4, SHARE) / PER_SIGMA
+
+
+def _irregular(of: Fabric, inner: Ints, above: Array, below: Array) -> Array:
+    """What mixes at each vertex; nothing where a long row of neighbours does so alike: flanks of a thread that is one
+    strip of skew facets mix signs, but all in one way, and scatter repeats nothing."""
+    a, b = of.ends[inner].T
+    alike = np.ones(len(a), bool)
+    for value in (above, below):
+        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
+    # an edge shows at its four vertices: so few are alike anyway
+    label = components(a[alike], b[alike], len(above))
+    return np.where(np.bincount(label)[label] >= ROW, 0.0, np.minimum(above, below))
 
 
 def _calmest(of: Fabric, value: Array, known: Mask, share: float) -> float:

@@ -1,7 +1,7 @@
 """Geometry gives a joint of another type than the function intends.
 
 Two sides that are one body have no motion and satisfy only `fixed`. Joints that are ambiguous, and types
-that geometry cannot prove yet (screw, universal), leave the rule inconclusive. Loose parts between the
+that geometry does not always show (a screw without modelled threads, universal), leave the rule inconclusive. Loose parts between the
 bodies that the function does not name, such as a pin, take part in the decision.
 
 Why it matters: the mechanism moves in a way that is not wanted, or does not move.

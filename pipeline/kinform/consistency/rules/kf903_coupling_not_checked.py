@@ -1,18 +1,21 @@
-"""The function states a coupling of joints that kinform does not check yet.
+"""The function states a coupling of joints for which geometry gives no ratio.
 
-The rule is inconclusive as long as there is one.
+No teeth, rack or screw that touch are found between bodies with joints of one freedom, or what ties them is a cam, or
+uncertain. The rule is inconclusive as long as there is one.
 
-Why it matters: whether the gears or racks of the geometry give this ratio is not known.
+Why it matters: whether the geometry couples these joints in this ratio is not known.
 
-What to do: check the ratio by other means until couplings are supported.
+What to do: bring teeth into contact at the pose of the meshes (a gap of a few hundredths of a millimetre counts), give
+both sides a joint with a common body, or check the ratio by other means.
 
-Example: `ratio = -2.5` between the two shafts of a gear pair.
+Example: `ratio = -2.5` between two shafts whose gears are drawn as plain discs.
 """
 
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, inconclusive, skipped
+from kinform.consistency._coupled import derived_ratio
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.consistency._words import counted, number, quoted
 
 __all__ = ["RULE"]
@@ -23,18 +26,22 @@ def check(context: Context) -> Outcome:
     couplings = context.function.couplings
     if not couplings:
         return skipped("the function states no coupling")
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
     findings = [
         RULE.finding(
             coupling.joints,
-            f"the coupling of {quoted(coupling.joints)} is not checked yet",
+            f"the coupling of {quoted(coupling.joints)} is not checked: {reason}",
             found="not checked",
             intended=f"ratio {number(coupling.ratio, 6)}",
             declared=coupling,
-            remedy="Check the ratio by other means.",
+            remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )
         for coupling in couplings
+        if isinstance(reason := derived_ratio(context, kinematics, coupling), str)
     ]
-    return inconclusive(f"{counted(len(couplings), 'coupling')} not checked", findings)
+    return inconclusive(f"{counted(len(findings), 'coupling')} not checked", findings) if findings else decided()
 
 
 RULE = Rule("KF903", "coupling-not-checked", "note", __doc__, check)

@@ -1,0 +1,87 @@
+"""The ratio that geometry gives two intended joints: through one contact, or through several one after the other."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from kinform.consistency._context import Context
+from kinform.function import resolve
+from kinform.model.function import Coupling as Stated
+from kinform.model.kinematics import Coupling, Kinematics
+
+__all__ = ["Ratio", "coupled_through", "derived_ratio"]
+
+TEETH = 1e-2
+"""Relative: what the ratio of teeth at one pose may be off."""
+SCREW = 1e-3
+"""Relative: what the pitch of a screw may be off."""
+MOST = 0.05
+"""Relative uncertainty beyond which a ratio says nothing."""
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """value(first) over value(second) of intended joints, by the designer's signs, and by how much it may be off."""
+
+    value: float
+    allowed: float
+    through: tuple[str, ...]
+
+
+def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> Ratio | str:
+    """What the geometry gives for a stated coupling, or the reason why it gives nothing."""
+    ends = [resolve(context.assembly, kinematics, name) for name in stated.joints]
+    for end in ends:
+        if end.joint is None:
+            return end.reason
+    first, second = (str(end.joint.name) for end in ends if end.joint is not None)
+    if first == second:
+        return "both names stand for one joint"
+    chain = _chain(kinematics, first, second)
+    if chain is None:
+        return "no contact of teeth, cam or screw is found that ties these joints"
+    ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
+    for coupling, forward in chain:
+        if coupling.status != "determined":
+            return f"the coupling through '{coupling.through}' is {coupling.status}"
+        if coupling.kind == "cam":
+            return f"'{coupling.through}' is a cam: its ratio is another in every pose"
+        ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
+        known = math.isfinite(coupling.uncertainty)
+        own = 3.0 * coupling.uncertainty / abs(coupling.ratio) if known else 0.0
+        relative += max(own, SCREW if coupling.kind == "screw" else TEETH)
+    if relative > MOST * len(chain):
+        return f"the ratio {ratio:.4g} is uncertain by {100 * relative:.2g} %"
+    return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
+
+
+def coupled_through(context: Context, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:
+    """Names of the joints, teeth, cams or screws, that a stated coupling goes through; none where there are none."""
+    joints = [resolve(context.assembly, kinematics, name).joint for name in stated.joints]
+    names = [str(joint.name) for joint in joints if joint is not None]
+    if len(names) < 2 or names[0] == names[1]:
+        return ()
+    return tuple(str(coupling.through) for coupling, _ in _chain(kinematics, names[0], names[1]) or [])
+
+
+def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupling, bool]] | None:
+    """The fewest couplings that lead from the one joint to the other, each with whether it is taken forwards."""
+    came: dict[str, tuple[str, Coupling, bool]] = {}
+    queue = deque([first])
+    while queue and second not in came:
+        name = queue.popleft()
+        for coupling in kinematics.couplings:
+            for here, there, forward in ((*coupling.joints, True), (*coupling.joints[::-1], False)):
+                if here == name and there != first and there not in came:
+                    came[str(there)] = (name, coupling, forward)
+                    queue.append(str(there))
+    if second not in came:
+        return None
+    out: list[tuple[Coupling, bool]] = []
+    name = second
+    while name != first:
+        name, coupling, forward = came[name]
+        out.append((coupling, forward))
+    return out[::-1]

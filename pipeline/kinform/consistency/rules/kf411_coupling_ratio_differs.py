@@ -1,0 +1,54 @@
+"""Two joints are coupled in another ratio than intended.
+
+The ratio is read out of the motions that all contacts leave, at the pose of the meshes. A finding when it differs by
+more than 1 % a pair of teeth, 0.1 % a screw, or its uncertainty. Couplings that nothing could be derived for are
+KF903.
+
+Why it matters: the driven side turns by another angle than is meant, or the other way.
+
+What to do: correct the numbers of teeth or the pitch, or `ratio` in `[[function.coupling]]`; mind the signs, which are
+those of the axes of the intended joints.
+
+Example: `ratio = -2.5` where gears of 20 and 48 teeth give −2.4.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._coupled import derived_ratio
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency._words import number, quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Every coupling that can be derived."""
+    couplings = context.function.couplings
+    if not couplings:
+        return skipped("the function states no coupling")
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    findings, count = [], 0
+    for coupling in couplings:
+        found = derived_ratio(context, kinematics, coupling)
+        if isinstance(found, str):
+            continue
+        count += 1
+        if abs(found.value - coupling.ratio) > found.allowed:
+            findings.append(
+                RULE.finding(
+                    coupling.joints,
+                    f"{quoted(coupling.joints)} are coupled with the ratio {number(found.value, 5)} through "
+                    f"{quoted(found.through)}, intended is {number(coupling.ratio, 5)}",
+                    found=f"ratio {number(found.value, 6)}",
+                    intended=f"ratio {number(coupling.ratio, 6)}",
+                    declared=coupling,
+                    remedy="Correct the teeth or the pitch, or `ratio` (values in SI units: radians and metres).",
+                )
+            )
+    return decided(findings) if count else skipped("no coupling can be compared")
+
+
+RULE = Rule("KF411", "coupling-ratio-differs", "error", __doc__, check)

@@ -1,0 +1,33 @@
+"""`kinform show F.h5 mobility` names freedoms and redundancy, and draws the graph."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+from kinform import results as results_file
+
+FOUR_BAR = Path(__file__).parents[2] / "fixtures" / "mechanisms" / "four_bar" / "four_bar.toml"
+
+
+@pytest.fixture
+def results(derive_design, tmp_path):
+    path = tmp_path / "f.h5"
+    results_file.write(derive_design(FOUR_BAR), path)
+    return path
+
+
+def test_mobility_says_what_moves_what_is_redundant_and_draws_it(kinform, results, tmp_path):
+    shown = kinform("show", results, "mobility", COLUMNS="200")
+    assert "crank_unit turns about z through (0, 0," in shown.stdout
+    assert "loop base-crank_unit-coupler-rocker_unit is planar, normal to z: 3 rows too many" in shown.stdout
+    drawn = tmp_path / "graph.svg"
+    ran = kinform("show", results, "mobility", "--graph", drawn)
+    assert (ran.returncode, ran.stdout) == (0, "")
+    assert ET.parse(drawn).getroot().tag.endswith("svg")
+    assert kinform("show", results, "joints", "--graph", tmp_path / "graph.dot").returncode == 0
+    assert (tmp_path / "graph.dot").read_text().startswith("graph ")
+    refused = kinform("show", results, "mobility", "--graph", tmp_path / "graph.png")
+    assert refused.returncode == 2 and "neither in .svg nor in .dot" in refused.stderr

@@ -1,0 +1,91 @@
+"""Stated couplings are held against the ratio that the teeth give, by the designer's signs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gearing import cam_and_follower, gear_pair
+from solids import assembly, part
+
+from kinform import contacts, kinematics, surfaces
+from kinform.consistency import check, verdict
+from kinform.model.design import Design
+from kinform.model.function import Coupling, Function, IntendedJoint
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def designed(solids):
+    made = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()), ground=None)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, found)
+    return Design(made, surfaces=found, contacts=touching, kinematics=kinematics.derive(made, found, touching))
+
+
+@pytest.fixture(scope="module")
+def gears():
+    return designed(gear_pair(20, 30, 0.1, 10, idler=24))
+
+
+@pytest.fixture(scope="module")
+def cam():
+    return designed(cam_and_follower()[0])
+
+
+def hinge(name, first, second, axis=Z, x=0.0):
+    return IntendedJoint(name, (first, second), "revolute", axis, None, np.array([x, 0, 0]), None, None, "m.toml", 5)
+
+
+def stated(design, joints, ratio, names=("a", "b")):
+    function = Function(joints=joints, couplings=(Coupling(names, ratio, "m.toml", 9),))
+    return check(replace(design, assembly=replace(design.assembly, function=function)))
+
+
+def outcome(report, code):
+    return next(rule.outcome for rule in report.rules if rule.code == code)
+
+
+AXES = (hinge("a", "housing", "gear0"), hinge("b", "housing", "gear1"))
+
+
+@pytest.mark.parametrize(("ratio", "code"), [(-1.2, None), (-1.19, None), (1.2, "KF411"), (-1.25, "KF411")])
+def test_the_ratio_of_two_gears(gears, ratio, code):
+    report = stated(gears, AXES, ratio)
+    assert [f.code for f in report.findings if f.code in ("KF411", "KF903")] == ([code] if code else [])
+    assert outcome(report, "KF411") == ("failed" if code else "passed")
+    assert outcome(report, "KF903") == "passed"
+    assert all(f.subject != ("gear0~gear1",) for f in report.findings if f.code == "KF407")
+    if code:
+        (finding,) = (f for f in report.findings if f.code == code)
+        assert finding.found is not None
+        assert finding.found.startswith("ratio -1.2")
+        assert finding.intended == f"ratio {ratio:g}"
+        assert verdict(report) == 1
+
+
+def test_the_designer_may_turn_axes_and_sides_round(gears):
+    first, second = AXES
+    for changed, sign in (
+        ((replace(first, axis=-Z), second), 1.0),
+        ((replace(first, between=first.between[::-1]), second), 1.0),
+        ((replace(first, axis=-Z), replace(second, between=second.between[::-1])), -1.0),
+    ):
+        assert outcome(stated(gears, changed, sign * 1.2), "KF411") == "passed"
+        assert outcome(stated(gears, changed, -sign * 1.2), "KF411") == "failed"
+
+
+def test_the_ratio_goes_through_an_idler(gears):
+    joints = (hinge("a", "housing", "gear0"), hinge("b", "housing", "gear2"))
+    assert outcome(stated(gears, joints, 1.5), "KF411") == "passed"
+    assert outcome(stated(gears, joints, 1 / 1.5, ("b", "a")), "KF411") == "passed"
+    assert outcome(stated(gears, joints, -1.5), "KF411") == "failed"
+
+
+def test_a_cam_has_no_ratio_to_compare(cam):
+    slide = IntendedJoint("b", ("frame", "follower"), "prismatic", np.eye(3)[1], None, None, None, None, "m.toml", 6)
+    report = stated(cam, (hinge("a", "frame", "cam"), slide), 100.0)
+    assert outcome(report, "KF411") == "skipped"
+    assert outcome(report, "KF903") == "inconclusive"
+    assert verdict(report) != 0

@@ -1,0 +1,103 @@
+"""The subgroups of rigid motions by name, and spaces of motions in words."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from manifold3d import CrossSection, Manifold
+from scipy.spatial.transform import Rotation
+from solids import ball, box, derived
+
+from kinform.kinematics.groups import group_of, in_words
+from kinform.kinematics.screws import Frame, rotation, span, translation
+
+X, Y, Z = np.eye(3)
+P = np.array([0.1, -0.02, 0.03])
+FRAME = Frame(np.array([0.01, 0.02, 0.03]), 0.05)
+
+
+def turn(axis, point=P, pitch=0.0):
+    return lambda R: rotation(R @ axis, R @ point, FRAME, pitch)
+
+
+def slide(axis):
+    return lambda R: translation(R @ axis)
+
+
+EVERY = [turn(X), turn(Y), turn(Z)]
+GROUPS = {
+    "identity": [],
+    "revolute": [turn(Z)],
+    "prismatic": [slide(X)],
+    "screw": [turn(Z, pitch=0.004)],
+    "cylindrical": [turn(Z), slide(Z)],
+    "planar translation": [slide(X), slide(Y)],
+    "planar": [turn(Z), slide(X), slide(Y)],
+    "planar screw": [turn(Z, pitch=0.004), slide(X), slide(Y)],
+    "spherical": EVERY,
+    "spatial translation": [slide(X), slide(Y), slide(Z)],
+    "Schoenflies": [turn(Z), slide(X), slide(Y), slide(Z)],
+    "all rigid motions": [*EVERY, slide(X), slide(Y), slide(Z)],
+}
+NO_GROUPS = {
+    "two crossing turns": [turn(X), turn(Z)],
+    "two parallel turns": [turn(Z), turn(Z, P + 0.1 * X)],
+    "a turn and a slide askew": [turn(Z), slide((X + Z) / np.sqrt(2))],
+    "two skew turns": [turn(Z), turn(X, P + 0.1 * Y)],
+    "ball on a plane": [*EVERY, slide(X), slide(Y)],
+    "three turns without a common point": [turn(X), turn(Y), turn(Z, P + 0.05 * X)],
+    "two turns and a slide": [turn(X), turn(Z), slide(Y)],
+}
+
+
+def space(motions, R, mix=0):
+    """Orthonormal basis of the span, in another mixture for each `mix`."""
+    if not motions:
+        return np.zeros((6, 0))
+    basis = span(np.array([motion(R) for motion in motions]).T)
+    turned = np.linalg.qr(np.random.default_rng(mix).normal(size=(basis.shape[1],) * 2))[0]
+    return basis @ turned
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("name", GROUPS)
+def test_a_subgroup_has_its_name_in_any_pose_and_basis(name, seed):
+    R = Rotation.random(random_state=seed).as_matrix()
+    assert group_of(space(GROUPS[name], R, seed), FRAME) == name
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("name", NO_GROUPS)
+def test_what_is_no_subgroup_has_no_name(name, seed):
+    R = Rotation.random(random_state=seed).as_matrix()
+    assert group_of(space(NO_GROUPS[name], R, seed), FRAME) == ""
+
+
+def test_words_name_axes_points_and_directions():
+    still = np.eye(3)
+    assert in_words(space([turn(Z)], still), FRAME) == "turns about (0, 0, 1) through (100, -20, 30) mm (revolute)"
+    assert "4 mm a turn" in in_words(space([turn(Z, pitch=0.004)], still, 1), FRAME)
+    assert in_words(space([slide(Y)], still), FRAME) == "slides along (0, 1, 0) (prismatic)"
+    both = in_words(space([turn(X), turn(Z)], still, 2), FRAME)
+    assert "through (100, -20, 30) mm" in both and "universal" in both
+    assert "universal" not in in_words(space([turn(X, P + 0.1 * Y), turn(Z)], still, 2), FRAME)
+    assert in_words(space([*EVERY, slide(X), slide(Y)], still, 3), FRAME).startswith("turns every way, slides along")
+    assert in_words(np.zeros((6, 0)), FRAME) == "does not move (identity)"
+
+
+def test_general_joints_say_what_they_do():
+    kinematics, _ = derived(ball=ball(10.0).translate((0, 0, 10)), table=box(-30, 30, -30, 30, -5, 0))
+    (joint,) = kinematics.joints
+    assert (joint.type, joint.freedoms) == ("general", 5)
+    assert joint.motion == "turns every way, slides along (0, 1, 0) and (1, 0, 0)"
+
+
+def test_typed_joints_say_it_too():
+    """A slider with a key in a groove of its base."""
+    key = Manifold.extrude(CrossSection.square((4.0, 60.0), True), 4.0).translate((0, 0, -2))
+    kinematics, _ = derived(
+        base=box(-30, 30, -30, 30, -10, 0) - key, slider=box(-8, 8, -8, 8, 0, 10) + box(-2, 2, -8, 8, -1.9, 0)
+    )
+    (joint,) = kinematics.joints
+    assert joint.type == "prismatic"
+    assert joint.motion == "slides along (0, 1, 0) (prismatic)"
