@@ -1,7 +1,7 @@
 """The freedoms of an assembly as motions to look at: one a driving joint, with every loop kept closed.
 
-The basis of the mobility mixes freedoms; here each has one joint that drives it while the other drivers rest
-(columns by pivoted QR). Bodies move by products of exponentials of the joints' twists; loops are closed by
+Each has one joint that drives it while the other drivers rest: those that the mobility names, or, where it names
+none, columns of its basis chosen by pivoted QR. Bodies move by products of exponentials of the joints' twists; loops are closed by
 Gauss–Newton steps with the driver held. What does not close is not shown further.
 """
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.linalg import qr
 
 from kinform.kinematics.graph import forest
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Freedom, Joint, Kinematics
 
 __all__ = ["FRAMES", "Showing", "freedom_motions"]
 
@@ -54,6 +54,10 @@ def freedom_motions(kinematics: Kinematics, size: float) -> list[Showing]:
         return []
     linkage = _Linkage(kinematics, size)
     rates = linkage.rates(freedoms)
+    led = [found for freedom in kinematics.mobility.named if (found := linkage.led(freedom)) is not None]
+    if led:
+        out = [linkage.shown(own, driver, size) for own, driver in led[:MOST]]
+        return out + _loose(kinematics, freedoms, len(led), rates, size)[: MOST - len(out)]
     drivers, mixes = _drivers(rates, linkage.turning, size)
     out = [linkage.shown(mix @ rates, driver, size) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST]]
     return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: MOST - len(out)]
@@ -135,6 +139,19 @@ class _Linkage:
             if span.stop > span.start:
                 out[:, span] = (freedoms[:, b] - freedoms[:, a]) @ np.linalg.pinv(self.screws[span])
         return out
+
+    def led(self, freedom: Freedom) -> tuple[Array, int] | None:
+        """Joint rates (n,) of a named freedom, and the coordinate that drives it; None without a driver."""
+        number = {joint.name: k for k, joint in enumerate(self.joints)}
+        rates, driver = np.zeros(len(self.screws)), None
+        for name, coordinate, rate in freedom.drives:
+            if name not in number:
+                return None
+            at = int(self.start[number[name]]) + coordinate
+            rates[at] = rate
+            if name == freedom.driver and abs(abs(rate) - 1.0) < 1e-9:
+                driver = at if driver is None else driver
+        return None if driver is None else (rates, driver)
 
     def shown(self, rates: Array, driver: int, size: float) -> Showing:
         """The motion that the driver leads, as far to both sides as the loops close."""
