@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from known import FIXTURES
 from markup import NASTY, read
 
 from kinform import results, stages
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.page import Scene, page, summary
 from kinform.reports.page.agreement import rows
 
@@ -76,6 +78,25 @@ def test_a_disagreement_is_marked_where_it_is_and_nowhere_else(derive_design):
     marks = {row.name: row.mark for row in rows(derive_design(AXIS_OFF)) if row.function}
     assert marks.pop("pitch") == "disagrees"
     assert set(marks.values()) == {"agrees"}
+
+
+def test_what_no_rule_could_decide_never_agrees(tmp_path):
+    source = FIXTURES / "pairs" / "revolute_collars"
+    for mesh in source.glob("*.stl"):
+        shutil.copy(mesh, tmp_path)
+    text = (source / "revolute_collars.toml").read_text() + "range = [-30, 30]\n"
+    (tmp_path / "m.toml").write_text(text)
+    design = stages.joints(stages.contacts(stages.import_(tmp_path / "m.toml")))
+    report = stages.check(stages.simulate(stages.mass(design))).report
+    open_range = RuleOutcome("KF904", "range-not-checked", "inconclusive", "1 range not checked")
+    note = Finding("KF904", "range-not-checked", "note", ("main",), "the range of joint 'main' is not checked yet")
+    others = tuple(rule for rule in report.rules if rule.code != "KF904")
+    closed = CheckReport((), tuple(replace(rule, outcome="passed") for rule in others))
+    undecided = CheckReport((note,), (*closed.rules, open_range))
+    (mark,) = (row.mark for row in rows(replace(design, report=closed)) if row.name == "main")
+    assert mark == "agrees"
+    (mark,) = (row.mark for row in rows(replace(design, report=undecided)) if row.name == "main")
+    assert mark == "not decided"
 
 
 def test_every_serious_finding_has_a_row(derive_design):

@@ -1,7 +1,7 @@
 """Form, behaviour and function side by side: a row for each thing that at least one of them speaks of.
 
-What disagrees the findings say; a row without findings agrees only where the function states something, the
-rules have run, and what was found is what was asked for.
+What disagrees the findings say. A row agrees only where the function states something, the rules have run, none that
+speaks of it was left undecided, and what was found is what was asked for.
 """
 
 from __future__ import annotations
@@ -56,6 +56,8 @@ class _Table:
         self.units = design.assembly.units
         self.findings = () if design.report is None else design.report.findings
         self.used: set[int] = set()
+        rules = () if design.report is None else design.report.rules
+        self.undecided = {rule.code for rule in rules if rule.outcome == "inconclusive"}
 
     def known(self) -> Iterator[Row]:
         """Rows that do not need a finding."""
@@ -75,14 +77,16 @@ class _Table:
                 yield self._row(joint.name, "", "not derived yet", self._stated(joint), (joint.name,), False)
         if self.design.simulation is not None and self.design.simulation.status != "not requested":
             yield self._motion()
+        for requirement in sorted(self.design.assembly.function.requirements, key=lambda r: r.name):
+            yield self._row(requirement.name, "", "", f"requirement: {requirement.kind}", (requirement.name,), True)
 
     def rest(self) -> Iterator[Row]:
         """A row for each finding that no other row has."""
         for k, finding in enumerate(self.findings):
-            if k not in self.used and finding.severity != "note":
+            if k not in self.used and (finding.severity != "note" or finding.code in self.undecided):
                 of_form = finding.code < "KF300"
                 said = finding.found or finding.message
-                mark = "disagrees" if finding.severity == "error" else "doubtful"
+                mark = {"error": "disagrees", "warning": "doubtful", "note": "not decided"}[finding.severity]
                 name = ", ".join(finding.subject) or finding.rule
                 yield Row(name, said if of_form else "", "" if of_form else said, finding.intended or "", mark, (k,))
 
@@ -165,11 +169,10 @@ class _Table:
         self.used.update(findings)
         serious = [k for k in findings if self.findings[k].severity != "note"]
         worst = max((SEVERITIES.index(self.findings[k].severity) for k in serious), default=0)
-        report = self.design.report
-        open_rule = report is not None and any(r.code == rule and r.outcome == "inconclusive" for r in report.rules)
+        open_rule = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
         if serious:
             mark = "disagrees" if SEVERITIES[worst] == "error" else "doubtful"
-        elif report is None:
+        elif self.design.report is None:
             mark = "not checked" if function else "not stated"
         elif open_rule:
             mark = "not decided"
