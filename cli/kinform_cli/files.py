@@ -25,6 +25,7 @@ __all__ = [
     "needing",
     "read",
     "read_by",
+    "write_bytes",
     "write_text",
 ]
 
@@ -99,9 +100,14 @@ def needing(path: Path) -> Iterator[None]:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file in one step, as UTF-8; the same text keeps the file, with a new time."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a file in one step; the same bytes keep the file, with a new time."""
     from kinform import results
 
-    results.replace_file(path, text.encode())
+    results.replace_file(path, data)
 
 
 def read_by(design: Design, sources: Sequence[Path]) -> list[Path]:

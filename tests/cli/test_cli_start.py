@@ -18,7 +18,7 @@ from kinform_cli.app import app
 from kinform_cli.main import entry, main
 
 COMMANDS = sorted(name for name, *_ in REGISTERED)
-HEAVY = {"scipy", "trimesh", "numba", "h5py", "numpy", "manifold3d", "fcl", "pydantic", "matplotlib"}
+HEAVY = {"scipy", "trimesh", "numba", "h5py", "numpy", "manifold3d", "fcl", "pydantic", "matplotlib", "jinja2"}
 
 
 def test_the_console_script_is_the_entry() -> None:
@@ -28,7 +28,7 @@ def test_the_console_script_is_the_entry() -> None:
 
 def test_the_commands_are_those_of_the_contract_so_far() -> None:
     assert COMMANDS == sorted(
-        "import contacts joints mass simulate check run show query export explain init schema diff lock watch".split()
+        "import contacts joints mass simulate check run show query report export explain init schema diff lock watch".split()
     )
 
 
@@ -102,6 +102,7 @@ def test_without_arguments_it_helps_and_is_not_a_success(capsys: pytest.CaptureF
         (["query", "a.h5", "a", "b", "--turn", "z@0,0"], "--turn"),
         (["query", "a.h5", "a", "b", "--slide", "0,0,0"], "--slide"),
         (["query", "a.h5", "a", "b", "--slide", "0,nan,1"], "--slide"),
+        (["report", "a.h5"], "--output"),
         (["init", "a.stl"], "--units"),
     ],
     ids=" ".join,

@@ -10,8 +10,9 @@ from rich.text import Text
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
+from kinform_cli import console
 from kinform_cli.tables import Rows
-from kinform_cli.text import Lengths, count, degrees, number
+from kinform_cli.text import Lengths, count, degrees, number, sparkline
 
 __all__ = ["headline", "render"]
 
@@ -35,6 +36,7 @@ def render(design: Design) -> RenderableType:
             shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
             rows.add(name, kind, *shown, _rate(unit, float(abs(run.joint_velocity[:, column]).max()), lengths))
         items.append(rows)
+        items += _courses(run)
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += _ranges(run, lengths) + _collisions(run, lengths)
@@ -80,6 +82,17 @@ def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
         for item in run.collisions or ()
     ]
     return [*out, *(f"collision of {a} and {b} unknown: {why}" for a, b, why in run.uncollided)]
+
+
+def _courses(run: Simulation) -> list[RenderableType]:
+    """The values over time as lines of blocks, where the terminal has them."""
+    rows = Rows("joint", "over time, from lowest to highest")
+    for name, _, _, column in coordinates(run):
+        line = sparkline(run.joint_position[:, column].tolist())
+        if not console.can_show(line):
+            return []
+        rows.add(name, line)
+    return [rows]
 
 
 def _energy(run: Simulation) -> str:

@@ -120,7 +120,7 @@ class _Search:
     def through(self, left: float, right: float) -> bool:
         """Whether faces that are parallel may have passed through each other, crossing nowhere."""
         before, after = self.state(left), self.state(right)
-        if self.muted or before.distance <= 0.0 and after.distance <= 0.0:
+        if self.muted or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
         nearest = before.nearest if before.distance > 0.0 else after.nearest
         heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]

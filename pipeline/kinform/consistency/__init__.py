@@ -7,8 +7,10 @@ what a code means.
 
 from __future__ import annotations
 
+from kinform.consistency import _words as words
 from kinform.consistency._baseline import Baseline, adopt, read_baseline, with_baseline
 from kinform.consistency._check import check, verdict
+from kinform.consistency._compare import Comparison, compare
 from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
 from kinform.consistency._rule import Outcome, Rule
 from kinform.consistency.rules import RULES
@@ -17,16 +19,19 @@ __all__ = [
     "CODE_VERSION",
     "RULES",
     "Baseline",
+    "Comparison",
     "Outcome",
     "Rule",
     "UnknownRuleError",
     "adopt",
     "check",
+    "compare",
     "explain",
     "read_baseline",
     "rules_markdown",
     "verdict",
     "with_baseline",
+    "words",
 ]
 
 CODE_VERSION: int = 9

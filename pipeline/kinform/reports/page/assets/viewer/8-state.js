@@ -1,0 +1,111 @@
+// What is shown: which parts, in which pose, what is chosen. Knows nothing of the document or of WebGL.
+
+class State {
+  constructor(scene, motions) {
+    Object.assign(this, { scene, motions });
+    this.camera = new Camera(scene.low, scene.high);
+    this.layers = { edges: true, joints: true, contacts: false, overlaps: true, xray: false };
+    this.hidden = new Set();
+    this.explosion = 0;
+    this.motion = null;
+    this.time = 0;
+    this.clear();
+    this.hover = -1;
+    this.centres();
+    this.place();
+  }
+
+  clear() {
+    Object.assign(this, { part: -1, joint: -1, body: -1, finding: -1, focus: null });
+  }
+
+  // Middle of each part and of each body, at the pose of the meshes.
+  centres() {
+    const { scene } = this;
+    this.middles = scene.parts.map((part) => {
+      const mesh = part.mesh >= 0 ? scene.meshes[part.mesh] : null;
+      return M.point(part.pose, mesh ? V.add(mesh.low, V.scale(mesh.size, 0.5)) : [0, 0, 0]);
+    });
+    this.bodyMiddles = scene.bodies.map((_, b) => {
+      const own = this.middles.filter((_, k) => scene.parts[k].body === b);
+      return own.length ? V.scale(own.reduce(V.add, [0, 0, 0]), 1 / own.length) : [0, 0, 0];
+    });
+    this.middle = V.scale(V.add(scene.low, scene.high), 0.5);
+  }
+
+  // Poses of bodies and parts from motion and explosion.
+  place() {
+    const { scene, explosion } = this;
+    const poses = this.motion ? this.motion.at(this.time) : scene.bodies.map(M.identity);
+    const away = this.bodyMiddles.map((c) => V.scale(V.sub(c, this.middle), 1.1 * explosion));
+    this.shown = poses.map((pose, b) => M.multiply(M.translation(away[b]), pose));
+    this.models = scene.parts.map((part, k) => {
+      const own = V.scale(V.sub(this.middles[k], this.bodyMiddles[part.body]), 0.9 * explosion);
+      return M.multiply(M.translation(own), M.multiply(this.shown[part.body], part.pose));
+    });
+  }
+
+  look(k) {
+    if (this.hidden.has(k)) return "hidden";
+    if (this.layers.xray || (this.layers.contacts && this.joint < 0)) return "ghost";
+    const body = this.scene.parts[k].body;
+    if (this.focus) return this.focus.has(k) ? (this.layers.contacts ? "ghost" : "plain") : "ghost";
+    if (this.joint >= 0) return this.scene.joints[this.joint].bodies.includes(body) && !this.layers.contacts ? "plain" : "ghost";
+    return "plain";
+  }
+
+  glow(k) {
+    if (this.part === k || (this.body >= 0 && this.scene.parts[k].body === this.body)) return 1;
+    return this.hover === k ? 0.6 : 0;
+  }
+
+  jointHidden(k) {
+    return this.joint >= 0 ? this.joint !== k : this.finding >= 0 && !this.scene.findings[this.finding].joints.includes(this.scene.joints[k].name);
+  }
+
+  patchHidden(item) {
+    const gone = item.parts.some((name) => this.hidden.has(this.scene.parts.findIndex((part) => part.name === name)));
+    return gone || (this.joint >= 0 && item.joint !== this.joint);
+  }
+
+  overlapHidden(item) {
+    return item.parts.some((name) => this.hidden.has(this.scene.parts.findIndex((part) => part.name === name)));
+  }
+
+  choosePart(k) { this.clear(); this.part = k; }
+
+  chooseJoint(k) { this.clear(); this.joint = k; }
+
+  chooseBody(k) { this.clear(); this.body = k; }
+
+  // A finding: its parts are shown, everything else is faint, and the eye goes to its place.
+  chooseFinding(k) {
+    this.clear();
+    this.finding = k;
+    const finding = this.scene.findings[k];
+    const bodies = finding.joints.flatMap((name) => this.scene.joints.find((joint) => joint.name === name).bodies);
+    const parts = this.scene.parts.map((_, n) => n).filter((n) => finding.parts.includes(this.scene.parts[n].name) || bodies.includes(this.scene.parts[n].body));
+    if (parts.length) this.focus = new Set(parts);
+    for (const n of parts) this.hidden.delete(n);
+    this.fit(parts);
+    if (finding.place && parts.length) {
+      this.camera.target = V.scale(V.add(this.camera.target, finding.place), 0.5);
+      this.camera.distance *= 0.9;
+    }
+  }
+
+  // Look at parts at their present pose; at all that are shown where the list is empty.
+  fit(parts) {
+    const list = parts.length ? parts : this.scene.parts.map((_, k) => k).filter((k) => !this.hidden.has(k));
+    const points = [];
+    for (const k of list) {
+      const part = this.scene.parts[k];
+      if (part.mesh < 0) continue;
+      const mesh = this.scene.meshes[part.mesh];
+      for (let c = 0; c < 8; c++) points.push(M.point(this.models[k], [0, 1, 2].map((i) => mesh.low[i] + ((c >> i) & 1) * mesh.size[i])));
+    }
+    const { low, high } = this.scene;
+    if (!points.length) for (let c = 0; c < 8; c++) points.push([0, 1, 2].map((i) => (((c >> i) & 1) ? high : low)[i]));
+    this.camera.fit(points);
+  }
+}

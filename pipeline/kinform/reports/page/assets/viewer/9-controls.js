@@ -1,0 +1,419 @@
+// Ties the state to the document: pointer, keys, lists, sliders, the graph, the plots.
+
+class Controls {
+  constructor(state, renderer) {
+    Object.assign(this, { state, renderer, canvas: renderer.canvas, playing: false });
+    this.id = (name) => document.getElementById(name);
+    this.theme();
+    this.pointer();
+    this.keys();
+    this.lists();
+    this.tools();
+    this.motion();
+    this.graph();
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+    for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", () => { this.theme(); this.paint(); });
+  }
+
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = requestAnimationFrame(() => this.paint());
+  }
+
+  paint() {
+    this.waiting = 0;
+    this.state.place();
+    this.renderer.draw(this.state);
+    const { gl } = this.renderer;
+    const fault = gl.getError();
+    if (fault && !gl.isContextLost()) document.body.dataset.fault = String(fault);
+    document.body.dataset.frames = String(Number(document.body.dataset.frames || 0) + 1);
+  }
+
+  theme() {
+    const style = getComputedStyle(document.body);
+    const of = (name) => colourOf(style.getPropertyValue(name).trim());
+    this.state.theme = {
+      back: of("--stage"), line: of("--stage-line"), sign: of("--stage-sign"), chosen: of("--signal"),
+      overlap: colourOf(this.state.scene.overlapColour),
+      fits: Object.fromEntries(Object.entries(this.state.scene.fits).map(([fit, hex]) => [fit, colourOf(hex)])),
+    };
+    this.state.colours = this.state.scene.bodies.map((body) => colourOf(body.colour));
+  }
+
+  // ---- choosing
+
+  choose(kind, index, focus = false) {
+    const { state, state: { scene } } = this;
+    if (kind === "part") state.choosePart(index);
+    else if (kind === "joint") state.chooseJoint(index);
+    else if (kind === "body") state.chooseBody(index);
+    else if (kind === "finding") state.chooseFinding(index);
+    else state.clear();
+    if (focus && kind === "part") state.fit([index]);
+    document.querySelectorAll("[data-chosen]").forEach((element) => { delete element.dataset.chosen; element.removeAttribute("aria-current"); });
+    const mark = (selector) => document.querySelectorAll(selector).forEach((element) => {
+      element.dataset.chosen = "";
+      if (element.tagName === "BUTTON" || element.getAttribute("role") === "button") element.setAttribute("aria-current", "true");
+    });
+    let text = "";
+    if (kind === "part") {
+      const part = scene.parts[index];
+      text = `Part ${part.name}, of body ${scene.bodies[part.body].name}`;
+      mark(`[data-part="${index}"]`);
+      mark(`[data-body="${part.body}"]`);
+    } else if (kind === "joint") {
+      const joint = scene.joints[index];
+      text = `Joint ${joint.wanted ? joint.wanted + ", " : ""}${joint.name}: ${joint.text}, ${joint.status}`;
+      mark(`[data-joint="${index}"]`);
+      joint.bodies.forEach((body) => mark(`svg [data-body="${body}"]`));
+    } else if (kind === "body") {
+      text = `Body ${scene.bodies[index].name}`;
+      mark(`[data-body="${index}"]`);
+    } else if (kind === "finding") {
+      const finding = scene.findings[index];
+      text = `Finding ${finding.code}: ${[...finding.parts, ...finding.joints].join(", ")}`;
+      mark(`[data-finding="${index}"]`);
+    }
+    this.id("chosen").textContent = text || "Nothing is chosen";
+    const chosen = document.querySelector("#lists [data-chosen]");
+    if (chosen) this.reveal(chosen);
+    this.redraw();
+  }
+
+  // Scrolls the list, never the page.
+  reveal(element) {
+    const box = element.closest(".panel");
+    if (!box || box.hidden) return;
+    const top = element.getBoundingClientRect().top - box.getBoundingClientRect().top;
+    if (top < 0 || top > box.clientHeight - 24) box.scrollTop += top - box.clientHeight / 2;
+  }
+
+  // ---- the canvas
+
+  pointer() {
+    const { canvas, state: { camera } } = this;
+    const held = new Map();
+    let travelled = 0;
+    const place = (event) => {
+      const box = canvas.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, place(event));
+      travelled = 0;
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const now = place(event);
+      const before = held.get(event.pointerId);
+      if (!before) return void this.hovered(now);
+      const dx = now[0] - before[0], dy = now[1] - before[1];
+      travelled += Math.hypot(dx, dy);
+      if (held.size === 2) {
+        const other = [...held].find(([id]) => id !== event.pointerId)[1];
+        const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+        camera.zoom(apart(before) / apart(now));
+        camera.pan(dx / 2 / canvas.clientHeight, dy / 2 / canvas.clientHeight);
+      } else if (event.shiftKey || event.buttons & 6) camera.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
+      else camera.orbit(dx * 0.008, dy * 0.008);
+      held.set(event.pointerId, now);
+      this.redraw();
+    });
+    const release = (event) => {
+      if (held.delete(event.pointerId) && event.type === "pointerup" && travelled < 4 && event.button === 0) this.pressed(place(event));
+    };
+    canvas.addEventListener("pointerup", release);
+    canvas.addEventListener("pointercancel", release);
+    canvas.addEventListener("pointerleave", () => this.hovered(null));
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("dblclick", (event) => {
+      const hit = this.renderer.pick(this.state, ...place(event));
+      if (hit?.part !== undefined) this.choose("part", hit.part, true);
+    });
+    // the wheel zooms once the picture was clicked, and else scrolls the page
+    canvas.addEventListener("wheel", (event) => {
+      if (document.activeElement !== canvas && !event.ctrlKey) return;
+      event.preventDefault();
+      camera.zoom(Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.0035));
+      this.redraw();
+    }, { passive: false });
+  }
+
+  pressed(at) {
+    const hit = this.renderer.pick(this.state, ...at);
+    this.canvas.focus({ preventScroll: true });
+    if (hit?.part !== undefined) this.choose("part", hit.part);
+    else if (hit?.joint !== undefined) this.choose("joint", hit.joint);
+    else if (hit?.patch !== undefined && this.state.scene.patches.items[hit.patch].joint >= 0) this.choose("joint", this.state.scene.patches.items[hit.patch].joint);
+    else this.choose(null, -1);
+  }
+
+  hovered(at) {
+    const tip = this.id("tip");
+    const hit = at && !this.playing ? this.renderer.pick(this.state, ...at) : null;
+    const { scene } = this.state;
+    let text = "";
+    if (hit?.part !== undefined) text = scene.parts[hit.part].name;
+    else if (hit?.joint !== undefined) text = `${scene.joints[hit.joint].name}: ${scene.joints[hit.joint].text}`;
+    else if (hit?.patch !== undefined) {
+      const patch = scene.patches.items[hit.patch];
+      text = `${patch.parts.join(" and ")}: ${patch.text}`;
+    }
+    tip.hidden = !text;
+    tip.textContent = text;
+    if (text) {
+      const room = this.canvas.clientWidth;
+      tip.style.left = `${Math.min(at[0] + 14, Math.max(8, room - tip.offsetWidth - 8))}px`;
+      tip.style.top = `${at[1] + 16}px`;
+    }
+    const part = hit?.part ?? -1;
+    if (part !== this.state.hover) {
+      this.state.hover = part;
+      this.redraw();
+    }
+  }
+
+  keys() {
+    const { canvas, state, state: { camera } } = this;
+    const step = (list, at, way) => (list ? (at + way + list) % list : -1);
+    const actions = {
+      ArrowLeft: (e) => (e.shiftKey ? camera.pan(0.06, 0) : camera.orbit(0.12, 0)),
+      ArrowRight: (e) => (e.shiftKey ? camera.pan(-0.06, 0) : camera.orbit(-0.12, 0)),
+      ArrowUp: (e) => (e.shiftKey ? camera.pan(0, 0.06) : camera.orbit(0, 0.12)),
+      ArrowDown: (e) => (e.shiftKey ? camera.pan(0, -0.06) : camera.orbit(0, -0.12)),
+      "+": () => camera.zoom(0.85), "=": () => camera.zoom(0.85), "-": () => camera.zoom(1.18),
+      "1": () => camera.from("front"), "2": () => camera.from("right"), "3": () => camera.from("top"),
+      "0": () => { camera.first(); state.fit([]); },
+      f: () => this.fit(), x: () => this.flip("xray"), c: () => this.flip("contacts"), a: () => this.flip("joints"),
+      e: () => this.explode(state.explosion > 0 ? 0 : 0.6),
+      h: () => this.hide(), s: () => this.showAll(),
+      p: (e) => this.choose("part", step(state.scene.parts.length, state.part, e.shiftKey ? -1 : 1)),
+      j: (e) => state.scene.joints.length && this.choose("joint", step(state.scene.joints.length, state.joint, e.shiftKey ? -1 : 1)),
+      " ": () => this.play(!this.playing),
+      Escape: () => this.choose(null, -1),
+    };
+    canvas.addEventListener("keydown", (event) => {
+      const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      action(event);
+      this.redraw();
+    });
+  }
+
+  // ---- lists and layers
+
+  lists() {
+    const go = (event) => {
+      const element = event.target.closest("[data-part],[data-joint],[data-body]");
+      if (!element || event.target.tagName === "INPUT") return;
+      const kind = ["part", "joint", "body"].find((name) => name in element.dataset);
+      this.choose(kind, Number(element.dataset[kind]));
+    };
+    this.id("lists").addEventListener("click", go);
+    this.id("lists").addEventListener("change", (event) => {
+      const { hides } = event.target.dataset;
+      if (hides === undefined) return;
+      if (event.target.checked) this.state.hidden.delete(Number(hides));
+      else this.state.hidden.add(Number(hides));
+      this.redraw();
+    });
+    document.querySelectorAll("button[data-finding]").forEach((button) => button.addEventListener("click", () => {
+      this.choose("finding", Number(button.dataset.finding));
+      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
+    }));
+    document.querySelectorAll("button[data-show-joint]").forEach((button) => button.addEventListener("click", () => {
+      this.choose("joint", Number(button.dataset.showJoint));
+      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
+    }));
+    const tabs = [...document.querySelectorAll("[role=tab]")];
+    const open = (tab) => tabs.forEach((other) => {
+      const on = other === tab;
+      other.setAttribute("aria-selected", String(on));
+      other.tabIndex = on ? 0 : -1;
+      this.id(other.getAttribute("aria-controls")).hidden = !on;
+    });
+    tabs.forEach((tab, k) => {
+      tab.addEventListener("click", () => open(tab));
+      tab.addEventListener("keydown", (event) => {
+        const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+        if (!way) return;
+        const next = tabs[(k + way + tabs.length) % tabs.length];
+        open(next);
+        next.focus();
+      });
+    });
+  }
+
+  hide() {
+    const { state } = this;
+    const chosen = state.scene.parts.map((_, k) => k).filter((k) => k === state.part || (state.body >= 0 && state.scene.parts[k].body === state.body));
+    for (const k of chosen) {
+      state.hidden.add(k);
+      const box = document.querySelector(`[data-hides="${k}"]`);
+      if (box) box.checked = false;
+    }
+    if (chosen.length) this.choose(null, -1);
+  }
+
+  showAll() {
+    this.state.hidden.clear();
+    document.querySelectorAll("[data-hides]").forEach((box) => { box.checked = true; });
+    this.redraw();
+  }
+
+  tools() {
+    for (const box of document.querySelectorAll("[data-layer]")) {
+      box.checked = this.state.layers[box.dataset.layer];
+      box.addEventListener("change", () => {
+        this.state.layers[box.dataset.layer] = box.checked;
+        this.id("fits").hidden = !this.state.layers.contacts;
+        this.redraw();
+      });
+    }
+    this.id("explode").addEventListener("input", (event) => this.explode(Number(event.target.value) / 100));
+    this.id("fit").addEventListener("click", () => this.fit());
+    this.id("hide").addEventListener("click", () => this.hide());
+    this.id("show-all").addEventListener("click", () => this.showAll());
+    this.id("theme").addEventListener("click", () => {
+      const dark = getComputedStyle(document.documentElement).colorScheme.startsWith("dark");
+      document.documentElement.dataset.theme = dark ? "light" : "dark";
+      this.theme();
+      this.redraw();
+    });
+  }
+
+  flip(layer) {
+    const box = document.querySelector(`[data-layer="${layer}"]`);
+    box.checked = !box.checked;
+    box.dispatchEvent(new Event("change"));
+  }
+
+  explode(share) {
+    this.state.explosion = share;
+    this.id("explode").value = String(Math.round(100 * share));
+    this.redraw();
+  }
+
+  fit() {
+    const { state } = this;
+    state.fit(state.part >= 0 ? [state.part] : []);
+    this.redraw();
+  }
+
+  // ---- motion
+
+  motion() {
+    const select = this.id("motion");
+    if (!select) return;
+    select.addEventListener("change", () => this.pickMotion(Number(select.value), true));
+    this.id("play").addEventListener("click", () => this.play(!this.playing));
+    this.id("time").addEventListener("input", (event) => {
+      this.play(false);
+      const { motion } = this.state;
+      if (!motion) return;
+      this.go(motion.start + (Number(event.target.value) / 1000) * (motion.end - motion.start));
+    });
+    if (select.options.length > 1) this.pickMotion(Number(select.options[1].value), false);
+    document.querySelectorAll("button[data-motion]").forEach((button) => button.addEventListener("click", () => {
+      select.value = button.dataset.motion;
+      this.pickMotion(Number(button.dataset.motion), true);
+      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
+    }));
+  }
+
+  pickMotion(index, play) {
+    const { state } = this;
+    state.motion = state.motions[index] ?? null;
+    this.id("motion").value = String(index);
+    const { motion } = state;
+    this.id("play").disabled = this.id("time").disabled = !motion;
+    this.id("motion-note").textContent = motion?.note ?? "";
+    const marks = this.id("marks");
+    marks.replaceChildren(...(motion?.marks ?? []).map((mark) => {
+      const tick = document.createElement("span");
+      tick.textContent = "▲ " + mark.text;
+      tick.style.left = `${(100 * (mark.time - motion.start)) / (motion.end - motion.start)}%`;
+      return tick;
+    }));
+    if (!motion) {
+      this.play(false);
+      this.redraw();
+      return;
+    }
+    this.direction = 1;
+    this.go(motion.kind === "simulation" ? motion.start : 0);
+    this.play(play);
+  }
+
+  go(time) {
+    const { state, state: { motion } } = this;
+    state.time = Math.min(motion.end, Math.max(motion.start, time));
+    const share = (state.time - motion.start) / (motion.end - motion.start);
+    const slider = this.id("time");
+    slider.value = String(Math.round(1000 * share));
+    const text = motion.kind === "simulation" ? `${state.time.toFixed(2)} s` : `${Math.round(100 * state.time)} %`;
+    slider.setAttribute("aria-valuetext", text);
+    this.id("clock").textContent = text;
+    if (motion.kind === "simulation") {
+      document.querySelectorAll("svg[data-from]").forEach((plot) => {
+        const { from, to, left, right } = plot.dataset;
+        const x = Number(left) + ((state.time - from) / (to - from)) * (right - left);
+        const cursor = plot.querySelector(".cursor");
+        cursor.setAttribute("transform", `translate(${x.toFixed(2)} 0)`);
+        cursor.removeAttribute("visibility");
+      });
+    }
+    this.redraw();
+  }
+
+  play(on) {
+    const { state } = this;
+    this.playing = on && Boolean(state.motion);
+    const button = this.id("play");
+    if (button) {
+      button.textContent = this.playing ? "Pause" : "Play";
+      button.setAttribute("aria-pressed", String(this.playing));
+    }
+    if (!this.playing) return;
+    if (state.motion.kind === "simulation" && state.time >= state.motion.end) this.go(state.motion.start);
+    let last = performance.now();
+    const turn = ++this.run || (this.run = 1);
+    const tick = (now) => {
+      if (!this.playing || turn !== this.run) return;
+      const passed = Math.min(0.1, Math.max(0, (now - last) / 1000));
+      last = now;
+      const { motion } = state;
+      if (motion.kind === "simulation") {
+        const next = state.time + passed;
+        this.go(next > motion.end ? motion.start : next);
+      } else {
+        // to and fro, with rests at the ends
+        this.phase = (Math.asin(state.time) || 0);
+        if (this.direction < 0) this.phase = Math.PI - this.phase;
+        const next = this.phase + 1.6 * passed;
+        this.direction = Math.cos(next) >= 0 ? 1 : -1;
+        this.go(Math.sin(next));
+      }
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  // ---- the kinematic graph, linked both ways
+
+  graph() {
+    const act = (event) => {
+      const node = event.target.closest("[data-body],[data-joint]");
+      if (!node || (event.type === "keydown" && event.key !== "Enter" && event.key !== " ")) return;
+      event.preventDefault();
+      if (node.dataset.joint !== undefined) this.choose("joint", Number(node.dataset.joint));
+      else this.choose("body", Number(node.dataset.body));
+    };
+    const box = this.id("graph");
+    if (!box) return;
+    box.addEventListener("click", act);
+    box.addEventListener("keydown", act);
+  }
+}

@@ -1,0 +1,197 @@
+"""What the page lists: findings with their rules' words, joints with their evidence, assumptions, rules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kinform.consistency import explain, words
+from kinform.model.design import Design
+from kinform.model.findings import SEVERITIES
+from kinform.model.kinematics import Joint
+from kinform.reports.page.scene import wanted_names
+from kinform.reports.page.words import assumption, joint_sentence, patch_words, place
+from kinform.reports.words import where
+
+__all__ = ["Assumed", "FindingFacts", "JointFacts", "RuleFacts", "assumed", "findings", "joints", "rules"]
+
+MOST_PATCHES = 14
+"""Patches that a joint lists; the rest are counted."""
+SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
+
+
+@dataclass(frozen=True)
+class FindingFacts:
+    """One finding, worst first."""
+
+    index: int
+    """Position in the report."""
+    code: str
+    rule: str
+    severity: str
+    sign: str
+    subject: str
+    message: str
+    facts: tuple[tuple[str, str], ...]
+    """(what, value): found, intended, place, where it is declared."""
+    remedy: str
+    why: str
+    """Why it matters, in the words of the rule."""
+
+
+@dataclass(frozen=True)
+class JointFacts:
+    """One joint with what speaks for it."""
+
+    index: int
+    name: str
+    wanted: str
+    """Name of the intended joint, or empty."""
+    sentence: str
+    status: str
+    reason: str
+    facts: tuple[tuple[str, str], ...]
+    patches: tuple[str, ...]
+    more: int
+    """Patches that are not listed."""
+    blockers: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """Something that was taken as given: by whom, about what, and what."""
+
+    by: str
+    about: str
+    what: str
+
+
+@dataclass(frozen=True)
+class RuleFacts:
+    """One rule and what became of it."""
+
+    code: str
+    rule: str
+    outcome: str
+    reason: str
+
+
+def findings(design: Design) -> list[FindingFacts]:
+    """All findings, errors first, in the order of the report."""
+    report = design.report
+    if report is None:
+        return []
+    units = design.assembly.units
+    out = []
+    for index, finding in enumerate(report.findings):
+        spot = None if finding.place is None else place(finding.place, units)
+        given = (
+            ("found", finding.found), ("intended", finding.intended), ("place", spot),
+            ("declared at", where(finding) or None),
+        )  # fmt: skip
+        out.append(
+            FindingFacts(
+                index=index,
+                code=finding.code,
+                rule=finding.rule.replace("-", " "),
+                severity=finding.severity,
+                sign=SIGNS[finding.severity],
+                subject=", ".join(finding.subject),
+                message=finding.message,
+                facts=tuple((name, value) for name, value in given if value is not None),
+                remedy=finding.remedy or "",
+                why=_why(finding.code),
+            )
+        )
+    return sorted(out, key=lambda f: -SEVERITIES.index(f.severity))
+
+
+def _why(code: str) -> str:
+    """The paragraph of the rule that says why it matters."""
+    paragraphs = [" ".join(text.split()) for text in explain(code).split("\n\n")]
+    return next((text for text in paragraphs if text.startswith("Why it matters")), "").partition(": ")[2]
+
+
+def joints(design: Design) -> list[JointFacts]:
+    """All joints in their order."""
+    kinematics = design.kinematics
+    if kinematics is None:
+        return []
+    wanted = wanted_names(design)
+    return [_joint(design, k, joint, wanted.get(joint.name, [])) for k, joint in enumerate(kinematics.joints)]
+
+
+def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> JointFacts:
+    units = design.assembly.units
+    found = () if design.contacts is None else design.contacts.patches
+    carried = sorted((found[k] for k in joint.patches if k < len(found)), key=lambda p: (-p.area, p.parts, p.surfaces))
+    listed = tuple(f"{' and '.join(p.parts)}: {patch_words(p, units)}" for p in carried[:MOST_PATCHES])
+    facts = [("between", " and ".join(joint.bodies)), ("evidence", ", ".join(joint.evidence) or "none")]
+    values = [float(v) for v in joint.singular_values if math.isfinite(v)]
+    tolerances = design.assembly.tolerances
+    if any(values) and joint.patches:
+        free, rest = [v for v in values if v < tolerances.free], [v for v in values if v >= tolerances.free]
+        text = f"{words.counted(len(free), 'freedom')} below {tolerances.free:g}"
+        facts.append(("singular values", text + (f"; the smallest other is {rest[0]:.3g}" if rest else "")))
+    if joint.range_status == "found":
+        ends = [_value(joint, v, units) for v in (joint.range_lower, joint.range_upper)]
+        facts.append(("range", " to ".join(ends)))
+    elif joint.freedoms:
+        facts.append(("range", "not found yet" if joint.range_status == "unknown" else joint.range_status))
+    if joint.held is not None:
+        leaving = "; ".join(way.words for way in joint.releases[:4])
+        facts.append(("held by contact", "yes" if joint.held else f"no: {leaving}" if leaving else "no"))
+    elif joint.held_reason:
+        facts.append(("held by contact", f"not known: {joint.held_reason}"))
+    blockers = tuple(
+        f"{' and '.join(b.parts)}: {words.area(b.area, units)} ({100 * b.share:.2g} % of the contact) forbids {b.forbids}"
+        for b in joint.blockers
+    )
+    return JointFacts(
+        index=index, name=joint.name, wanted=", ".join(wanted), sentence=joint_sentence(joint, units),
+        status=joint.status, reason=joint.reason, facts=tuple(facts), patches=listed,
+        more=max(0, len(carried) - MOST_PATCHES), blockers=blockers,
+    )  # fmt: skip
+
+
+def _value(joint: Joint, value: float | None, units: str) -> str:
+    if value is None or not math.isfinite(value):
+        return "free"
+    return words.length(value, units) if joint.type == "prismatic" else words.angle(value, 4)
+
+
+def assumed(design: Design) -> list[Assumed]:
+    """Everything that is not derived from the meshes: stated by the user, or chosen by kinform."""
+    assembly, you, we = design.assembly, "you", "kinform"
+    out = [Assumed(you, " and ".join(a.between), f"{assumption(a)}: {a.reason}") for a in assembly.assumptions]
+    out += [Assumed(you, f"group {g.name}", "are one body: " + ", ".join(g.parts)) for g in assembly.groups]
+    out += [
+        Assumed(you, part.name, f"mass {words.mass(part.override.mass)} in place of that of the geometry")
+        for part in assembly.parts
+        if part.override is not None
+    ]
+    out += [
+        Assumed(you, part.name, "surfaces only, not a solid") for part in assembly.parts if not part.solid and part.mesh
+    ]
+    out += [Assumed(we, "reading", note) for note in assembly.notes]
+    if design.kinematics is not None:
+        if assembly.ground is None:
+            ground = next((body.name for body in design.kinematics.bodies if body.ground), None)
+            if ground is not None:
+                out.append(Assumed(we, "ground", f"{ground}: no ground is stated"))
+        for joint in design.kinematics.joints:
+            if joint.status == "inferred":
+                out.append(Assumed(we, joint.name, f"inferred from {', '.join(joint.evidence)}: {joint.reason}"))
+    if design.simulation is not None:
+        out += [Assumed(we, "simulation", text) for text in design.simulation.assumptions]
+    if design.mass is not None:
+        out += [Assumed(we, p.name, f"no mass: {p.reason}") for p in design.mass.parts if p.mass is None and p.reason]
+    return out
+
+
+def rules(design: Design) -> list[RuleFacts]:
+    """All rules: what could not be decided first, then what failed, passed, was skipped."""
+    order = ("inconclusive", "failed", "passed", "skipped")
+    found = [] if design.report is None else design.report.rules
+    listed = [RuleFacts(r.code, r.rule.replace("-", " "), r.outcome, r.reason) for r in found]
+    return sorted(listed, key=lambda r: order.index(r.outcome))

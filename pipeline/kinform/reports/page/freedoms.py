@@ -1,0 +1,232 @@
+"""The freedoms of an assembly as motions to look at: one a driving joint, with every loop kept closed.
+
+Each has one joint that drives it while the other drivers rest: those that the mobility names, or, where it names
+none, columns of its basis chosen by pivoted QR. Bodies move by products of exponentials of the joints' twists; loops are closed by
+Gauss–Newton steps with the driver held. What does not close is not shown further.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import qr
+
+from kinform.kinematics.graph import forest
+from kinform.model.kinematics import Freedom, Joint, Kinematics
+
+__all__ = ["FRAMES", "Showing", "freedom_motions"]
+
+Array = NDArray[np.float64]
+
+FRAMES = 33
+"""Poses from one end of a motion to the other; odd, with the pose of the meshes in the middle."""
+TURN, SLIDE = np.radians(28.0), 0.14
+"""Greatest turn (rad), and greatest slide as a share of the assembly's size, of the driver."""
+CLOSED = 1e-5
+"""rad, and share of the size, by which a loop may miss."""
+MOST_COORDINATES = 240
+"""Assemblies with loops and more joint coordinates than this are shown at first order only."""
+MOST = 60
+"""Freedoms that are shown."""
+
+
+@dataclass(frozen=True, eq=False)
+class Showing:
+    """One freedom, moved to and fro."""
+
+    driver: str | None
+    """Joint that drives it; None where only a body is known to move."""
+    turns: bool
+    bodies: tuple[str, ...]
+    """What moves."""
+    poses: Array
+    """(FRAMES, B, 4, 4) motion of each body from where the meshes are, in the world."""
+    note: str
+    """How far it can be trusted; empty where the loops stay closed."""
+
+
+def freedom_motions(kinematics: Kinematics, size: float) -> list[Showing]:
+    """Each freedom of the assembly of this size (m) as a motion."""
+    freedoms = kinematics.mobility.freedoms
+    if not len(freedoms):
+        return []
+    linkage = _Linkage(kinematics, size)
+    rates = linkage.rates(freedoms)
+    led = [found for freedom in kinematics.mobility.named if (found := linkage.led(freedom)) is not None]
+    if led:
+        out = [linkage.shown(own, driver, size) for own, driver in led[:MOST]]
+        return out + _loose(kinematics, freedoms, len(led), rates, size)[: MOST - len(out)]
+    drivers, mixes = _drivers(rates, linkage.turning, size)
+    out = [linkage.shown(mix @ rates, driver, size) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST]]
+    return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: MOST - len(out)]
+
+
+def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Array]:
+    """Coordinates that can drive, and the mixes of freedoms (d, m) in which one of them moves alone at rate 1."""
+    if not rates.shape[1]:
+        return [], np.zeros((0, len(rates)))
+    weighted = rates * np.where(turning, 1.0, 1.0 / size)
+    _, triangle, order = qr(weighted, mode="economic", pivoting=True)
+    diagonal = np.abs(np.diag(triangle))
+    rank = int(np.count_nonzero(diagonal > 1e-7 * max(float(diagonal.max(initial=0.0)), 1e-300)))
+    chosen = np.sort(order[:rank])
+    return [int(k) for k in chosen], np.asarray(np.linalg.pinv(rates[:, chosen]), dtype=np.float64)
+
+
+def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, size: float) -> list[Showing]:
+    """Freedoms in which no joint moves: bodies that nothing connects to ground, as a slide or a turn."""
+    if driven >= len(freedoms):
+        return []
+    still = np.linalg.svd(rates.T)[2][driven:] if rates.shape[1] else np.eye(len(freedoms))
+    shown = []
+    for mix in still:
+        twists = np.einsum("m,mbi->bi", mix, freedoms)
+        extent = max(float(np.abs(twists[:, 3:]).max()) / size, float(np.abs(twists[:, :3]).max()), 1e-300)
+        poses = np.array([[_exponential(t * SLIDE * s / extent) for t in twists] for s in np.linspace(-1, 1, FRAMES)])
+        turns = bool(np.abs(twists[:, :3]).max() * size > np.abs(twists[:, 3:]).max())
+        note = "no joint connects what moves to ground"
+        shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, note))
+    return shown
+
+
+def _moving(kinematics: Kinematics, poses: Array, size: float) -> tuple[str, ...]:
+    far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > 1e-6 * max(size, 1e-300)
+    return tuple(body.name for body, moves in zip(kinematics.bodies, far, strict=True) if moves)
+
+
+def _exponential(twist: Array) -> Array:
+    """(4, 4) motion of a twist (ω; v) over unit time, by Rodrigues' formula."""
+    x, y, z = twist[:3]
+    angle = float(np.sqrt(x * x + y * y + z * z))
+    spin = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    s, c, r = 1.0, 0.5, 1.0 / 6.0
+    if angle > 1e-6:
+        s, c = np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle**2
+        r = (angle - np.sin(angle)) / angle**3
+    twice = spin @ spin
+    out = np.eye(4)
+    out[:3, :3] += s * spin + c * twice
+    out[:3, 3] = twist[3:] + c * (spin @ twist[3:]) + r * (twice @ twist[3:])
+    return out
+
+
+class _Linkage:
+    """Bodies on a spanning tree of joints, each joint a chain of its twists."""
+
+    def __init__(self, kinematics: Kinematics, size: float):
+        self.kinematics = kinematics
+        self.size = size
+        number = {body.name: k for k, body in enumerate(kinematics.bodies)}
+        self.joints: list[Joint] = [j for j in kinematics.joints if len(j.twists) == j.freedoms]
+        self.edges = [(number[j.bodies[0]], number[j.bodies[1]]) for j in self.joints]
+        ground = next((k for k, body in enumerate(kinematics.bodies) if body.ground), 0)
+        self.tree = forest(len(number), self.edges, ground)
+        used = set(self.tree.edge)
+        self.chords = [k for k in range(len(self.edges)) if k not in used]
+        self.start = np.concatenate([[0], np.cumsum([j.freedoms for j in self.joints])]).astype(int)
+        twists = [j.twists for j in self.joints]
+        self.screws = np.concatenate([np.zeros((0, 6)), *twists])
+        self.turning = np.linalg.norm(self.screws[:, :3], axis=1) > 1e-12
+        self.owner = np.repeat(np.arange(len(self.joints)), [j.freedoms for j in self.joints])
+
+    def rates(self, freedoms: Array) -> Array:
+        """(m, n) joint rates of body twists (m, B, 6)."""
+        out = np.zeros((len(freedoms), len(self.screws)))
+        for k, (a, b) in enumerate(self.edges):
+            span = slice(self.start[k], self.start[k + 1])
+            if span.stop > span.start:
+                out[:, span] = (freedoms[:, b] - freedoms[:, a]) @ np.linalg.pinv(self.screws[span])
+        return out
+
+    def led(self, freedom: Freedom) -> tuple[Array, int] | None:
+        """Joint rates (n,) of a named freedom, and the coordinate that drives it; None without a driver."""
+        number = {joint.name: k for k, joint in enumerate(self.joints)}
+        rates, driver = np.zeros(len(self.screws)), None
+        for name, coordinate, rate in freedom.drives:
+            if name not in number:
+                return None
+            at = int(self.start[number[name]]) + coordinate
+            rates[at] = rate
+            if name == freedom.driver and abs(abs(rate) - 1.0) < 1e-9:
+                driver = at if driver is None else driver
+        return None if driver is None else (rates, driver)
+
+    def shown(self, rates: Array, driver: int, size: float) -> Showing:
+        """The motion that the driver leads, as far to both sides as the loops close."""
+        turns = bool(self.turning[driver])
+        reach = (TURN if turns else SLIDE * size) / abs(float(rates[driver]))
+        reach = min(reach, 1.4 * TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300))
+        steps = np.linspace(0.0, reach, FRAMES // 2 + 1)
+        sides = [self._followed(rates, driver, sign * steps) for sign in (-1.0, 1.0)]
+        note = next((note for _, note in sides if note), "")
+        poses = np.concatenate([sides[0][0][:0:-1], sides[1][0]])
+        joint = self.joints[self.owner[driver]]
+        return Showing(joint.name, turns, _moving(self.kinematics, poses, size), poses, note)
+
+    def _followed(self, rates: Array, driver: int, steps: Array) -> tuple[Array, str]:
+        """Poses (S, B, 4, 4) at the driver's steps; the last closed pose again where loops do not close."""
+        large = bool(self.chords) and len(self.screws) > MOST_COORDINATES
+        q, poses, note = np.zeros(len(self.screws)), [self.poses(np.zeros(len(self.screws)))], ""
+        for before, now in zip(steps[:-1], steps[1:], strict=True):
+            if note:
+                poses.append(poses[-1])
+                continue
+            q = q + (now - before) * rates
+            if large:
+                q = 0.25 * now * rates
+            elif self.chords:
+                closed = self._closed(q, driver)
+                if closed is None:
+                    note = "the loops do not close any further"
+                    poses.append(poses[-1])
+                    continue
+                q = closed
+            poses.append(self.poses(q))
+        return np.array(poses), "at first order: the loops are too many to be closed" if large else note
+
+    def poses(self, q: Array) -> Array:
+        """(B, 4, 4) motion of each body at joint coordinates q."""
+        out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
+        for node in self.tree.order:
+            k = self.tree.edge[node]
+            if k >= 0:
+                across = self._across(k, q)
+                step = across if self.edges[k][1] == node else np.linalg.inv(across)
+                out[node] = out[self.tree.parent[node]] @ step
+        return out
+
+    def _across(self, k: int, q: Array) -> Array:
+        out = np.eye(4)
+        for i in range(self.start[k], self.start[k + 1]):
+            if q[i]:
+                out = out @ _exponential(self.screws[i] * q[i])
+        return out
+
+    def _missing(self, q: Array) -> Array:
+        poses, out = self.poses(q), []
+        for k in self.chords:
+            a, b = self.edges[k]
+            gap = poses[a] @ self._across(k, q) @ np.linalg.inv(poses[b])
+            turn = 0.5 * (gap[:3, :3] - gap[:3, :3].T)
+            out += [turn[2, 1], turn[0, 2], turn[1, 0], *(gap[:3, 3] / self.size)]
+        return np.array(out)
+
+    def _closed(self, q: Array, driver: int) -> Array | None:
+        """The nearest closed configuration with the driver where it is."""
+        free = np.array([i for i in range(len(q)) if i != driver])
+        unit = np.where(self.turning, 1.0, self.size)
+        for _ in range(8):
+            missing = self._missing(q)
+            if float(np.abs(missing).max()) < 1e-3 * CLOSED:
+                return q
+            slope = np.empty((len(missing), len(free)))
+            for column, i in enumerate(free):
+                nudged = q.copy()
+                nudged[i] += 1e-6 * unit[i]
+                slope[:, column] = (self._missing(nudged) - missing) / 1e-6
+            step = np.linalg.lstsq(slope, -missing, rcond=1e-7)[0]
+            q = q.copy()
+            q[free] += step * unit[free]
+        return q if float(np.abs(self._missing(q)).max()) < CLOSED else None

@@ -1,0 +1,259 @@
+"""Pictures of the assembly and of findings, drawn by `raster`, for pull requests and for print.
+
+Whole parts in the colours of their bodies; a finding's parts in full, everything else faint, what it is about
+marked by a ring, overlaps red. The background is transparent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.reports.page.colours import OVERLAP, SIGNAL, rgb
+from kinform.reports.page.meshes import Shape
+from kinform.reports.page.png import png
+from kinform.reports.page.raster import AXES, Buffers, View, rasterise, view_of
+from kinform.reports.page.scene import Scene, subjects
+
+__all__ = ["Artist"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FINER = 2
+"""Pixels of the drawing to a pixel of the picture, each way."""
+FAINT = 0.22
+"""Weight of what a finding is not about."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Item:
+    """A shape with its colour, in the axes of the eye."""
+
+    vertices: Array
+    """(V, 3) m."""
+    faces: Ints
+    """(t, 3), those that may be seen."""
+    normals: Array
+    """(V, 3) unit."""
+    colour: tuple[float, float, float]
+
+
+class Artist:
+    """Draws one scene; what parts look like from the eye's side is worked out once."""
+
+    def __init__(self, scene: Scene):
+        self.scene = scene
+        self.known: dict[str, _Item] = {}
+
+    def overview(self, width: int = 960, height: int = 600) -> bytes:
+        """The whole assembly, with overlaps in red, as PNG."""
+        items = self._items([part.name for part in self.scene.design.assembly.parts])
+        if not items:
+            return png(np.zeros((height, width, 4), np.uint8))
+        view = view_of(_cloud(items), FINER * width, FINER * height)
+        image = _drawn(view, items)
+        red = self._red(lambda parts: True)
+        if red:
+            image = _over(_drawn(view, red), image, 0.75)
+        return png(_reduced(image))
+
+    def finding(self, index: int, width: int = 480, height: int = 320) -> bytes:
+        """What a finding is about, as PNG."""
+        scene = self.scene
+        report = scene.design.report
+        assert report is not None
+        finding = report.findings[index]
+        parts, joints = subjects(scene.design, finding.subject)
+        ends = {body for joint in scene.joints if joint.name in joints for body in joint.bodies}
+        parts += [p for body in scene.bodies if body.name in ends for p in body.parts if p not in parts]
+        names = [part.name for part in scene.design.assembly.parts]
+        chosen, rest = [n for n in names if n in parts], [n for n in names if n not in parts]
+        if not chosen:
+            chosen, rest = names, []
+        items, others = self._items(chosen), self._items(rest)
+        if not items:
+            return png(np.zeros((height, width, 4), np.uint8))
+        view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
+        place = None if finding.place is None else AXES @ np.array(finding.place)
+        if place is not None:
+            view = replace(view, target=0.6 * view.target + 0.4 * place, scale=1.12 * view.scale)
+        image = _drawn(view, items)
+        if others:
+            image = _over(image, _drawn(view, others), 1.0, FAINT)
+        red = self._red(lambda both: set(both) <= set(chosen))
+        if red:
+            image = _over(_drawn(view, red), image, 0.8)
+        for joint in scene.joints:
+            if joint.name in joints and joint.axis is not None:
+                point, size = scene.placed(joint)
+                ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
+                _stroke(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
+        if place is not None:
+            _ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
+        return png(_reduced(image))
+
+    def _items(self, names: Sequence[str]) -> list[_Item]:
+        wanted = set(names)
+        out = []
+        for part in self.scene.design.assembly.parts:
+            if part.mesh is None or part.name not in wanted or not len(part.mesh.faces):
+                continue
+            if part.name not in self.known:
+                health = part.mesh.health
+                closed = health.watertight and health.consistent_winding and health.volume > 0.0
+                colour = rgb(self.scene.colours[self.scene.body_index[part.name]])
+                self.known[part.name] = _item(self.scene.shapes[part.mesh.digest], part.X_WP, colour, closed)
+            out.append(self.known[part.name])
+        return out
+
+    def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
+        found = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
+        return [
+            _item(shape, np.eye(4), rgb(OVERLAP), False)
+            for item, shape in zip(found, self.scene.overlaps, strict=True)
+            if shape is not None and len(shape.faces) and wanted(item.parts)
+        ]
+
+
+def _item(shape: Shape, pose: Array, colour: tuple[float, float, float], closed: bool) -> _Item:
+    """The shape at this pose in the world; of a closed one only what faces the eye."""
+    turn = AXES @ pose[:3, :3]
+    vertices = shape.vertices @ turn.T + AXES @ pose[:3, 3]
+    faces = shape.faces
+    if closed:
+        x, y = vertices[:, 0], vertices[:, 1]
+        a, b, c = faces.T
+        faces = faces[(x[b] - x[a]) * (y[c] - y[a]) > (y[b] - y[a]) * (x[c] - x[a])]
+    return _Item(vertices, faces, shape.normals @ turn.T, colour)
+
+
+def _cloud(items: list[_Item]) -> Array:
+    return np.concatenate([item.vertices for item in items])
+
+
+def _within(view: View, projected: Array, faces: Ints) -> Ints:
+    """Those of the faces that may cover the middle of a pixel of the picture."""
+    a, b, c = faces.T
+    keep = np.ones(len(faces), bool)
+    for k, end in ((0, view.width), (1, view.height)):
+        at = projected[:, k] - 0.5
+        low = np.minimum(np.minimum(at[a], at[b]), at[c])
+        high = np.maximum(np.maximum(at[a], at[b]), at[c])
+        keep &= (high >= 0.0) & (low <= end - 1) & (np.floor(high) >= np.ceil(low))
+    return faces[keep]
+
+
+def _drawn(view: View, items: list[_Item]) -> Array:
+    """(height, width, 4) of 0 … 1, colours not multiplied by their weight."""
+    projected = [view.project(item.vertices) for item in items]
+    kept = [_within(view, places, item.faces) for places, item in zip(projected, items, strict=True)]
+    starts = np.cumsum([0, *(len(item.vertices) for item in items)])
+    faces = np.concatenate([own + start for own, start in zip(kept, starts, strict=False)])
+    owner = np.repeat(np.arange(len(items)), [len(own) for own in kept])
+    image = np.zeros((view.height, view.width, 4))
+    if not len(faces):
+        return image
+    corners = np.concatenate(projected)[faces]
+    buffers = rasterise(view, corners)
+    seen = buffers.facet >= 0
+    facet = buffers.facet[seen]
+    rows, columns = np.nonzero(seen)
+    weights = _weights(corners[facet], columns.astype(np.float64) + 0.5, rows.astype(np.float64) + 0.5)
+    normals, own = np.concatenate([item.normals for item in items]), faces[facet]
+    normal = sum(weights[:, k, None] * normals[own[:, k]] for k in range(3))
+    assert not isinstance(normal, int)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    normal *= np.where(normal[:, 2:] < 0.0, -1.0, 1.0)
+    colours = np.array([item.colour for item in items])[owner[facet]]
+    image[seen, :3] = _lit(colours, normal)
+    image[seen, 3] = 1.0
+    _outline(image, buffers, seen, owner, normal, view)
+    return image
+
+
+def _weights(corners: Array, x: Array, y: Array) -> Array:
+    """(n, 3) barycentric weights of points in their facets."""
+    a, b, c = (corners[:, k, :2] for k in range(3))
+    u, v = b - a, c - a
+    area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    area = np.where(np.abs(area) < 1e-12, np.inf, area)
+    px, py = x - a[:, 0], y - a[:, 1]
+    s = (px * v[:, 1] - py * v[:, 0]) / area
+    t = (u[:, 0] * py - u[:, 1] * px) / area
+    return np.clip(np.stack([1.0 - s - t, s, t], axis=1), 0.0, 1.0)
+
+
+def _lit(colour: Array, normal: Array) -> Array:
+    """The same matt light as in the viewer."""
+    key = np.maximum(normal @ (np.array([-0.35, 0.75, 0.60]) / 1.0223), 0.0)
+    fill = np.maximum(normal @ (np.array([0.70, 0.05, 0.45]) / 0.8337), 0.0)
+    sky = 0.5 + 0.5 * normal[:, 1]
+    return np.asarray(np.clip(colour * (0.34 + 0.20 * sky + 0.50 * key + 0.16 * fill)[:, None], 0.0, 1.0))
+
+
+def _outline(
+    image: Array, buffers: Buffers, seen: NDArray[np.bool_], owner: NDArray[np.int64], normal: Array, view: View
+) -> None:
+    """Darken where the part, the direction or the depth changes from one pixel to the next."""
+    part = np.where(seen, owner[np.maximum(buffers.facet, 0)], -1)
+    direction = np.zeros((*seen.shape, 3))
+    direction[seen] = normal
+    step = 6.0 / view.scale
+    line = np.zeros(seen.shape, bool)
+    for axis in (0, 1):
+        here = tuple(slice(None, -1) if k == axis else slice(None) for k in (0, 1))
+        there = tuple(slice(1, None) if k == axis else slice(None) for k in (0, 1))
+        turned = np.einsum("ijk,ijk->ij", direction[here], direction[there]) < 0.86
+        apart = np.abs(buffers.near[here] - buffers.near[there]) > step
+        both = seen[here] & seen[there]
+        changed = (part[here] != part[there]) | (both & (turned | apart))
+        line[here] |= changed
+        line[there] |= changed
+    image[line & seen, :3] *= 0.52
+
+
+def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array:
+    """The front, of this weight, over the back, itself of weight `faint`."""
+    a = front[..., 3:] * weight
+    b = back[..., 3:] * faint
+    # where the front lies behind something faint, that shows a little
+    whole = a + b * (1.0 - a)
+    colour = (front[..., :3] * a + back[..., :3] * b * (1.0 - a)) / np.maximum(whole, 1e-9)
+    return np.concatenate([colour, whole], axis=2)
+
+
+def _stroke(image: Array, ends: Array, width: float) -> None:
+    height, across = image.shape[:2]
+    y, x = np.mgrid[0:height, 0:across]
+    way = ends[1] - ends[0]
+    length = max(float(np.linalg.norm(way)), 1e-9)
+    along = ((x - ends[0, 0]) * way[0] + (y - ends[0, 1]) * way[1]) / length
+    aside = np.abs((x - ends[0, 0]) * way[1] - (y - ends[0, 1]) * way[0]) / length
+    dashed = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
+    _paint(image, (aside < width / 2) & (along > 0) & (along < length) & dashed)
+
+
+def _ring(image: Array, centre: Array, radius: float, width: float) -> None:
+    height, across = image.shape[:2]
+    y, x = np.mgrid[0:height, 0:across]
+    away = np.hypot(x - centre[0], y - centre[1])
+    white = np.abs(away - radius) < width
+    image[white] = [1.0, 1.0, 1.0, 1.0]
+    _paint(image, np.abs(away - radius) < 0.6 * width)
+
+
+def _paint(image: Array, where: NDArray[np.bool_]) -> None:
+    image[where] = [*rgb(SIGNAL), 1.0]
+
+
+def _reduced(image: Array) -> NDArray[np.uint8]:
+    """Each block of finer pixels as one, colours by their weight."""
+    weighted = np.concatenate([image[..., :3] * image[..., 3:], image[..., 3:]], axis=2)
+    height, width = (n // FINER for n in image.shape[:2])
+    mean = weighted.reshape(height, FINER, width, FINER, 4).mean(axis=(1, 3))
+    mean[..., :3] /= np.maximum(mean[..., 3:], 1e-9)
+    return np.asarray(np.rint(255.0 * np.clip(mean, 0.0, 1.0)).astype(np.uint8))

@@ -1,0 +1,252 @@
+"""Curves over time as SVG: joint values with their limits, efforts of drives, reactions, energy.
+
+Series differ by dash and by a label, not by colour alone. Long runs are thinned to the extremes of each column.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.form.units import metres_per
+from kinform.function import resolve
+from kinform.model.design import Design
+from kinform.model.simulation import Simulation
+from kinform.reports.json_views import coordinates
+from kinform.reports.page.scene import wanted_names
+
+__all__ = ["Plot", "Series", "drawn", "plots"]
+
+Array = NDArray[np.float64]
+
+WIDTH, HEIGHT = 380.0, 168.0
+LEFT, RIGHT, TOP, BOTTOM = 54.0, 366.0, 12.0, 142.0
+MOST_COLUMNS = 300
+"""Columns of a curve; in each the least and the greatest value are kept."""
+MOST = 48
+"""Plots of one group."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One curve."""
+
+    label: str
+    values: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """Curves of one quantity, with horizontal lines for limits."""
+
+    title: str
+    unit: str
+    series: tuple[Series, ...]
+    limits: tuple[tuple[str, float], ...] = ()
+
+
+def plots(design: Design) -> list[tuple[str, list[str], str]]:
+    """Groups of plots: heading, SVG of each, and a remark where some are left out."""
+    run = design.simulation
+    if run is None or len(run.time) < 2:
+        return []
+    titles = {name: f"{', '.join(known)}, {name}" for name, known in wanted_names(design).items()}
+    groups = [
+        ("Joint values", _values(design, run, titles)),
+        ("Drive efforts", _efforts(run, titles)),
+        ("Reactions in the joints", _reactions(run, titles)),
+        ("Energy", _energy(run)),
+    ]
+    out = []
+    for heading, found in groups:
+        if found:
+            left = f"{len(found) - MOST} more are in the results file." if len(found) > MOST else ""
+            out.append((heading, [drawn(plot, run.time) for plot in found[:MOST]], left))
+    return out
+
+
+def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
+    metres = metres_per(design.assembly.units)
+    out = []
+    for name, kind, unit, column in coordinates(run):
+        scale, shown = _scale(unit, design.assembly.units, metres)
+        values = run.joint_position[:, column] * scale
+        limits: list[tuple[str, float]] = []
+        if "." not in name and kind in ("revolute", "prismatic") and design.kinematics is not None:
+            found = next((j for j in design.kinematics.joints if j.name == name), None)
+            if found is not None:
+                ends = [("found", found.range_lower, found.range_upper)] if found.range_status == "found" else []
+                wanted = _required(design, name)
+                ends += [("required", *wanted)] if wanted is not None else []
+                for word, low, high in ends:
+                    limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
+        out.append(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits)))
+    return out
+
+
+def _required(design: Design, name: str) -> tuple[float, float] | None:
+    """The stated range of the joint that kinform names so, in its own sense (rad or m)."""
+    assert design.kinematics is not None
+    for intended in design.assembly.function.joints:
+        found = resolve(design.assembly, design.kinematics, intended.name)
+        if found.joint is not None and found.joint.name == name and intended.range is not None:
+            low, high = sorted(found.sign * end for end in intended.range)
+            return low, high
+    return None
+
+
+def _efforts(run: Simulation, titles: dict[str, str]) -> list[Plot]:
+    out = []
+    for name, _, unit, column in coordinates(run):
+        values = run.joint_effort[:, column] if run.joint_effort.size else np.zeros(0)
+        if len(values) and np.isfinite(values).any() and np.nanmax(np.abs(values)) > 0.0:
+            out.append(_scaled(Plot(titles.get(name, name), "N" if unit == "m" else "N·m", (Series("", values),))))
+    return out
+
+
+def _reactions(run: Simulation, titles: dict[str, str]) -> list[Plot]:
+    """Force and torque that each joint carries, where the simulation gives them."""
+    wrenches = getattr(run, "F_B", np.zeros((0, 0, 6)))
+    if wrenches.ndim != 3 or len(wrenches) != len(run.time):
+        return []
+    out = []
+    for k, name in enumerate(run.joint_names):
+        for unit, part, what in (("N", slice(3, 6), "force"), ("N·m", slice(0, 3), "torque")):
+            size = np.linalg.norm(wrenches[:, k, part], axis=1)
+            out.append(_scaled(Plot(f"{titles.get(name, name)}: {what}", unit, (Series("", size),))))
+    return out
+
+
+def _energy(run: Simulation) -> list[Plot]:
+    if not run.energy.size or not np.isfinite(run.energy).any():
+        return []
+    names = ("kinetic", "potential", "work put in")
+    base = np.array([0.0, run.energy[0, 1], 0.0])
+    series = tuple(Series(name, run.energy[:, k] - base[k]) for k, name in enumerate(names))
+    balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
+    return [
+        _scaled(Plot("Energy, potential from its start", "J", series)),
+        _scaled(Plot("Error of the balance", "J", (Series("", balance - balance[0]),))),
+    ]
+
+
+def _scaled(plot: Plot) -> Plot:
+    """The plot with a prefix before its unit, so that its numbers are short."""
+    largest = max((float(np.nanmax(np.abs(s.values), initial=0.0)) for s in plot.series), default=0.0)
+    for factor, prefix in ((1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"), (1e-15, "f")):
+        if largest >= factor:
+            return replace(
+                plot, unit=prefix + plot.unit, series=tuple(replace(s, values=s.values / factor) for s in plot.series)
+            )
+    return plot
+
+
+def _scale(unit: str, units: str, metres: float) -> tuple[float, str]:
+    if unit == "rad":
+        return 180.0 / math.pi, "°"
+    return (1.0 / metres, units) if unit == "m" else (1.0, "")
+
+
+def drawn(plot: Plot, time: Array) -> str:
+    """The plot as SVG; the viewer moves its cursor."""
+    ticks = _ticks(plot)
+    low, high = ticks[0], ticks[-1]
+    start, end = float(time[0]), float(time[-1])
+
+    def x(t: Array) -> Array:
+        return np.asarray(LEFT + (t - start) / ((end - start) or 1.0) * (RIGHT - LEFT))
+
+    def y(value: Array) -> Array:
+        return np.asarray(BOTTOM - (value - low) / ((high - low) or 1.0) * (BOTTOM - TOP))
+
+    parts = [
+        f'<line class="grid" x1="{LEFT}" x2="{RIGHT}" y1="{float(y(np.array(t))):.1f}" y2="{float(y(np.array(t))):.1f}"/>'
+        f'<text class="tick" x="{LEFT - 6}" y="{float(y(np.array(t))) + 3.5:.1f}" text-anchor="end">{_number(t)}</text>'
+        for t in ticks
+    ]
+    for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
+        at = LEFT + share * (RIGHT - LEFT)
+        text = _number(start + share * (end - start)) + (" s" if share == 1.0 else "")
+        parts.append(f'<text class="tick" x="{at:.1f}" y="{BOTTOM + 16}" text-anchor="{anchor}">{text}</text>')
+    for label, value in plot.limits:
+        at = float(y(np.array(value)))
+        parts.append(f'<line class="limit" x1="{LEFT}" x2="{RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
+        inside = at + (11.0 if at < (TOP + BOTTOM) / 2 else -4.0)
+        text = escape(f"{label} {_number(value)}{plot.unit}")
+        parts.append(f'<text class="tick" x="{RIGHT}" y="{inside:.1f}" text-anchor="end">{text}</text>')
+    for k, series in enumerate(plot.series):
+        parts.append(f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>')
+    if len(plot.series) > 1:
+        for k, series in enumerate(plot.series):
+            at = LEFT + 104.0 * k
+            parts.append(
+                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{HEIGHT + 8}" y2="{HEIGHT + 8}"/>'
+                f'<text class="tick" x="{at + 23}" y="{HEIGHT + 12}">{escape(series.label)}</text>'
+            )
+    parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{TOP}" y2="{BOTTOM}"/>')
+    spoken = escape(_spoken(plot, start, end), quote=True)
+    return (
+        f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
+        f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
+        f'data-to="{end!r}" data-left="{LEFT}" data-right="{RIGHT}">{"".join(parts)}</svg></figure>'
+    )
+
+
+def _spoken(plot: Plot, start: float, end: float) -> str:
+    texts = []
+    for series in plot.series:
+        known = series.values[np.isfinite(series.values)]
+        if len(known):
+            name = f"{series.label}: " if series.label else ""
+            texts.append(f"{name}{_number(float(known.min()))} to {_number(float(known.max()))} {plot.unit}")
+    limits = "".join(f", {label} {_number(value)} {plot.unit}" for label, value in plot.limits)
+    return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}"
+
+
+def _ticks(plot: Plot) -> list[float]:
+    """Three to six round values around everything that is drawn."""
+    every = np.concatenate([s.values for s in plot.series] + [np.array([v for _, v in plot.limits])])
+    every = every[np.isfinite(every)]
+    low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
+    if high - low <= 1e-9 * max(abs(low), abs(high), 1e-12):
+        pad = abs(high) * 0.5 or 1.0
+        low, high = low - pad, high + pad
+    raw = (high - low) / 4.0
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= 0.999 * raw)
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return [k * step if k else 0.0 for k in range(first, last + 1)]
+
+
+def _path(x: Array, y: Array) -> str:
+    """The curve, with gaps where it is not known."""
+    keep = _thinned(y)
+    out, pen = [], "M"
+    for k in keep:
+        if not math.isfinite(y[k]):
+            pen = "M"
+            continue
+        out.append(f"{pen}{x[k]:.1f} {y[k]:.1f}")
+        pen = "L"
+    return "".join(out)
+
+
+def _thinned(y: Array) -> Sequence[int]:
+    if len(y) <= 2 * MOST_COLUMNS:
+        return range(len(y))
+    edges = np.linspace(0, len(y), MOST_COLUMNS + 1).astype(int)
+    kept = {0, len(y) - 1}
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
+        piece = np.where(np.isfinite(y[a:b]), y[a:b], 0.0)
+        kept |= {a + int(piece.argmin()), a + int(piece.argmax())}
+    return sorted(kept)
+
+
+def _number(value: float) -> str:
+    text = f"{value + 0.0:.4g}"
+    return text.replace("-", "−")

@@ -1,0 +1,79 @@
+"""Pictures by file name, and the Markdown summary for a pull request that embeds them."""
+
+from __future__ import annotations
+
+import re
+
+from kinform.model.design import Design
+from kinform.reports.page import agreement, facts
+from kinform.reports.page.pictures import Artist
+from kinform.reports.page.scene import Scene
+from kinform.reports.page.verdict import verdict
+
+__all__ = ["MOST", "pictures", "summary"]
+
+MOST = 40
+"""Findings that get a picture, the worst first."""
+
+
+def pictures(scene: Scene) -> dict[str, bytes]:
+    """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first."""
+    artist = Artist(scene)
+    out = {"overview.png": artist.overview(1200, 750)}
+    for name, finding in _named(scene.design):
+        out[name] = artist.finding(finding.index, 720, 480)
+    return out
+
+
+def _named(design: Design) -> list[tuple[str, facts.FindingFacts]]:
+    return [(f"finding-{n:02d}-{f.code}.png", f) for n, f in enumerate(facts.findings(design)[:MOST], 1)]
+
+
+def summary(design: Design) -> str:
+    """Markdown: verdict, overview, what disagrees, each finding with its picture; pictures are beside it."""
+    told = verdict(design)
+    name = _plain(design.assembly.name)
+    lines = [f"# {name}: {told.sign} {_plain(told.line)}", "", _plain(told.counts), "", f"![{name}](overview.png)", ""]
+    rows = agreement.rows(design)
+    if rows:
+        lines += ["| about | form | behaviour | function | verdict |", "|---|---|---|---|---|"]
+        for row in rows:
+            codes = "".join(f" {design.report.findings[k].code}" for k in row.findings) if design.report else ""
+            cells = (
+                row.name,
+                row.form or "–",
+                row.behaviour or "–",
+                row.function or "–",
+                f"{row.sign} {row.mark}{codes}",
+            )
+            lines.append("| " + " | ".join(map(_plain, cells)) + " |")
+        lines.append("")
+    named = _named(design)
+    for file, finding in named:
+        lines += [
+            f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}",
+            "",
+            _plain(finding.message),
+            "",
+        ]
+        lines += [f"- {key}: {_plain(value)}" for key, value in finding.facts]
+        lines += [f"- remedy: {_plain(finding.remedy)}"] if finding.remedy else []
+        lines += ["", f"![{finding.code}]({file})", ""]
+    left = len(design.report.findings) - len(named) if design.report else 0
+    lines += [f"{left} more findings are in the report.", ""] if left > 0 else []
+    undecided = [rule for rule in facts.rules(design) if rule.outcome == "inconclusive"]
+    if undecided:
+        lines += ["## Not decided", "", *(f"- {r.code} {_plain(r.rule)}: {_plain(r.reason)}" for r in undecided), ""]
+    return "\n".join(lines)
+
+
+def _plain(text: str) -> str:
+    """The text as itself in Markdown, also where a browser reads HTML, in a cell of a table, on one line."""
+    clean = "".join(c if c.isprintable() else " " for c in text)
+    return re.sub(r"([\\`*_{}\[\]<>()#|~!&@])", _escaped, clean)
+
+
+def _escaped(match: re.Match[str]) -> str:
+    """HTML's own characters by name (Markdown escapes of them are not safe everywhere), others by a stroke."""
+    named = {"<": "&lt;", ">": "&gt;", "&": "&amp;", "@": "&#64;"}
+    return named.get(match[1], "\\" + match[1])

@@ -1,0 +1,57 @@
+"""Pages that tests share, and the browser that opens them."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+from browser import Browser, program
+from known import FIXTURES
+from markup import NASTY
+
+from kinform import stages
+from kinform.reports.page import page
+
+
+@pytest.fixture(scope="session")
+def nasty(tmp_path_factory):
+    """A shaft in a block, with names and a reason that are attacks, and findings that repeat them."""
+    folder = tmp_path_factory.mktemp("nasty")
+    source = FIXTURES / "pairs" / "revolute_collars"
+    for mesh in source.glob("*.stl"):
+        shutil.copy(mesh, folder)
+    text = (source / "revolute_collars.toml").read_text()
+    for old, new in (("shaft", NASTY), ("main", '<b>joint<b>" onclick="x'), ("revolute_collars", "<h1>x<h1>")):
+        text = text.replace(f'name = "{old}"', f"name = '''{new}'''")
+    text = text.replace('["block", "shaft"]', f"['block', '''{NASTY}''']")
+    text = text.replace('type = "revolute"', 'type = "prismatic"')
+    text += "\n[[assume]]\nbetween = ['block', '''" + NASTY + "''']\ntype = 'revolute'\n"
+    text += "axis = [0.883022222, -0.321393805, 0.342020143]\npoint = [-60, 15, 200]\n"
+    text += "reason = '</script><i>because</i> --> ]]>'\n"
+    manifest = folder / "nasty.toml"
+    manifest.write_text(text)
+    design = stages.joints(stages.contacts(stages.import_(manifest)))
+    return stages.check(stages.simulate(stages.mass(design)))
+
+
+@pytest.fixture(scope="session")
+def page_of():
+    """The page of a design, made once."""
+    known = {}
+
+    def made(design):
+        if id(design) not in known:
+            known[id(design)] = design, page(design)
+        return known[id(design)][1]
+
+    return made
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A browser for the tests of one file."""
+    if program() is None:
+        pytest.skip("no Chromium: the page is not opened in a browser")
+    opened = Browser()
+    yield opened
+    opened.close()

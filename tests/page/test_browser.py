@@ -1,0 +1,310 @@
+"""The page in a real browser: it draws, answers to pointer and keys, moves, prints, and is accessible."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import shutil
+import subprocess
+import tarfile
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from known import FIXTURES
+
+AXE = "axe-core@4.10.3"
+
+
+@pytest.fixture(scope="module")
+def seeker(derive_design, page_of, tmp_path_factory):
+    """The page of the two-axis seeker, as a file."""
+    path = tmp_path_factory.mktemp("page") / "seeker.html"
+    design = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+    path.write_text(page_of(design), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def overlaps(derive_design, page_of, tmp_path_factory):
+    """The page of a seeker whose gimbal reaches into the housing."""
+    path = tmp_path_factory.mktemp("page") / "overlaps.html"
+    design = derive_design(FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml")
+    path.write_text(page_of(design), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def shown(browser, seeker):
+    """The seeker, freshly opened."""
+    browser.said.clear()
+    browser.open(seeker)
+    browser.settle()
+    yield browser
+    assert browser.said == []
+    assert browser.run("document.body.dataset.fault") is None
+
+
+DRAWN = """(() => {
+  const stage = document.getElementById('stage'), flat = document.createElement('canvas');
+  flat.width = 160; flat.height = 100;
+  const paint = flat.getContext('2d', {willReadFrequently: true});
+  paint.drawImage(stage, 0, 0, 160, 100);
+  return Array.from(paint.getImageData(0, 0, 160, 100).data);
+})()"""
+
+
+def drawn(browser):
+    """The canvas as (100, 160, 3) numbers."""
+    browser.settle()
+    return np.array(browser.run(DRAWN)).reshape(100, 160, 4)[..., :3]
+
+
+def inside(browser, selector, across=0.5, down=0.5):
+    """A place within an element, in pixels of the window, after it was scrolled into view."""
+    browser.run(f"document.querySelector({selector!r}).scrollIntoView({{block: 'center', behavior: 'instant'}})")
+    browser.settle()
+    box = browser.run(
+        f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; }})()"
+    )
+    return box[0] + across * box[2], box[1] + down * box[3]
+
+
+def press(browser, selector):
+    """Click on an element."""
+    browser.click(*inside(browser, selector))
+
+
+def chosen(browser):
+    """What the page says is chosen."""
+    return browser.run("document.getElementById('chosen').textContent")
+
+
+def layer(browser, name, on):
+    """Switch a layer."""
+    if browser.run(f"document.querySelector('[data-layer={name}]').checked") != on:
+        press(browser, f"[data-layer={name}]")
+
+
+def test_the_viewer_starts_and_draws_parts_in_several_colours(shown):
+    assert shown.run("document.body.dataset.viewer") == "ready"
+    image = drawn(shown)
+    back = image[2, 2]
+    covered = (np.abs(image - back).sum(axis=2) > 30).mean()
+    assert 0.1 < covered < 0.9
+    assert len(np.unique(image.reshape(-1, 3) // 32, axis=0)) > 12
+
+
+def test_a_click_chooses_the_part_that_is_there(shown):
+    layer(shown, "joints", False)
+    press(shown, "#tab-parts")
+    names = shown.run("[...document.querySelectorAll('[data-hides]')].map((box) => box.getAttribute('aria-label'))")
+    others = [k for k, name in enumerate(names) if name != "Show pitch_motor/stator"]
+    for k in others:
+        shown.run(f"document.querySelectorAll('[data-hides]')[{k}].click()")
+    press(shown, "#fit")
+    shown.click(*inside(shown, "#stage"))
+    assert chosen(shown) == "Part pitch_motor/stator, of body outer"
+    assert (
+        shown.run(
+            "document.querySelector('#panel-parts [data-chosen] , #panel-parts button[aria-current]').textContent"
+        )
+        is not None
+    )
+    shown.click(*inside(shown, "#stage", 0.02, 0.02))
+    assert chosen(shown) == "Nothing is chosen"
+    press(shown, "#show-all")
+    assert shown.run("[...document.querySelectorAll('[data-hides]')].every((box) => box.checked)")
+
+
+def test_the_pointer_names_what_it_is_over_turns_and_zooms(shown):
+    before = drawn(shown)
+    x, y = inside(shown, "#stage")
+    shown.mouse("mouseMoved", x, y)
+    shown.settle()
+    assert not shown.run("document.getElementById('tip').hidden")
+    assert shown.run("document.getElementById('tip').textContent")
+    shown.drag(x - 100, y - 60, x + 60, y - 40)
+    turned = drawn(shown)
+    assert np.abs(turned - before).mean() > 2
+    shown.click(*inside(shown, "#stage", 0.02, 0.02))
+    shown.mouse("mouseWheel", x, y, deltaX=0, deltaY=-240)
+    assert np.abs(drawn(shown) - turned).mean() > 2
+
+
+def test_keys_turn_choose_explode_and_let_go(shown):
+    shown.run("document.getElementById('stage').focus()")
+    before = drawn(shown)
+    shown.key("ArrowLeft")
+    turned = drawn(shown)
+    assert np.abs(turned - before).mean() > 0.5
+    shown.key("p")
+    assert chosen(shown).startswith("Part camera")
+    shown.key("j")
+    assert chosen(shown).startswith("Joint yaw, yaw_motor/spin, base~outer: revolute about z")
+    shown.key("Escape")
+    assert chosen(shown) == "Nothing is chosen"
+    shown.key("e")
+    assert shown.run("document.getElementById('explode').value") == "60"
+    assert np.abs(drawn(shown) - turned).mean() > 2
+
+
+def test_the_slider_moves_the_assembly_and_the_cursors_of_the_curves(shown):
+    layer(shown, "joints", False)
+    assert shown.run("document.getElementById('motion').selectedOptions[0].textContent") == "Simulated motion (dynamic)"
+    before = drawn(shown)
+    shown.run(
+        "(() => { const time = document.getElementById('time'); time.value = 250; time.dispatchEvent(new Event('input')); })()"
+    )
+    assert np.abs(drawn(shown) - before).mean() > 0.3
+    assert shown.run("document.getElementById('clock').textContent") == "0.50 s"
+    at = shown.run("document.querySelector('svg[data-from] .cursor').getAttribute('transform')")
+    left, right = (
+        float(shown.run(f"document.querySelector('svg[data-from]').dataset.{end}")) for end in ("left", "right")
+    )
+    assert float(at.split("(")[1].split()[0]) == pytest.approx(left + 0.25 * (right - left), abs=0.1)
+    shown.run(
+        "(() => { const time = document.getElementById('time'); time.value = 0; time.dispatchEvent(new Event('input')); })()"
+    )
+    assert np.abs(drawn(shown) - before).max() <= 2
+
+
+def test_play_runs_and_stops_and_freedoms_go_to_and_fro(shown):
+    press(shown, "#play")
+    shown.until("Number(document.getElementById('time').value) > 20")
+    press(shown, "#play")
+    assert shown.run("document.getElementById('play').getAttribute('aria-pressed')") == "false"
+    at = shown.run("document.getElementById('time').value")
+    shown.settle()
+    assert shown.run("document.getElementById('time').value") == at
+    options = shown.run("[...document.getElementById('motion').options].map((option) => option.textContent)")
+    assert options[2:] == ["Freedom: yaw (turn)", "Freedom: pitch (turn)"]
+    shown.run(
+        "(() => { const m = document.getElementById('motion'); m.value = '1'; m.dispatchEvent(new Event('change')); })()"
+    )
+    shown.until("Number(document.getElementById('time').value) > 900")
+    shown.until("Number(document.getElementById('time').value) < 100")
+    press(shown, "#play")
+
+
+def test_the_graph_and_the_view_are_linked_both_ways(shown):
+    press(shown, "#graph .link")
+    assert chosen(shown).startswith("Joint ")
+    focus = drawn(shown)
+    press(shown, "#graph .node")
+    assert chosen(shown).startswith("Body ")
+    assert np.abs(drawn(shown) - focus).mean() > 0.5
+    press(shown, "#tab-joints")
+    press(shown, "#panel-joints [data-joint='1']")
+    assert shown.run("document.querySelector('#graph [data-chosen]') !== null")
+    assert shown.run("[...document.querySelectorAll('#graph .link[data-chosen]')].map((g) => g.dataset.joint)") == ["1"]
+
+
+def test_contact_patches_are_coloured_by_their_fit(shown):
+    layer(shown, "joints", False)
+    layer(shown, "xray", True)
+    before = drawn(shown)
+    assert shown.run("document.getElementById('fits').hidden")
+    layer(shown, "contacts", True)
+    assert not shown.run("document.getElementById('fits').hidden")
+    after = drawn(shown).astype(int)
+    assert np.abs(after - before).mean() > 0.05
+    blue = (after[..., 2] - after[..., 0] > 60) & (np.abs(after - before).sum(axis=2) > 40)
+    assert blue.sum() > 10
+
+
+def test_an_overlap_is_red_and_its_finding_leads_to_it(browser, overlaps):
+    browser.said.clear()
+    browser.open(overlaps)
+
+    def red():
+        image = drawn(browser).astype(int)
+        return (
+            (image[..., 0] > 90) & (image[..., 0] > 1.8 * image[..., 1]) & (image[..., 0] > 1.8 * image[..., 2])
+        ).sum()
+
+    layer(browser, "joints", False)
+    layer(browser, "overlaps", False)
+    press(browser, "button[data-finding]")
+    assert chosen(browser) == "Finding KF201: housing, outer_gimbal"
+    without = red()
+    layer(browser, "overlaps", True)
+    assert red() > without + 20
+    assert browser.said == []
+
+
+def test_names_that_are_programs_do_nothing(browser, nasty, page_of, tmp_path):
+    path = tmp_path / "nasty.html"
+    path.write_text(page_of(nasty), encoding="utf-8")
+    browser.said.clear()
+    browser.open(path)
+    browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    for selector in ("[data-part='0']", "[data-part='1']", "[data-joint='0']", "#graph .node", "#graph .link"):
+        browser.run(f"document.querySelector({selector!r}).dispatchEvent(new MouseEvent('click', {{bubbles: true}}))")
+    browser.settle()
+    assert browser.run("document.title").startswith("<h1>x<h1>: ")
+    assert browser.run("document.querySelectorAll('img[src=x], i, b, script:not([id]):not(:last-of-type)').length") == 0
+    assert browser.run("document.body.dataset.viewer") == "ready"
+    assert browser.said == []
+
+
+def test_the_page_prints(shown):
+    shown.ask("Emulation.setEmulatedMedia", media="print")
+    hidden = shown.run(
+        "['.tools', 'nav', '.tabs'].every((s) => getComputedStyle(document.querySelector(s)).display === 'none')"
+    )
+    assert hidden
+    data = base64.b64decode(shown.ask("Page.printToPDF", printBackground=True)["data"])
+    shown.ask("Emulation.setEmulatedMedia", media="")
+    assert data.startswith(b"%PDF")
+    assert len(data) > 20_000
+
+
+def test_without_webgl_the_picture_stays_and_the_page_says_why(browser, seeker):
+    browser.said.clear()
+    script = browser.ask(
+        "Page.addScriptToEvaluateOnNewDocument", source="HTMLCanvasElement.prototype.getContext = () => null;"
+    )
+    browser.open(seeker)
+    browser.ask("Page.removeScriptToEvaluateOnNewDocument", **script)
+    assert browser.run("document.body.dataset.viewer") == "none"
+    assert "WebGL 2 is not available" in browser.run("document.getElementById('viewer-fault').textContent")
+    assert browser.run(
+        "(() => { const image = document.querySelector('.stand-in'); return image.naturalWidth > 0 && getComputedStyle(image).display !== 'none'; })()"
+    )
+    assert browser.said == []
+
+
+@functools.cache
+def axe() -> str:
+    """The accessibility checker from npm; it is fetched, never kept."""
+    if shutil.which("npm") is None:
+        pytest.skip("no npm: accessibility is not checked")
+    with tempfile.TemporaryDirectory() as folder:
+        ran = subprocess.run(
+            ["npm", "pack", AXE, "--silent", "--pack-destination", folder], capture_output=True, text=True, check=False,
+            timeout=120, cwd=folder,
+        )  # fmt: skip
+        packed = next(Path(folder).glob("*.tgz"), None)
+        if packed is None:
+            pytest.skip(f"{AXE} cannot be fetched, accessibility is not checked: {ran.stderr.strip()[-200:]}")
+        with tarfile.open(packed) as archive:
+            return archive.extractfile("package/axe.min.js").read().decode("utf-8")
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_the_page_is_accessible(browser, overlaps, dark):
+    program = axe()
+    browser.dark(dark)
+    browser.open(overlaps)
+    browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    for tab in ("tab-joints", "tab-parts", "tab-graph"):
+        browser.run(f"document.getElementById({tab!r}).click()")
+        browser.run(program + "; 1")
+        found = browser.run(
+            "axe.run().then((r) => r.violations.filter((v) => ['serious', 'critical'].includes(v.impact))"
+            ".map((v) => [v.id, v.nodes.map((n) => n.html.slice(0, 160))]))"
+        )
+        assert found == []
+    browser.dark(False)

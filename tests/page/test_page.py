@@ -1,0 +1,143 @@
+"""The page without a browser: what it says, what it embeds, that nothing in a name does anything."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from known import FIXTURES
+from markup import NASTY, read
+
+from kinform import results, stages
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.reports.page import Scene, page, summary
+from kinform.reports.page.agreement import rows
+
+SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
+AXIS_OFF = FIXTURES / "broken" / "seeker_axis_off" / "seeker_axis_off.toml"
+OVERLAPS = FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml"
+
+
+def test_names_are_text_and_nothing_else(nasty, page_of):
+    found = read(page_of(nasty))
+    assert [tag for tag, _ in found.elements].count("script") == 3
+    assert not {"i", "b", "x"} & {tag for tag, _ in found.elements}
+    assert [tag for tag, _ in found.elements].count("h1") == 1
+    assert not any(key.startswith("on") for _, attributes in found.elements for key in attributes)
+    assert all((a.get("src") or "data:").startswith("data:") for _, a in found.elements)
+    assert NASTY in [part["name"] for part in found.scene["parts"]]
+    assert any(NASTY in text for text in found.texts)
+    assert any("</script><i>because</i> --> ]]>" in text for text in found.texts)
+    assert all(row.mark != "agrees" for row in rows(nasty) if "joint" in row.name)
+
+
+def test_the_summary_for_pull_requests_shows_names_as_they_are(nasty):
+    text = summary(nasty)
+    assert not re.search(r"<\w", text)
+    for line in text.splitlines():
+        if line.startswith("|"):
+            assert len(re.findall(r"(?<!\\)\|", line)) == 6, line
+
+
+def test_nothing_comes_from_elsewhere_and_one_program_may_run(derive_design, page_of):
+    text = page_of(derive_design(SEEKER))
+    assert not re.search(r"https?://|@import|url\(", text)
+    found = read(text)
+    (policy,) = (a["content"] for tag, a in found.elements if a.get("http-equiv") == "Content-Security-Policy")
+    assert policy.startswith("default-src 'none'")
+    assert "script-src 'sha256-" in policy
+
+
+def test_the_same_design_gives_the_same_bytes_also_from_its_file(derive_design, page_of, tmp_path):
+    design = derive_design(OVERLAPS)
+    results.write(design, tmp_path / "a.h5")
+    text = page_of(design)
+    assert text == page(results.read(tmp_path / "a.h5"))
+    assert len(text.encode()) < 500_000
+
+
+def test_equal_meshes_are_embedded_once(derive_design, page_of):
+    design = derive_design(SEEKER)
+    scene = read(page_of(design)).scene
+    of = {part["name"]: part["mesh"] for part in scene["parts"]}
+    assert of["yaw_motor/rotor"] == of["pitch_motor/rotor"] != of["yaw_motor/stator"]
+    assert len(scene["meshes"]) == len({part.mesh.digest for part in design.assembly.parts}) < len(of)
+
+
+def test_a_consistent_design_agrees_in_every_row_that_states_something(derive_design):
+    table = rows(derive_design(SEEKER))
+    assert {row.name for row in table} >= {"mobility of the whole", "yaw", "pitch", "motion"}
+    assert {row.mark for row in table if row.function} == {"agrees"}
+    assert not any(row.findings for row in table)
+
+
+def test_a_disagreement_is_marked_where_it_is_and_nowhere_else(derive_design):
+    marks = {row.name: row.mark for row in rows(derive_design(AXIS_OFF)) if row.function}
+    assert marks.pop("pitch") == "disagrees"
+    assert set(marks.values()) == {"agrees"}
+
+
+def test_what_no_rule_could_decide_never_agrees(tmp_path):
+    source = FIXTURES / "pairs" / "revolute_collars"
+    for mesh in source.glob("*.stl"):
+        shutil.copy(mesh, tmp_path)
+    text = (source / "revolute_collars.toml").read_text() + "range = [-30, 30]\n"
+    (tmp_path / "m.toml").write_text(text)
+    design = stages.joints(stages.contacts(stages.import_(tmp_path / "m.toml")))
+    report = stages.check(stages.simulate(stages.mass(design))).report
+    open_range = RuleOutcome("KF904", "range-not-checked", "inconclusive", "1 range not checked")
+    note = Finding("KF904", "range-not-checked", "note", ("main",), "the range of joint 'main' is not checked yet")
+    others = tuple(rule for rule in report.rules if rule.code != "KF904")
+    closed = CheckReport((), tuple(replace(rule, outcome="passed") for rule in others))
+    undecided = CheckReport((note,), (*closed.rules, open_range))
+    (mark,) = (row.mark for row in rows(replace(design, report=closed)) if row.name == "main")
+    assert mark == "agrees"
+    (mark,) = (row.mark for row in rows(replace(design, report=undecided)) if row.name == "main")
+    assert mark == "not decided"
+
+
+def test_every_serious_finding_has_a_row(derive_design):
+    for manifest in (AXIS_OFF, OVERLAPS):
+        design = derive_design(manifest)
+        table = rows(design)
+        named = {k for row in table if row.mark in ("disagrees", "doubtful") for k in row.findings}
+        assert named >= {k for k, f in enumerate(design.report.findings) if f.severity != "note"}
+    assert any(row.name == "housing, outer_gimbal" for row in table)
+
+
+def test_without_the_rules_nothing_agrees_and_the_page_says_so(derive_design):
+    design = replace(derive_design(SEEKER), report=None)
+    assert not any(row.mark == "agrees" for row in rows(design))
+    text = " ".join(read(page(design)).texts)
+    assert "not verified: the rules have not been run" in text
+
+
+@pytest.mark.parametrize("stage", ["import", "contacts"])
+def test_a_page_is_made_of_what_is_known_so_far(stage):
+    design = stages.import_(FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml")
+    if stage == "contacts":
+        design = stages.contacts(design)
+    found = read(page(design))
+    assert len(found.scene["parts"]) == len(design.assembly.parts)
+    assert found.scene["joints"] == []
+
+
+def test_a_function_without_geometry_has_a_page():
+    design = stages.joints(
+        stages.contacts(stages.import_(FIXTURES / "functional" / "stick_four_bar" / "stick_four_bar.toml"))
+    )
+    design = stages.check(stages.simulate(stages.mass(design)))
+    scene = read(page(design)).scene
+    assert scene["meshes"] == []
+    assert len(scene["joints"]) == 4
+    assert np.ptp([scene["low"], scene["high"]], axis=0).max() > 0
+
+
+def test_the_overlap_that_is_drawn_is_the_one_that_was_measured(derive_design):
+    design = derive_design(OVERLAPS)
+    (shape,), (item,) = Scene(design).overlaps, design.contacts.interferences
+    a, b, c = (shape.vertices[shape.faces[:, k]] for k in range(3))
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(item.volume, rel=1e-6)
