@@ -12,11 +12,12 @@ from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, count, degrees, number
+from kinform_cli.views import series
 
 __all__ = ["headline", "render"]
 
-_KEPT = 1e-9
-"""Share of the largest energy below which the balance is as exact as numbers are."""
+_KEPT = 1e-8
+"""Share of the largest energy below which the balance is as exact as the integration is asked to be."""
 
 
 def _known(design: Design) -> Simulation:
@@ -35,6 +36,9 @@ def render(design: Design) -> RenderableType:
             shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
             rows.add(name, kind, *shown, _rate(unit, float(abs(run.joint_velocity[:, column]).max()), lengths))
         items.append(rows)
+        drawn = series.render(run, lengths)
+        if drawn is not None:
+            items += ["", drawn]
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += [f"assumed: {sentence}" for sentence in run.assumptions]
@@ -59,7 +63,11 @@ def _energy(run: Simulation) -> str:
     balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
     lost = float(abs(balance - balance[0]).max())
     exact = lost <= _KEPT * float(abs(run.energy).max())
-    return "energy: the balance holds to rounding" if exact else f"energy: the balance is off by up to {number(lost)} J"
+    return (
+        "energy: the balance holds to eight digits"
+        if exact
+        else f"energy: the balance is off by up to {number(lost)} J"
+    )
 
 
 def _value(unit: str, value: float, lengths: Lengths) -> str:
