@@ -1,7 +1,7 @@
 """A series of numbers as one line of text.
 
 Blocks of eight heights, or where the output cannot show these, characters of growing weight. Each column
-stands for a stretch of the series and shows its value that is farthest from the middle, so that no peak is lost.
+stands for a stretch of the series and shows its value that is farthest from the median, so that no peak is lost.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def spark(values: NDArray[np.float64], width: int, characters: str = BLOCKS) -> 
     if not len(known) or width < 1:
         return ""
     low, high = float(known.min()), float(known.max())
-    middle = 0.5 * (low + high)
+    middle = float(np.median(known))
     line = ""
     for stretch in np.array_split(values, min(width, len(values))):
         inside = stretch[np.isfinite(stretch)]
