@@ -92,6 +92,8 @@ def run(
         console.say(f"reused: {sentence}")
     for sentence in outcome.recomputed:
         console.say(f"computed: {sentence}")
+    if not design.assembly.function.stated:
+        console.say("note: no [function] is stated: nothing is compared with what the design is for")
     for note in design.assembly.notes:
         console.say(f"note: {note}")
     from kinform_cli.views.joints import ground_note
