@@ -160,12 +160,13 @@ def _range(joint: Joint) -> tuple[float | None, float | None]:
 
 
 def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequirement:
-    """Met only where the gate decided it and found nothing; what it did not look at is not known."""
+    """Met only where the gate decided it and found nothing, be it accepted; what it did not look at is not known."""
     if report is None or not any(rule.code == _UNDECIDED and rule.outcome != "skipped" for rule in report.rules):
         return CatalogRequirement(wanted.name, wanted.kind, None)
+    accepted = (item.finding for item in getattr(report, "ignored", ()))
     own = {
         finding.code
-        for finding in report.findings
+        for finding in (*report.findings, *accepted)
         if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
     }
     return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in own else not own)
