@@ -47,6 +47,7 @@ fixtures: $(VENV)/.developing
 
 docs: $(VENV)/.developing
 	$(BIN)/python -m kinform.consistency > docs/rules.md
+	$(BIN)/python docs/generate.py
 
 clean:
 	rm -rf $(VENV) $(OUT) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -8,6 +8,7 @@ import typer
 
 from kinform_cli import console
 from kinform_cli.commands import (
+    catalog,
     check,
     contacts,
     diff,
@@ -90,6 +91,15 @@ def _build() -> typer.Typer:
     built.callback(epilog=_EXAMPLES)(_root)
     for name, function, lines, panel in COMMANDS:
         built.command(name, cls=Command, epilog=lines, rich_help_panel=panel)(function)
+    built.add_typer(_catalog(), name="catalog", help=catalog.HELP, epilog=catalog.EXAMPLES, rich_help_panel=_LOOK)
+    return built
+
+
+def _catalog() -> typer.Typer:
+    """The command `kinform catalog` with those below it."""
+    built = typer.Typer(cls=Group, no_args_is_help=False, context_settings={"help_option_names": ["--help", "-h"]})
+    for name, function, lines in catalog.COMMANDS:
+        built.command(name, cls=Command, epilog=lines)(function)
     return built
 
 

@@ -2,39 +2,60 @@
 
 from __future__ import annotations
 
-import os
+import importlib.util
 import re
 import shutil
-import subprocess
-import sys
 
 import pytest
 from known import ROOT
 
 from kinform.consistency import rules_markdown
 
-BLOCK = re.compile(r"<!-- demo -->\n```\n(.*?)```\n<!-- /demo -->", re.DOTALL)
+
+@pytest.fixture(scope="module")
+def generate():
+    """The module that writes what the documentation shows."""
+    spec = importlib.util.spec_from_file_location("docs_generate", ROOT / "docs" / "generate.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-def stripped(text):
-    return [line.rstrip() for line in text.splitlines() if not line.startswith("make[")]
-
-
-def test_the_demo_in_the_readme_is_what_the_demo_prints(tmp_path):
+def test_the_demo_in_the_readme_is_what_the_demo_prints(generate, tmp_path):
     if shutil.which("make") is None:
         pytest.skip("needs make")
-    stamps = tmp_path / "env"
-    (stamps / "bin").mkdir(parents=True)
-    (stamps / "bin" / "python").symlink_to(sys.executable)
-    (stamps / "bin" / "kinform").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m kinform_cli "$@"\n')
-    (stamps / "bin" / "kinform").chmod(0o755)
-    (stamps / ".installed").touch()
-    environment = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "FORCE_COLOR", "MAKEFLAGS", "MFLAGS")}
-    command = ["make", "--no-print-directory", "demo", f"VENV={stamps}", f"OUT={tmp_path}"]
-    ran = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stderr
-    shown = BLOCK.search((ROOT / "README.md").read_text())[1]
-    assert stripped(ran.stdout) == stripped(shown)
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "<!-- demo -->" in text
+    assert generate.readme(text, tmp_path) == text, "write it again: make docs"
+
+
+def test_every_step_of_the_seekers_story_runs_as_printed(generate, tmp_path):
+    text = (ROOT / "docs" / "seeker.md").read_text(encoding="utf-8")
+    made, pictures = generate.story(text, tmp_path)
+    assert made == text, "write it again: make docs"
+    assert pictures
+    for name, content in pictures.items():
+        assert (ROOT / "docs" / "images" / name).read_bytes() == content
+    assert sorted(p.name for p in (ROOT / "docs" / "images").iterdir()) == sorted(pictures)
+
+
+def test_the_story_goes_through_every_folder(generate):
+    text = (ROOT / "docs" / "seeker.md").read_text(encoding="utf-8")
+    home = ROOT / "fixtures" / "seeker"
+    told = set(re.findall(r"<!-- in (\S+) -->", text))
+    moments = {p.name for p in home.iterdir()} - {"4_gimbal"} | {
+        f"4_gimbal/{p.name}" for p in (home / "4_gimbal").iterdir()
+    }
+    assert moments <= told
+    assert len({m.split("/")[0] for m in moments}) == 5
+
+
+def test_a_step_that_prints_something_else_is_seen(generate, tmp_path):
+    text = "<!-- in 2_function -->\n```console\n$ kinform explain KF000\nnothing\n$ echo $((1 + 1)); false\n```\n"
+    made, _ = generate.story(text, tmp_path)
+    assert "nothing" not in made
+    assert "$ echo $((1 + 1)); false\n2\n[exit code 1]\n```\n" in made
+    assert "KF000" in made and "[exit code 2]\n$ echo" in made
 
 
 def test_the_page_of_rules_is_current():

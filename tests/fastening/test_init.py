@@ -74,7 +74,26 @@ def test_nothing_but_comments_is_proposed(begun):
     ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "mm", "--no-suggest")
     plain = [line for line in ran.stdout.splitlines() if not line.startswith("#")]
     kept = [line for line in (folder / "m.toml").read_text().splitlines() if not line.startswith("#")]
-    assert kept == plain
+    # only the name differs: a manifest that is written is named after its file
+    assert kept == ['name = "m"' if line == 'name = "servo"' and k < 4 else line for k, line in enumerate(plain)]
+
+
+def test_the_evidence_stands_above_each_proposal_and_stays_a_comment(begun):
+    folder, ran = begun
+    lines = (folder / "m.toml").read_text().splitlines()
+    for index in (k for k, line in enumerate(lines) if line == "# [[group]]"):
+        assert lines[index - 1].startswith("## ")
+    assert "4 parts, 2 groups proposed as comments" in ran.stderr
+    assert "kinform run m.toml -o m.h5" in ran.stderr
+
+
+def test_a_unit_that_is_hard_to_believe_is_said_at_once_and_nothing_is_proposed(begun):
+    folder, _ = begun
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "um", "-o", "tiny.toml")
+    assert ran.returncode == 0
+    assert "warning: doubtful: in um the assembly is" in ran.stderr
+    assert "proposed" not in ran.stderr
+    assert "## " not in (folder / "tiny.toml").read_text()
 
 
 def test_the_manifest_alone_goes_to_stdout(begun):

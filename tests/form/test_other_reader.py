@@ -18,4 +18,5 @@ def test_facets_and_volume_agree(path):
     theirs = trimesh.load(path, process=True, force="mesh")
     assert ours.health.facets == len(theirs.faces)
     assert ours.health.watertight == theirs.is_watertight
-    assert ours.health.volume == pytest.approx(theirs.volume, rel=1e-5)
+    if theirs.is_watertight:
+        assert ours.health.volume == pytest.approx(theirs.volume, rel=1e-5)

@@ -64,16 +64,40 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
-    text = form.init_manifest(meshes, units=units, relative_to=folder, fastened=_fastened if suggest else None)
+    name = None if output is None or len(meshes) == 1 else output.stem
+    text = form.init_manifest(
+        meshes, units=units, name=name, relative_to=folder, fastened=_fastened if suggest else _doubted
+    )
     if output is None:
         console.emit(text)
         return
     files.write_text(output, text)
-    console.say(f"{output}: {count(text.count('[[part]]'), 'part')}; complete it, then kinform run {output}")
+    console.say(f"{output}: {count(text.count('[[part]]'), 'part')}{_proposed(text)}")
+    results = output.with_suffix(".h5")
+    console.say(f"complete it (materials, groups, [function]), then: kinform run {output} -o {results}")
+
+
+def _proposed(text: str) -> str:
+    """As in ", 2 groups proposed as comments"; `frame` is an example and nobody's proposal."""
+    many = text.count("# [[group]]") if "\n## " in text else 0
+    return f", {count(many, 'group')} proposed as comments" if many else ""
+
+
+def _doubted(assembly: Assembly) -> list[tuple[list[PartName], str]]:
+    """Nothing is proposed; but a unit that is hard to believe is said at once."""
+    from kinform.form.single import doubts
+
+    for doubt in doubts(assembly):
+        console.warn(doubt)
+    return []
 
 
 def _fastened(assembly: Assembly) -> list[tuple[list[PartName], str]]:
-    """Parts that their contacts suggest are one body."""
+    """Parts that their contacts suggest are one body; none where the unit is doubtful: tolerances depend on it."""
+    from kinform.form.single import doubts
+
+    if doubts(assembly):
+        return _doubted(assembly)
     from kinform import stages
     from kinform.fastening import fastened
     from kinform.model.design import Design

@@ -89,6 +89,8 @@ def run(
     design = outcome.gist
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
+    if not design.assembly.function.stated:
+        console.say("note: no [function] is stated: nothing is compared with what the design is for")
     for note in design.assembly.notes:
         console.say(f"note: {note}")
     from kinform_cli.notes import ground_note

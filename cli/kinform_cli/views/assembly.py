@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
+from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
-from kinform.model.assembly import Assembly, Part
+from kinform.model.assembly import Assembly, Part, Subassembly
 from kinform.model.design import Design
 from kinform_cli.text import count, number
 
@@ -19,7 +20,7 @@ def render(design: Design) -> RenderableType:
     items: list[RenderableType] = [_tree(assembly)]
     if assembly.groups:
         items.append(Text("\nGroups", style="bold"))
-        items += [f"  {group.name}: {', '.join(group.parts)}" for group in assembly.groups]
+        items.append(_groups(assembly))
     if assembly.assumptions:
         items.append(Text("\nAssumed", style="bold"))
         for assumption in assembly.assumptions:
@@ -32,15 +33,29 @@ def render(design: Design) -> RenderableType:
 
 
 def _tree(assembly: Assembly) -> Tree:
-    files = {sub.name: sub.file for sub in assembly.subassemblies}
+    files = {sub.name: _describe_sub(sub) for sub in assembly.subassemblies}
     tree = Tree(
         Text.assemble((assembly.name, "bold"), f"  {count(len(assembly.parts), 'part')}, lengths in {assembly.units}")
     )
     branches: dict[str, Tree] = {"": tree}
+    group_of = {part: group.name for group in assembly.groups for part in group.parts}
     for part in assembly.parts:
         folder, _, leaf = part.name.rpartition("/")
-        _branch(branches, folder, files).add(Text.assemble(leaf, (f"  {_describe(part)}", "dim")))
+        facts = _describe(part)
+        if part.name in group_of:
+            facts += f"; in {group_of[part.name]}"
+        if assembly.ground in (part.name, group_of.get(part.name)):
+            facts += " (ground)"
+        _branch(branches, folder, files).add(Text.assemble(leaf, (f"  {facts}", "dim")))
     return tree
+
+
+def _groups(assembly: Assembly) -> Table:
+    """Names, and beside them the parts: what does not fit in a line goes on below, not under the names."""
+    grid = Table.grid(padding=(0, 2))
+    for group in assembly.groups:
+        grid.add_row(f"  {group.name}", ", ".join(group.parts))
+    return grid
 
 
 def _branch(branches: dict[str, Tree], name: str, files: dict[str, str]) -> Tree:
@@ -49,6 +64,10 @@ def _branch(branches: dict[str, Tree], name: str, files: dict[str, str]) -> Tree
         file = f"  {files[name]}" if name in files else ""
         branches[name] = _branch(branches, above, files).add(Text.assemble((leaf, "bold"), (file, "dim")))
     return branches[name]
+
+
+def _describe_sub(sub: Subassembly) -> str:
+    return sub.file if sub.mobility is None else f"{sub.file}, {count(sub.mobility, 'freedom')} stated"
 
 
 def _describe(part: Part) -> str:

@@ -10,14 +10,14 @@ from rich.text import Text
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
-from kinform_cli import console
 from kinform_cli.tables import Rows
-from kinform_cli.text import Lengths, count, degrees, number, sparkline
+from kinform_cli.text import Lengths, count, degrees, number
+from kinform_cli.views import series
 
 __all__ = ["headline", "render"]
 
-_KEPT = 1e-9
-"""Share of the largest energy below which the balance is as exact as numbers are."""
+_KEPT = 1e-8
+"""Share of the largest energy below which the balance is as exact as the integration is asked to be."""
 
 
 def _known(design: Design) -> Simulation:
@@ -36,7 +36,9 @@ def render(design: Design) -> RenderableType:
             shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
             rows.add(name, kind, *shown, _rate(unit, float(abs(run.joint_velocity[:, column]).max()), lengths))
         items.append(rows)
-        items += _courses(run)
+        drawn = series.render(run, lengths)
+        if drawn is not None:
+            items += ["", drawn]
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += _ranges(run, lengths) + _collisions(run, lengths)
@@ -84,22 +86,15 @@ def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
     return [*out, *(f"collision of {a} and {b} unknown: {why}" for a, b, why in run.uncollided)]
 
 
-def _courses(run: Simulation) -> list[RenderableType]:
-    """The values over time as lines of blocks, where the terminal has them."""
-    rows = Rows("joint", "over time, from lowest to highest")
-    for name, _, _, column in coordinates(run):
-        line = sparkline(run.joint_position[:, column].tolist())
-        if not console.can_show(line):
-            return []
-        rows.add(name, line)
-    return [rows]
-
-
 def _energy(run: Simulation) -> str:
     balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
     lost = float(abs(balance - balance[0]).max())
     exact = lost <= _KEPT * float(abs(run.energy).max())
-    return "energy: the balance holds to rounding" if exact else f"energy: the balance is off by up to {number(lost)} J"
+    return (
+        "energy: the balance holds to eight digits"
+        if exact
+        else f"energy: the balance is off by up to {number(lost)} J"
+    )
 
 
 def _value(unit: str, value: float, lengths: Lengths) -> str:

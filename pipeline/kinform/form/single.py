@@ -21,7 +21,7 @@ from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["init_manifest", "load_meshes"]
+__all__ = ["doubts", "init_manifest", "load_meshes"]
 
 SMALLEST, LARGEST = 1e-3, 100.0
 """Diagonals (m) outside of which a unit is doubted."""
@@ -84,7 +84,7 @@ def init_manifest(
     assembly = load_meshes(paths, units=units, name=name)
     where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
     lines = ["schema = 1", "", "[assembly]", f"name = {_text(assembly.name)}", f"units = {_text(units)}"]
-    lines += [f"# {doubt}" for doubt in _doubts(assembly, units)]
+    lines += [f"# {doubt}" for doubt in doubts(assembly)]
     lines += ['# ground = "…"   # the part or group at rest; else the heaviest body']
     for part in assembly.parts:
         assert part.mesh is not None
@@ -97,9 +97,9 @@ def init_manifest(
     hints = [] if fastened is None else fastened(assembly)
     for parts, evidence in hints or [([part.name for part in assembly.parts[:2]], "")]:
         label = _free(f"{parts[0]}_body" if hints else "frame", taken)
+        lines += [f"## {_text(sentence)[1:-1]}" for sentence in evidence.split("; ") if sentence]
         lines += [
-            "# [[group]]" + (f"   # {_text(evidence)[1:-1]}" if evidence else ""), f"# name = {_text(label)}",
-            f"# parts = [{', '.join(_text(part) for part in parts)}]",
+            "# [[group]]", f"# name = {_text(label)}", f"# parts = [{', '.join(_text(part) for part in parts)}]",
         ]  # fmt: skip
     lines += [
         "", "# What the device is for:", "# [function]", "# mobility = 1", "",
@@ -116,7 +116,9 @@ def _free(name: str, taken: set[str]) -> str:
     return found
 
 
-def _doubts(assembly: Assembly, units: str) -> list[str]:
+def doubts(assembly: Assembly) -> list[str]:
+    """Why the unit of these meshes, not yet placed, is hard to believe, in sentences."""
+    units = assembly.units
     corners = np.concatenate([p.mesh.vertices for p in assembly.parts if p.mesh is not None])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     if SMALLEST <= size <= LARGEST:

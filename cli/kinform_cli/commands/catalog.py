@@ -1,0 +1,183 @@
+"""`kinform catalog`: a folder of designs, and which of them do what is wanted."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from kinform_cli import console, files
+from kinform_cli.options import Debug, Quiet, TableFormat, examples
+from kinform_cli.text import count
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinform.catalog import Catalog, Refused
+
+__all__ = ["COMMANDS", "EXAMPLES", "HELP", "add", "find", "rebuild"]
+
+HELP = "Keep a catalog of designs, and find designs by what they do."
+EXAMPLES = examples(
+    "kinform catalog add designs/",
+    "kinform catalog find --joint revolute --mobility 1",
+    "kinform catalog rebuild",
+)
+
+File = Annotated[
+    Path,
+    typer.Option(
+        "--catalog",
+        "-c",
+        metavar="FILE",
+        envvar="KINFORM_CATALOG",
+        help="The catalog, an SQLite file.",
+    ),
+]
+_DEFAULT = Path("catalog.sqlite")
+
+
+def add(
+    sources: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="DIR|F.h5...", show_default=False, help="Folders, with all below them; or results files."
+        ),
+    ],
+    file: File = _DEFAULT,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Add designs to the catalog: all results files below these folders.
+
+    The catalog is made where there is none; a design that it has is read again.
+    """
+    files.check_text_output(file, inputs=sources)
+    from kinform import catalog
+
+    old = catalog.read(file) if file.exists() else catalog.Catalog()
+    _keep(*catalog.add(old, sources, file.parent), file)
+
+
+def rebuild(file: File = _DEFAULT, quiet: Quiet = False, debug: Debug = False) -> None:
+    """Make the catalog again from the folders and files that were added to it."""
+    from kinform import catalog
+
+    old = catalog.read(file)
+    files.check_text_output(file)
+    _keep(*catalog.rebuild(old, file.parent), file)
+
+
+def _keep(made: Catalog, refused: Sequence[Refused], file: Path) -> None:
+    from kinform import catalog
+
+    catalog.write(made, file)
+    for item in refused:
+        console.warn(f"left out {item.path}: {item.reason}")
+    console.say(f"{file}: {count(len(made.entries), 'design')}")
+
+
+def find(
+    joint: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--joint",
+            metavar="TYPE[:N]",
+            show_default=False,
+            help="Has a joint of this type; revolute:2 exactly two, revolute:2+ at least two. May be repeated.",
+        ),
+    ] = None,
+    joints: Annotated[
+        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Number of joints of any type.")
+    ] = None,
+    mobility: Annotated[
+        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Effective mobility.")
+    ] = None,
+    instantaneous: Annotated[
+        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Instantaneous mobility.")
+    ] = None,
+    loops: Annotated[
+        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Independent kinematic loops.")
+    ] = None,
+    min_mass: Annotated[
+        float | None, typer.Option("--min-mass", metavar="KG", show_default=False, help="Least mass.")
+    ] = None,
+    max_mass: Annotated[
+        float | None, typer.Option("--max-mass", metavar="KG", show_default=False, help="Greatest mass.")
+    ] = None,
+    max_size: Annotated[
+        float | None,
+        typer.Option("--max-size", metavar="METRES", show_default=False, help="Longest side of the box around it."),
+    ] = None,
+    name: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--name",
+            metavar="TEXT",
+            show_default=False,
+            help="Text in the name of the design, its file, a part or a stated joint. May be repeated.",
+        ),
+    ] = None,
+    meets: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--meets", metavar="WHAT", show_default=False, help="Meets its requirements of this kind, or of this name."
+        ),
+    ] = None,
+    verified: Annotated[bool, typer.Option("--verified", help="Only designs that passed the gate.")] = False,
+    file: File = _DEFAULT,
+    format: Annotated[
+        TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
+    ] = TableFormat.table,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Find designs by what they do; everything that is asked must hold.
+
+    The exit code says whether there is an answer (0), not whether a design was found.
+    """
+    for option, value in (("--min-mass", min_mass), ("--max-mass", max_mass), ("--max-size", max_size)):
+        if value is not None and not (math.isfinite(value) and value >= 0):
+            raise typer.BadParameter(f"{value:g} is not a positive number", param_hint=option)
+    from kinform import catalog
+
+    wanted = catalog.Wanted(
+        _joint_counts(joint or []), joints, mobility, instantaneous, loops, min_mass, max_mass, max_size,
+        tuple(name or ()), tuple(meets or ()), verified,
+    )  # fmt: skip
+    found, total = catalog.find(file, wanted)
+    states = [catalog.stale(entry, file.parent) for entry in found]
+    from kinform_cli.views import catalog as view
+
+    if format is TableFormat.json:
+        console.emit(view.as_json(found, states))
+    else:
+        console.out(view.render(found, states, total))
+    if any(states):
+        console.warn(f"results changed since they were added: kinform catalog rebuild --catalog {file}")
+
+
+def _joint_counts(asked: Sequence[str]) -> tuple[tuple[str, int, int | None], ...]:
+    from kinform.catalog import many
+
+    try:
+        return tuple(many(text) for text in asked)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--joint") from None
+
+
+COMMANDS = (
+    ("add", add, examples("kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite")),
+    (
+        "find",
+        find,
+        examples(
+            "kinform catalog find --joint revolute --mobility 1",
+            "kinform catalog find --joint revolute:2+ --loops 1 --max-mass 0.5",
+            "kinform catalog find --name seeker --format json",
+        ),
+    ),
+    ("rebuild", rebuild, examples("kinform catalog rebuild", "kinform catalog rebuild -c robots.sqlite")),
+)

@@ -1,0 +1,93 @@
+"""The series of a simulated run, each as a line with its extremes and when they occur."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.simulation import Simulation
+from kinform.reports.json_views import coordinates
+from kinform_cli.sparks import levels, spark
+from kinform_cli.tables import Rows
+from kinform_cli.text import Lengths, degrees, number
+
+__all__ = ["render"]
+
+_WIDTH = 24
+"""Characters of a line: with the extremes it fits in 80 columns where names are short."""
+_REST = 1e-9
+"""Share of the greatest effort, or energy, below which a series is nothing but rounding."""
+
+_SAME = 1e-6
+"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
+
+Series = tuple[str, NDArray[np.float64], bool]
+"""(name, values (T,), whether they are angles)."""
+
+
+def render(run: Simulation, lengths: Lengths) -> Rows | None:
+    """One row a series; None where nothing was simulated."""
+    series = list(_series(run, lengths))
+    if len(run.time) < 2 or not series:
+        return None
+    end = number(float(run.time[-1]))
+    rows = Rows("series", "lowest", "at s", "highest", "at s", f"0 to {end} s", right=("lowest", "at s", "highest"))
+    for name, values, angles in series:
+        least, most = _extremes(values)
+        rows.add(
+            name,
+            _shown(float(values[least]), angles),
+            number(float(run.time[least])),
+            _shown(float(values[most]), angles),
+            number(float(run.time[most])),
+            spark(values, _WIDTH, levels()),
+        )
+    return rows
+
+
+def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
+    """Where the lowest and the highest are: the first places that are not lower or higher by rounding only."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    same = _SAME * (high - low)
+    return int(np.argmax(values <= low + same)), int(np.argmax(values >= high - same))
+
+
+def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
+    """Positions, then what moves them, then energies; what is not known throughout is left out."""
+    efforts: list[Series] = []
+    for name, _, unit, column in coordinates(run):
+        values = run.joint_position[:, column]
+        angles = unit == "rad"
+        known = f"{name} {lengths.unit}" if unit == "m" else name
+        yield known, values / lengths.metres if unit == "m" else values, angles
+        effort = run.joint_effort[:, column]
+        if np.isfinite(effort).any():
+            efforts.append((f"{name} {'N' if unit == 'm' else 'N·m'}", effort, False))
+    yield from _alive(efforts)
+    yield from _reactions(run)
+    if len(run.energy):
+        energies = [(name, run.energy[:, k], False) for k, name in enumerate(("kinetic J", "potential J"))]
+        yield from _alive([series for series in energies if np.isfinite(series[1]).any()])
+
+
+def _reactions(run: Simulation) -> Iterator[Series]:
+    """Sizes of the forces and torques that joints carry, where the run has them."""
+    wrenches = getattr(run, "F_B", None)
+    if wrenches is None or len(wrenches) != len(run.time) or not np.isfinite(wrenches).any():
+        return
+    for k, name in enumerate(run.joint_names):
+        yield f"{name} |force| N", np.linalg.norm(wrenches[:, k, 3:], axis=1), False
+        yield f"{name} |torque| N·m", np.linalg.norm(wrenches[:, k, :3], axis=1), False
+
+
+def _alive(series: list[Series]) -> list[Series]:
+    """Those that are more than rounding beside the greatest of them."""
+    most = max((float(np.nanmax(np.abs(values))) for _, values, _ in series), default=0.0)
+    return [item for item in series if float(np.nanmax(np.abs(item[1]))) > _REST * most]
+
+
+def _shown(value: float, angles: bool) -> str:
+    return degrees(round(value, 12)) if angles and math.isfinite(value) else number(value)

@@ -1,0 +1,27 @@
+"""A catalog of designs: one SQLite file of what designs do, made from their results files.
+
+It holds nothing that the results files do not say, and can be rebuilt from them at any time.
+"""
+
+from kinform.catalog.build import Refused, add, rebuild
+from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, entry_of
+from kinform.catalog.find import Wanted, find, many, stale
+from kinform.catalog.store import SCHEMA, Catalog, read, write
+
+__all__ = [
+    "SCHEMA",
+    "Catalog",
+    "CatalogJoint",
+    "CatalogRequirement",
+    "Entry",
+    "Refused",
+    "Wanted",
+    "add",
+    "entry_of",
+    "find",
+    "many",
+    "read",
+    "rebuild",
+    "stale",
+    "write",
+]

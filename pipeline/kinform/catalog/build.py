@@ -1,0 +1,128 @@
+"""Fills the catalog from results files, and does so again from what was added before."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from kinform import results
+from kinform.catalog.entry import Entry, entry_of
+from kinform.catalog.store import Catalog
+from kinform.errors import InputError, Problem, ResultsError, StageError
+
+__all__ = ["Refused", "add", "digest_of", "rebuild"]
+
+_ENDINGS = (".h5", ".hdf5")
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A file below a folder that is no design, and why it was left out."""
+
+    path: str
+    reason: str
+
+
+def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> tuple[Catalog, tuple[Refused, ...]]:
+    """The catalog with the designs of these sources: folders, whatever is below them, or results files.
+
+    A design that it had is read again. `folder` is that of the catalog: what is kept are paths relative to
+    it. Files below a folder that are no results of kinform, or of which joints are not known, are left out
+    and listed. Raises InputError for a source that is not there, a folder without any design, and a file that
+    was named and is no design.
+    """
+    problems: list[Problem] = []
+    refused: list[Refused] = []
+    entries: dict[str, Entry] = {}
+    kept = set(catalog.sources)
+    for source in sorted({Path(source) for source in sources}):
+        if source.is_dir():
+            found, left_out = _below(source, folder)
+            refused += left_out
+            if not found:
+                problems.append(_empty(source, left_out))
+            entries |= {entry.path: entry for entry in found}
+        else:
+            try:
+                entry = _entry(source, folder)
+            except _NOT_A_DESIGN as error:
+                problems.append(_problem(error, source))
+                continue
+            entries[entry.path] = entry
+        kept.add(_relative(source, folder))
+    if problems:
+        raise InputError(problems)
+    known = {entry.path: entry for entry in catalog.entries}
+    return Catalog(tuple(sorted(kept)), _sorted((known | entries).values())), tuple(refused)
+
+
+def rebuild(catalog: Catalog, folder: str | Path) -> tuple[Catalog, tuple[Refused, ...]]:
+    """The catalog from nothing but its sources; those that are gone, or hold no design now, are listed."""
+    entries: dict[str, Entry] = {}
+    refused: list[Refused] = []
+    for name in catalog.sources:
+        source = Path(folder) / name
+        if source.is_dir():
+            found, left_out = _below(source, folder)
+            refused += left_out
+            entries |= {entry.path: entry for entry in found}
+            continue
+        try:
+            entry = _entry(source, folder)
+        except _NOT_A_DESIGN as error:
+            refused.append(Refused(name, _problem(error, source).message))
+            continue
+        entries[entry.path] = entry
+    return Catalog(catalog.sources, _sorted(entries.values())), tuple(refused)
+
+
+def digest_of(path: Path) -> str:
+    """SHA-256 of a file, hex."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+_NOT_A_DESIGN = (ResultsError, StageError)
+
+
+def _below(folder: Path, home: str | Path) -> tuple[list[Entry], list[Refused]]:
+    entries, refused = [], []
+    for path in sorted(p for p in folder.rglob("*") if p.suffix.lower() in _ENDINGS and p.is_file()):
+        try:
+            entries.append(_entry(path, home))
+        except _NOT_A_DESIGN as error:
+            refused.append(Refused(_relative(path, home), _problem(error, path).message))
+    return entries, refused
+
+
+def _entry(path: Path, folder: str | Path) -> Entry:
+    design = results.read(path)
+    return entry_of(design, _relative(path, folder), digest_of(path))
+
+
+def _relative(path: Path, folder: str | Path) -> str:
+    return Path(os.path.relpath(os.path.realpath(path), os.path.realpath(folder))).as_posix()
+
+
+def _sorted(entries: Iterable[Entry]) -> tuple[Entry, ...]:
+    return tuple(sorted(entries, key=lambda entry: entry.path))
+
+
+def _problem(error: Exception, path: Path) -> Problem:
+    if isinstance(error, ResultsError):
+        return error.problem
+    remedy = f"kinform joints {path} -o {path}"
+    return Problem("its joints are not known: the catalog lists what designs do", str(path), None, remedy)
+
+
+def _empty(folder: Path, left_out: list[Refused]) -> Problem:
+    why = "; ".join(f"{item.path}: {item.reason}" for item in left_out[:3])
+    return Problem(
+        f"no design is below this folder{': ' + why if why else ''}",
+        str(folder),
+        None,
+        "make results there first: kinform run M.toml -o M.h5",
+    )

@@ -1,0 +1,179 @@
+"""What the catalog keeps of one design. SI and radians, world axes at the pose of the meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.consistency import verdict
+from kinform.errors import StageError
+from kinform.function import resolve
+from kinform.kinematics.graph import forest
+from kinform.model.assembly import Assembly
+from kinform.model.design import Design
+from kinform.model.findings import CheckReport
+from kinform.model.function import IntendedJoint, Requirement
+from kinform.model.kinematics import Joint, Kinematics
+
+__all__ = ["CatalogJoint", "CatalogRequirement", "Entry", "entry_of"]
+
+Triple = tuple[float, float, float]
+
+_UNDECIDED = "KF902"
+"""The rule that lists the requirements that nobody could decide."""
+VERDICTS = ("verified", "findings", "not verified")
+"""By exit code of the gate."""
+
+
+@dataclass(frozen=True)
+class CatalogJoint:
+    """A joint of a design, and what the designer calls it where the function states it."""
+
+    name: str
+    type: str
+    status: str
+    freedoms: int
+    axis: Triple | None
+    point: Triple | None
+    """m."""
+    pitch: float | None
+    """m a turn."""
+    lower: float | None
+    """rad or m; ±inf where unbounded, None where not known."""
+    upper: float | None
+    intended: str | None
+    wanted_lower: float | None
+    """Of the range that the function states, about the designer's axis."""
+    wanted_upper: float | None
+
+
+@dataclass(frozen=True)
+class CatalogRequirement:
+    """A requirement of a design, and whether it is met; None: nobody knows."""
+
+    name: str
+    kind: str
+    met: bool | None
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What one design does."""
+
+    path: str
+    """Of the results file, relative to the folder of the catalog, with slashes."""
+    digest: str
+    """SHA-256 of the results file."""
+    name: str
+    units: str
+    parts: tuple[str, ...]
+    bodies: int
+    instantaneous: int
+    finite: int | None
+    effective: int
+    idle: int
+    loops: int
+    """Independent loops of the graph of bodies and joints."""
+    mass: float | None
+    """kg, of everything; None where that of a part is not known."""
+    size: Triple | None
+    """m, sides of the box around all meshes along the world's axes."""
+    verdict: str | None
+    """verified, findings, not verified; None where it was not checked."""
+    joints: tuple[CatalogJoint, ...]
+    requirements: tuple[CatalogRequirement, ...]
+
+
+def entry_of(design: Design, path: str, digest: str) -> Entry:
+    """The entry of a design whose results file is at `path`. Raises StageError where joints are not known."""
+    kinematics = design.kinematics
+    if kinematics is None:
+        raise StageError("`kinform catalog`", "joints")
+    mobility = kinematics.mobility
+    return Entry(
+        path, digest,
+        name=design.assembly.name,
+        units=design.assembly.units,
+        parts=tuple(str(part.name) for part in design.assembly.parts),
+        bodies=len(kinematics.bodies),
+        instantaneous=mobility.instantaneous,
+        finite=mobility.finite,
+        effective=mobility.effective,
+        idle=mobility.idle,
+        loops=_loops(kinematics),
+        mass=_mass(design),
+        size=_size(design.assembly),
+        verdict=None if design.report is None else VERDICTS[verdict(design.report)],
+        joints=_joints(design.assembly, kinematics),
+        requirements=tuple(_requirement(wanted, design.report) for wanted in design.assembly.function.requirements),
+    )  # fmt: skip
+
+
+def _loops(kinematics: Kinematics) -> int:
+    """Joints less those of a spanning forest."""
+    index = {body.name: k for k, body in enumerate(kinematics.bodies)}
+    edges = [(index[a], index[b]) for a, b in (joint.bodies for joint in kinematics.joints)]
+    return len(edges) - sum(edge >= 0 for edge in forest(len(index), edges, 0).edge) if index else 0
+
+
+def _mass(design: Design) -> float | None:
+    if design.mass is None:
+        return None
+    masses = [part.mass for part in design.mass.parts]
+    known = [mass for mass in masses if mass is not None]
+    return float(sum(known)) if known and len(known) == len(masses) else None
+
+
+def _size(assembly: Assembly) -> Triple | None:
+    corners = []
+    for part in assembly.parts:
+        if part.mesh is not None and len(part.mesh.vertices):
+            corners.append(part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3])
+    return _triple(np.ptp(np.concatenate(corners), axis=0)) if corners else None
+
+
+def _joints(assembly: Assembly, kinematics: Kinematics) -> tuple[CatalogJoint, ...]:
+    stated: dict[str, IntendedJoint] = {}
+    for intended in assembly.function.joints:
+        found = resolve(assembly, kinematics, intended.name).joint
+        if found is not None:
+            stated.setdefault(str(found.name), intended)
+    out = []
+    for joint in kinematics.joints:
+        wanted = stated.get(joint.name)
+        limits = (None, None) if wanted is None or wanted.range is None else wanted.range
+        out.append(
+            CatalogJoint(
+                str(joint.name), joint.type, joint.status, joint.freedoms,
+                _triple(joint.axis), _triple(joint.point), joint.pitch, *_range(joint),
+                None if wanted is None else wanted.name, *limits,
+            )
+        )  # fmt: skip
+    return tuple(out)
+
+
+def _range(joint: Joint) -> tuple[float | None, float | None]:
+    if joint.range_status == "unbounded":
+        return -np.inf, np.inf
+    return joint.range_lower, joint.range_upper
+
+
+def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequirement:
+    """Met only where the gate decided it and found nothing, be it accepted; what it did not look at is not known."""
+    if report is None or not any(rule.code == _UNDECIDED and rule.outcome != "skipped" for rule in report.rules):
+        return CatalogRequirement(wanted.name, wanted.kind, None)
+    accepted = (item.finding for item in getattr(report, "ignored", ()))
+    own = {
+        finding.code
+        for finding in (*report.findings, *accepted)
+        if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
+    }
+    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in own else not own)
+
+
+def _triple(values: object) -> Triple | None:
+    if values is None:
+        return None
+    x, y, z = (float(value) + 0.0 for value in np.asarray(values))
+    return (x, y, z)

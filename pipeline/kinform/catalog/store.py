@@ -1,0 +1,179 @@
+"""The catalog as an SQLite file, which any program that reads SQLite can ask more of.
+
+The file is always written whole, from nothing, in one order: the same designs give the same bytes, and a
+reader never sees half of it. Infinite ends of ranges are kept as ±9e999, as SQLite writes them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import sqlite3
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
+from kinform.errors import InputError, Problem
+from kinform.results import _store
+
+__all__ = ["SCHEMA", "Catalog", "opened", "read", "write"]
+
+SCHEMA = "kinform/catalog/1"
+
+_TABLES = """
+CREATE TABLE catalog (schema TEXT NOT NULL);
+CREATE TABLE sources (path TEXT PRIMARY KEY) WITHOUT ROWID;
+CREATE TABLE designs (
+  path TEXT PRIMARY KEY, digest TEXT NOT NULL, name TEXT NOT NULL, units TEXT NOT NULL,
+  bodies INTEGER NOT NULL, instantaneous INTEGER NOT NULL, finite INTEGER, effective INTEGER NOT NULL,
+  idle INTEGER NOT NULL, loops INTEGER NOT NULL, mass REAL, size_x REAL, size_y REAL, size_z REAL, verdict TEXT
+) WITHOUT ROWID;
+CREATE TABLE parts (design TEXT NOT NULL REFERENCES designs, name TEXT NOT NULL, PRIMARY KEY (design, name))
+  WITHOUT ROWID;
+CREATE TABLE joints (
+  design TEXT NOT NULL REFERENCES designs, name TEXT NOT NULL, type TEXT NOT NULL, status TEXT NOT NULL,
+  freedoms INTEGER NOT NULL, axis_x REAL, axis_y REAL, axis_z REAL, point_x REAL, point_y REAL, point_z REAL,
+  pitch REAL, lower REAL, upper REAL, intended TEXT, wanted_lower REAL, wanted_upper REAL,
+  PRIMARY KEY (design, name)
+) WITHOUT ROWID;
+CREATE TABLE requirements (
+  design TEXT NOT NULL REFERENCES designs, name TEXT NOT NULL, kind TEXT NOT NULL, met INTEGER,
+  PRIMARY KEY (design, name)
+) WITHOUT ROWID;
+"""
+_SIGNATURE = b"SQLite format 3\0"
+
+
+@dataclass(frozen=True)
+class Catalog:
+    """Sources (folders and results files that were added) and designs, both relative to the catalog's folder."""
+
+    sources: tuple[str, ...] = ()
+    entries: tuple[Entry, ...] = ()
+
+
+def read(path: str | Path) -> Catalog:
+    """The catalog at `path`. Raises InputError when there is none, or it is something else."""
+    with opened(path) as database:
+        sources = tuple(row[0] for row in database.execute("SELECT path FROM sources ORDER BY path"))
+        rows = database.execute("SELECT * FROM designs ORDER BY path").fetchall()
+        return Catalog(sources, tuple(entry_from(database, row) for row in rows))
+
+
+def write(catalog: Catalog, path: str | Path) -> None:
+    """Write the catalog in one step. Raises InputError where `path` holds something else, or is not writable."""
+    if Path(path).exists() and Path(path).stat().st_size:
+        with opened(path):
+            pass
+    _store.replace(path, _bytes(catalog))
+
+
+@contextlib.contextmanager
+def opened(path: str | Path) -> Iterator[sqlite3.Connection]:
+    """The database, open for reading. Raises InputError when there is none, or it is no catalog."""
+    database = _opened(Path(path))
+    try:
+        yield database
+    except sqlite3.DatabaseError as error:
+        raise _refuse(path, f"the catalog is damaged: {error}", "delete it, and add the designs again") from error
+    finally:
+        database.close()
+
+
+def _opened(path: Path) -> sqlite3.Connection:
+    make = "make one: kinform catalog add DIR"
+    try:
+        with path.open("rb") as stream:
+            signature = stream.read(len(_SIGNATURE))
+    except FileNotFoundError:
+        raise _refuse(path, "there is no such catalog", f"{make}, or name one with --catalog") from None
+    except OSError as error:
+        raise _refuse(path, f"cannot be read: {error.strerror or error}", "name a catalog with --catalog") from None
+    other = "this is not a catalog of kinform", "name another file with --catalog"
+    if signature != _SIGNATURE:
+        raise _refuse(path, *other)
+    database = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
+    try:
+        found = database.execute("SELECT schema FROM catalog").fetchall()
+    except sqlite3.DatabaseError:
+        database.close()
+        raise _refuse(path, *other) from None
+    if found != [(SCHEMA,)]:
+        database.close()
+        schema = found[0][0] if found else "none"
+        raise _refuse(path, f"the catalog has the schema {schema}; this kinform reads {SCHEMA}", "make it again")
+    database.row_factory = sqlite3.Row
+    database.create_function("fold", 1, lambda text: "" if text is None else str(text).casefold(), deterministic=True)
+    return database
+
+
+def entry_from(database: sqlite3.Connection, row: sqlite3.Row) -> Entry:
+    """The entry of one row of `designs`."""
+    own = (row["path"],)
+    parts = database.execute("SELECT name FROM parts WHERE design = ? ORDER BY name", own)
+    joints = database.execute("SELECT * FROM joints WHERE design = ? ORDER BY name", own)
+    wanted = database.execute("SELECT name, kind, met FROM requirements WHERE design = ? ORDER BY name", own)
+    plain = (
+        "path", "digest", "name", "units", "bodies", "instantaneous", "finite", "effective", "idle", "loops", "mass",
+        "verdict",
+    )  # fmt: skip
+    return Entry(
+        **{key: row[key] for key in plain},
+        size=_triple(row, "size"),
+        parts=tuple(part[0] for part in parts),
+        joints=tuple(_joint(joint) for joint in joints),
+        requirements=tuple(
+            CatalogRequirement(name, kind, None if met is None else bool(met)) for name, kind, met in wanted
+        ),
+    )
+
+
+def _joint(row: sqlite3.Row) -> CatalogJoint:
+    plain = (
+        "name", "type", "status", "freedoms", "pitch", "lower", "upper", "intended", "wanted_lower", "wanted_upper",
+    )  # fmt: skip
+    return CatalogJoint(**{key: row[key] for key in plain}, axis=_triple(row, "axis"), point=_triple(row, "point"))
+
+
+def _triple(row: sqlite3.Row, name: str) -> Triple | None:
+    x, y, z = (row[f"{name}_{letter}"] for letter in "xyz")
+    return None if x is None else (x, y, z)
+
+
+def _bytes(catalog: Catalog) -> bytes:
+    database = sqlite3.connect(":memory:")
+    with contextlib.closing(database):
+        database.executescript(_TABLES)
+        with database:
+            _insert(database, "catalog", [(SCHEMA,)])
+            _insert(database, "sources", [(path,) for path in sorted(catalog.sources)])
+            for entry in sorted(catalog.entries, key=lambda e: e.path):
+                _insert_entry(database, entry)
+        return bytes(database.serialize())
+
+
+def _insert_entry(database: sqlite3.Connection, entry: Entry) -> None:
+    nothing = (None, None, None)
+    counts = (entry.bodies, entry.instantaneous, entry.finite, entry.effective, entry.idle, entry.loops)
+    head = (entry.path, entry.digest, entry.name, entry.units, *counts)
+    _insert(database, "designs", [(*head, entry.mass, *(entry.size or nothing), entry.verdict)])
+    _insert(database, "parts", [(entry.path, part) for part in sorted(set(entry.parts))])
+    joints = [
+        (
+            entry.path, j.name, j.type, j.status, j.freedoms, *(j.axis or nothing), *(j.point or nothing), j.pitch,
+            j.lower, j.upper, j.intended, j.wanted_lower, j.wanted_upper,
+        )
+        for j in sorted(entry.joints, key=lambda j: j.name)
+    ]  # fmt: skip
+    _insert(database, "joints", joints)
+    wanted = sorted(entry.requirements, key=lambda r: r.name)
+    _insert(database, "requirements", [(entry.path, r.name, r.kind, r.met) for r in wanted])
+
+
+def _insert(database: sqlite3.Connection, table: str, rows: list[tuple[object, ...]]) -> None:
+    if rows:
+        database.executemany(f"INSERT INTO {table} VALUES ({', '.join('?' * len(rows[0]))})", rows)
+
+
+def _refuse(path: str | Path, message: str, remedy: str) -> InputError:
+    return InputError([Problem(message, str(path), None, remedy)])
