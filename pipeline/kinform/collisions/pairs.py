@@ -34,6 +34,8 @@ PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
 SAMPLES = 16
 """Ends of crossing segments between which the depth is looked for."""
+GRID = 12
+"""Points along the side of a facet that are asked whether they are inside the other part."""
 LEAST = 2e-5
 """Share of the smaller part's diagonal that counts as no depth: what vertices may be off their surfaces."""
 INSIDE = 40
@@ -235,6 +237,22 @@ class PairTest:
         middle = X[:3, :3] @ self._meshes[1].vertices[self._meshes[1].faces[g]].mean(axis=0) + X[:3, 3]
         normal = cross(corners[1] - corners[0], corners[2] - corners[0])
         return float(normal @ (middle - corners[0])) / max(float(np.linalg.norm(normal)), 1e-300)
+
+    def inside(self, D: Array, f: int, g: int, least: float) -> bool:
+        """Whether points of one of two facets that count are deeper than `least` (m) inside the other part."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        grid = np.array([(a, b, GRID - a - b) for a in range(GRID + 1) for b in range(GRID + 1 - a)]) / GRID
+        own = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        far = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
+        for name, points in (
+            (self.names[1], (own - X[:3, 3]) @ X[:3, :3]),
+            (self.names[0], far @ X[:3, :3].T + X[:3, 3]),
+        ):
+            index = self._shapes.index(name)
+            deep = points[index.whole().depths(points)[0] > least]
+            if len(deep) and index.contains(deep).any():
+                return True
+        return False
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""

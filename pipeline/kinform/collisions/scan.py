@@ -74,10 +74,11 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
                 return search.narrow(left, right, fine)
             search.muted = True
         if search.through(left, right):
-            if right - left <= fine:
+            if right - left > fine:
+                stack.append(0.5 * (left + right))
+                continue
+            if search.goes_in(left, end, resolution):
                 return search.flat(left, right)
-            stack.append(0.5 * (left + right))
-            continue
         left = stack.pop()
         search.pass_(left)
     return First(None, None, None, search.overlaps)
@@ -128,6 +129,13 @@ class _Search:
         if before.distance <= 0.0 and abs(heights[0]) <= least:
             return heights[1] < -least
         return heights[0] > least >= heights[1]
+
+    def goes_in(self, s: float, end: float, step: float) -> bool:
+        """Whether the faces that pass each other at s are inside the parts a step later."""
+        nearest = self.state(s).nearest
+        further = self._after(s, step, end)
+        way = self.course.travel(further) - self.course.travel(s)
+        return self.test.inside(self.course.displacement(further), *nearest, 0.4 * way)
 
     def flat(self, left: float, right: float) -> First:
         """Where faces meet flat."""
