@@ -249,14 +249,16 @@ def test_names_that_are_programs_do_nothing(browser, nasty, page_of, tmp_path):
     assert browser.said == []
 
 
-def test_the_page_prints(shown):
-    shown.ask("Emulation.setEmulatedMedia", media="print")
-    hidden = shown.run(
-        "['.tools', 'nav', '.tabs'].every((s) => getComputedStyle(document.querySelector(s)).display === 'none')"
-    )
-    assert hidden
+def test_the_page_prints_dark_on_white_without_its_controls(shown):
+    dark = [{"name": "prefers-color-scheme", "value": "dark"}]
+    shown.ask("Emulation.setEmulatedMedia", media="print", features=dark)
+    shown.settle()
+    hidden = "['.tools', 'nav', '.tabs'].every((s) => getComputedStyle(document.querySelector(s)).display === 'none')"
+    assert shown.run(hidden)
+    assert shown.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert drawn(shown)[2, 2].tolist() == [255, 255, 255]
     data = base64.b64decode(shown.ask("Page.printToPDF", printBackground=True)["data"])
-    shown.ask("Emulation.setEmulatedMedia", media="")
+    shown.ask("Emulation.setEmulatedMedia", media="", features=[])
     assert data.startswith(b"%PDF")
     assert len(data) > 20_000
 
