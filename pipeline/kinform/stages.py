@@ -17,6 +17,8 @@ from kinform.ledger import Ledger
 from kinform.model.assembly import Assembly
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
+from kinform.model.kinematics import Kinematics
+from kinform.model.simulation import Simulation
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
@@ -103,19 +105,40 @@ def simulate(
     design: Design,
     *,
     level: str | None = None,
+    ranges: bool = True,
     progress: Progress | None = None,
+    say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
 ) -> Design:
-    """Motion at the level that is known, or at `level`. Raises StageError without mass properties."""
+    """Motion at the level that is known, or at `level`, with what the parts collide with in it; and, unless `ranges`
+    is False, how far each joint goes. Raises StageError without mass properties.
+
+    `say` is told what takes long besides the steps that `progress` counts.
+    """
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
 
     def run(view: Assembly) -> Any:
         from kinform import simulation
 
-        return simulation.simulate(view, kinematics, masses, level=level, progress=progress)
+        run = simulation.simulate(view, kinematics, masses, level=level, progress=progress, say=say)
+        return _collided(view, design, kinematics, run, ranges)
 
-    return _advance("simulation", design, run, ledger, level)
+    return _advance("simulation", design, run, ledger, level, ranges)
+
+
+def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simulation, ranges: bool) -> Simulation:
+    """The run with its collisions and the ranges of joints, as far as there are meshes."""
+    if not design.surfaces or all(part.mesh is None for part in view.parts):
+        return run
+    from kinform import collisions
+
+    if len(run.time) > 1:
+        met, untested = collisions.along(view, design.surfaces, design.contacts, kinematics, run)
+        run = replace(run, collisions=met, uncollided=untested)
+    if ranges:
+        run = replace(run, ranges=collisions.ranges(view, design.surfaces, design.contacts, kinematics))
+    return run
 
 
 def check(design: Design, *, ledger: Ledger | None = None) -> Design:
@@ -165,13 +188,14 @@ def _advance(
     compute: Callable[[Assembly], Any],
     ledger: Ledger | None,
     level: str | None = None,
+    ranges: bool = True,
 ) -> Design:
     """The design with the result of the stage: the earlier one where nothing changed, else a new one."""
     from kinform.results import fingerprints, inputs
 
     ledger = ledger or Ledger()
     start = _without(design, stage)
-    found = fingerprints.of_stage(stage, start, level)
+    found = fingerprints.of_stage(stage, start, level, ranges)
     mark = fingerprints.mark(stage, found)
     previous = ledger.previous
     result = None if previous is None else getattr(previous, _FIELDS[stage])

@@ -27,7 +27,9 @@ def test_the_console_script_is_the_entry() -> None:
 
 
 def test_the_commands_are_those_of_the_contract_so_far() -> None:
-    assert COMMANDS == sorted("import contacts joints mass simulate check run show query explain init schema".split())
+    assert COMMANDS == sorted(
+        "import contacts joints mass simulate check run show query export explain init schema".split()
+    )
 
 
 def test_version_is_that_of_the_package(kinform: Callable[..., Ran]) -> None:

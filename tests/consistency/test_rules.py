@@ -97,10 +97,10 @@ WRONG = {
 UNDECIDED = {
     "KF901": lambda d: changed_joint(d, status="ambiguous", reason="singular value 0.001"),
     "KF902": lambda d: changed_function(
-        d, requirements=(Requirement("light", "mass", {"maximum": 1.0}, "m.toml", 40),)
+        d, requirements=(Requirement("weak", "torque", {"joint": "swing", "limit": 1.0}, "m.toml", 40),)
     ),
     "KF903": lambda d: changed_function(d, couplings=(Coupling(("swing", "swing"), 2.0, "m.toml", 40),)),
-    "KF904": lambda d: changed_intent(d, range=(-1.0, 1.0)),
+    "KF904": lambda d: replace(changed_intent(d, range=(-1.0, 1.0)), simulation=replace(d.simulation, ranges=None)),
     "KF905": lambda d: changed_function(
         d, loads=(Load("shaft", np.array([0.0, 0.0, 1.0]), None, None, "world", "m.toml", 40),)
     ),

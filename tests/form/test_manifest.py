@@ -66,6 +66,33 @@ def test_ranges_pitches_and_requirements_come_in_si(tmp_path):
     assert assembly.function.requirements[0].values["limit"] == pytest.approx(0.1)
 
 
+def test_paths_regions_and_poses_of_requirements_come_in_si_and_the_world(tmp_path):
+    (tmp_path / "p.csv").write_text("t,x,y,z,qw,qx,qy,qz\n0,1000,0,0,1,0,0,0\n\n2,0,1000,0,0,0,0,2\n")
+    text = (
+        TWO
+        + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "prismatic"\naxis = [0, 0, 1]\n'
+        + '[[function.require]]\nname = "f"\nkind = "follow"\npart = "b"\npoint = [1, 2, 3]\npath = "p.csv"\n'
+        + "tolerance = 0.5\n"
+        + '[[function.require]]\nname = "r"\nkind = "reach"\npart = "b"\npoint = [0, 0, 5]\n'
+        + 'region = {type = "box", lower = [0, 0, 0], upper = [10, 20, 30]}\n'
+        + '[[function.require]]\nname = "h"\nkind = "hold"\njoint = "j"\nlimit = 3\nposes = [{j = 7}]\n'
+        + '[[function.require]]\nname = "k"\nkind = "retained"\npart = "b"\n'
+    )
+    follow, reach, hold, retained = read(tmp_path, text).function.requirements
+    assert follow.values["rows"] == [
+        pytest.approx([0, 1, 0, 0, 1, 0, 0, 0], abs=1e-15), pytest.approx([2, 0, 1, 0, 0, 0, 0, 1], abs=1e-15),
+    ]  # fmt: skip
+    assert (follow.values["path"], follow.values["tolerance"]) == ("p.csv", 0.0005)
+    assert reach.values["region"]["upper"] == pytest.approx([0.01, 0.02, 0.03])
+    assert reach.values["region"]["X_WF"] == np.eye(4).tolist()
+    assert hold.values["poses"] == [{"j": pytest.approx(0.007)}]
+    assert retained.values["directions"] == []
+    (tmp_path / "p.csv").write_text("0,1,0,0\n1,2\n1,x,0,0\n0,1,1,1\n")
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    assert [(p.file, p.line) for p in caught.value.problems] == [("p.csv", 2), ("p.csv", 3), ("p.csv", 4)]
+
+
 def test_a_table_law_is_read_and_its_faults_have_lines(tmp_path):
     joint = (
         '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "revolute"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\n'

@@ -76,7 +76,7 @@ def by_type(hint: Any) -> st.SearchStrategy[Any]:
         values = json_values if arguments[1] is Any else by_type(arguments[1]).filter(lambda value: value == value)
         return st.dictionaries(texts, values, max_size=3)
     if origin is np.ndarray:
-        return array(3)
+        return hnp.arrays(np.bool_, 3) if typing.get_args(arguments[1]) == (np.bool_,) else array(3)
     if dataclasses.is_dataclass(hint):
         return SPECIAL[hint]() if hint in SPECIAL else of(hint)
     return {str: texts, float: reals, int: integers, bool: st.booleans()}[hint]
@@ -176,7 +176,7 @@ def simulations(draw: Any) -> Simulation:
     }
     arrays = {"time": array(t), "p_WB": array(t, b, 3), "q_WB": array(t, b, 4), "joint_offset": whole(j + 1)}
     values = {name: array(t, n) for name in ("joint_position", "joint_velocity", "joint_effort")}
-    monitors = {"energy": array(t, 3), "residual": array(t), "rank": whole(t)}
+    monitors = {"energy": array(t, 3), "residual": array(t), "rank": whole(t), "balance": array(t)}
     return draw(of(Simulation, **named, **arrays, **values, **monitors))
 
 

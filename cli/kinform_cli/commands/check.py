@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinform_cli import files
+from kinform_cli import console, files
+from kinform_cli.errors import refuse
 from kinform_cli.gate import conclude
 from kinform_cli.options import Debug, FailOn, FindingsFormat, Quiet, Results, Severity, examples
 from kinform_cli.progress import Working
+from kinform_cli.text import count
+
+if TYPE_CHECKING:
+    from kinform.model.findings import CheckReport
 
 __all__ = ["EXAMPLES", "check"]
 
@@ -19,6 +25,8 @@ EXAMPLES = examples(
     "kinform check e.h5 --format concise --fail-on warning",
     "kinform check e.h5 --format json > findings.json",
     "kinform check e.h5 -o e.h5        # keep the findings in the file",
+    "kinform check e.h5 --write-baseline b.json",
+    "kinform check e.h5 --baseline b.json     # only what is new counts",
 )
 
 
@@ -38,6 +46,16 @@ def check(
         FindingsFormat.full
     ),
     fail_on: FailOn = Severity.error,
+    baseline: Annotated[
+        Path | None,
+        typer.Option("--baseline", metavar="B.json", show_default=False, help="Findings of this file do not count."),
+    ] = None,
+    write_baseline: Annotated[
+        Path | None,
+        typer.Option(
+            "--write-baseline", metavar="B.json", show_default=False, help="Write today's findings as a baseline."
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -49,11 +67,40 @@ def check(
     """
     if output is not None:
         files.check_output(output)
+    if write_baseline is not None:
+        files.check_text_output(write_baseline, inputs=[source])
     from kinform import results, stages
+    from kinform.consistency import adopt
 
     design = files.read(source)
     with files.needing(source), Working("check"):
         design = stages.check(design)
     if output is not None:
         results.write(design, output)
-    conclude(design, format, fail_on)
+    report = design.report
+    assert report is not None
+    if baseline is not None:
+        report = _without_adopted(report, baseline)
+    if write_baseline is not None:
+        adopted = adopt(report)
+        files.write_text(write_baseline, adopted.text())
+        console.say(f"{count(len(adopted.keys), 'finding')} written to {write_baseline}")
+    conclude(replace(design, report=report), format, fail_on)
+
+
+def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
+    """The report without what the baseline adopts; says on stderr what of it is gone."""
+    from kinform.consistency import read_baseline, with_baseline
+    from kinform.reports.words import one_line
+
+    try:
+        text = baseline.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        told = getattr(error, "strerror", None) or "is not UTF-8 text"
+        remedy = "write it first: kinform check F.h5 --write-baseline B.json"
+        raise refuse(f"the baseline cannot be read: {told}", file=baseline, remedy=remedy) from None
+    left, gone = with_baseline(report, read_baseline(text, str(baseline)))
+    console.say(f"{count(len(left.ignored) - len(report.ignored), 'finding')} of the baseline {baseline.name}")
+    for code, subject in gone:
+        console.say(f"no longer found: {code} {one_line(', '.join(subject))}: write the baseline anew")
+    return left

@@ -84,6 +84,7 @@ def run(
             progress=lambda stage, done, total: _show(working, stage, done, total),
             allow_outside=allow_outside,
             units=units,
+            say=console.say,
         )
     design = outcome.design
     if depfile is not None and output is not None:

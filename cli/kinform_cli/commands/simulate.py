@@ -16,6 +16,7 @@ __all__ = ["EXAMPLES", "Level", "simulate"]
 EXAMPLES = examples(
     "kinform simulate d.h5 -o e.h5",
     "kinform simulate d.h5 -o e.h5 --level kinematic",
+    "kinform simulate d.h5 -o e.h5 --no-ranges",
     "kinform show e.h5 simulation",
 )
 
@@ -39,6 +40,10 @@ def simulate(
             help="Force a level; else the one that the manifest states, else the highest that is known.",
         ),
     ] = None,
+    ranges: Annotated[
+        bool,
+        typer.Option("--ranges/--no-ranges", help="Find how far each joint goes until parts meet."),
+    ] = True,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
@@ -53,7 +58,8 @@ def simulate(
 
     design = files.read(source)
     with files.needing(source), Working("simulation") as progress:
-        design = stages.simulate(design, level=None if level is None else level.value, progress=progress)
+        wanted = None if level is None else level.value
+        design = stages.simulate(design, level=wanted, ranges=ranges, progress=progress, say=console.say)
     results.write(design, output)
     found = design.simulation
     assert found is not None

@@ -41,6 +41,7 @@ def render(design: Design) -> RenderableType:
             items += ["", drawn]
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
+    items += _ranges(run, lengths) + _collisions(run, lengths)
     items += [f"assumed: {sentence}" for sentence in run.assumptions]
     items += [f"failed: {subject}: {message}" for subject, message in run.failures]
     return Group(*items)
@@ -57,6 +58,32 @@ def headline(run: Simulation) -> str:
     level = f", {run.level} level" if run.level else ""
     extent = f"{number(float(run.time[-1]))} s in {count(len(run.time), 'sample')}"
     return f"Simulation {run.status}{level}, {extent}{why}"
+
+
+def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
+    """How far each joint goes to both sides, and what stops it."""
+    if not run.ranges:
+        return []
+    rows = Rows("joint", "from", "to", "stopped by", title="ranges until parts meet", right=("from", "to"))
+    reasons = []
+    for item in run.ranges:
+        unit = "m" if item.slides else "rad"
+        ends = (item.lower, item.upper)
+        shown = [end.status if end.value is None else _value(unit, end.value, lengths) for end in ends]
+        stops = ["/".join(end.parts) or ("dead point" if end.status == "found" else "") for end in ends]
+        rows.add(item.joint, *shown, ", ".join(dict.fromkeys(stop for stop in stops if stop)))
+        why = dict.fromkeys(end.reason for end in ends if end.status == "unknown")
+        reasons += [f"range of {item.joint} unknown: {reason}" for reason in why]
+    return [rows, *reasons]
+
+
+def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
+    """First contacts in the order of time, and the pairs of which nothing is known."""
+    out = [
+        f"collision: {' and '.join(item.parts)} at t = {number(item.time)} s, at {lengths.point(item.place)} {lengths.unit}"
+        for item in run.collisions or ()
+    ]
+    return [*out, *(f"collision of {a} and {b} unknown: {why}" for a, b, why in run.uncollided)]
 
 
 def _energy(run: Simulation) -> str:

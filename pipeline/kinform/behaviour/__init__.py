@@ -13,8 +13,12 @@ from kinform.behaviour.build import Behaviour, build
 from kinform.behaviour.components import (
     Actor,
     Component,
+    Controller,
     Damper,
+    DcMotor,
     EffortDrive,
+    EndStop,
+    Gear,
     Ground,
     JointComponent,
     LoadComponent,
@@ -22,8 +26,12 @@ from kinform.behaviour.components import (
     Node,
     Port,
     RigidBody,
+    Servo,
     Spring,
+    SpringDamper,
     System,
+    VoltageController,
+    VoltageSource,
 )
 from kinform.behaviour.count import Count, count
 from kinform.behaviour.signals import Constant, Signal, signal, smooth
@@ -34,9 +42,13 @@ __all__ = [
     "Behaviour",
     "Component",
     "Constant",
+    "Controller",
     "Count",
     "Damper",
+    "DcMotor",
     "EffortDrive",
+    "EndStop",
+    "Gear",
     "Ground",
     "JointComponent",
     "LoadComponent",
@@ -44,9 +56,13 @@ __all__ = [
     "Node",
     "Port",
     "RigidBody",
+    "Servo",
     "Signal",
     "Spring",
+    "SpringDamper",
     "System",
+    "VoltageController",
+    "VoltageSource",
     "build",
     "count",
     "one_freedom",
@@ -54,4 +70,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2

@@ -8,16 +8,20 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinform.behaviour.components import (
-    Actor,
+    Component,
+    Controller,
     Damper,
+    DcMotor,
     EffortDrive,
     Gear,
     JointComponent,
     LoadComponent,
     MotionDrive,
+    Servo,
     Spring,
+    VoltageSource,
 )
-from kinform.behaviour.signals import Signal, signal
+from kinform.behaviour.signals import Constant, Signal, signal
 from kinform.function import resolve
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
@@ -51,30 +55,36 @@ def one_freedom(
 
 def make_drive(
     assembly: Assembly, kinematics: Kinematics, joints: Joints, drive: Drive, number: int
-) -> tuple[Actor | None, str, str, bool]:
-    """(component, joint, why not, whether it would act by force only)."""
+) -> tuple[tuple[Component, ...], str, str, bool]:
+    """(components, joint, why there are none, whether they would act by force only)."""
     by_force = drive.kind != "motion"
     joint, sign, why = one_freedom(assembly, kinematics, joints, drive.joint)
     if joint is None:
-        return None, "", why, False
+        return (), "", why, False
     try:
-        return _actor(drive, joint, sign, f"drive {number} {drive.joint}"), joint.subject, "", by_force
+        return _actors(drive, joint, sign, f"drive {number} {drive.joint}"), joint.subject, "", by_force
     except ValueError as error:
-        return None, joint.subject, f"{drive.kind} drive: {error}", by_force
+        return (), joint.subject, f"{drive.kind} drive: {error}", by_force
 
 
-def _actor(drive: Drive, joint: JointComponent, sign: int, name: str) -> Actor:
-    """Raises ValueError with what is missing or not modelled."""
+def _actors(drive: Drive, joint: JointComponent, sign: int, name: str) -> tuple[Component, ...]:
+    """The drive on the shaft first, then what supplies it. Raises ValueError with what is missing."""
     scale = drive.scale(joint.kind.coordinates[0][1])
     if drive.kind == "motion":
-        return MotionDrive(name, drive.joint, _signal(drive, sign * scale))
+        return (MotionDrive(name, drive.joint, _signal(drive, sign * scale)),)
     if drive.kind == "effort":
-        return EffortDrive(name, drive.joint, _signal(drive, float(sign)))
+        return (EffortDrive(name, drive.joint, _signal(drive, float(sign))),)
     if drive.kind == "spring":
         rest = sign * scale * drive.parameters.get("rest", 0.0)
-        return Spring(name, drive.joint, _number(drive, "stiffness"), rest)
+        return (Spring(name, drive.joint, _number(drive, "stiffness"), rest),)
     if drive.kind == "damper":
-        return Damper(name, drive.joint, _number(drive, "damping"))
+        return (Damper(name, drive.joint, _number(drive, "damping")),)
+    if drive.kind == "servo":
+        gains = {key: _number(drive, key, 0.0) for key in ("ki", "kd")}
+        controller = Controller(_number(drive, "kp"), **gains, limit=_limit(drive))
+        return (Servo(name, drive.joint, _signal(drive, sign * scale), controller),)
+    if drive.kind == "dc_motor":
+        return _motor(drive, sign, name)
     raise ValueError("this kind is not simulated")
 
 
@@ -84,8 +94,23 @@ def _signal(drive: Drive, scale: float) -> Signal:
     return signal(drive.law, scale)
 
 
-def _number(drive: Drive, key: str) -> float:
-    value = drive.parameters.get(key)
+def _motor(drive: Drive, sign: int, name: str) -> tuple[Component, ...]:
+    """The motor and the source of its voltage, which has the designer's sense."""
+    resistance, constant = _number(drive, "resistance"), _number(drive, "constant")
+    inductance, gear = _number(drive, "inductance", 0.0), _number(drive, "gear", 1.0)
+    if resistance <= 0.0 or inductance < 0.0:
+        raise ValueError("its resistance must be positive, its inductance not negative")
+    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear)
+    voltage = signal(drive.law, float(sign)) if drive.law is not None else Constant(sign * _number(drive, "voltage"))
+    return motor, VoltageSource(f"voltage of {name}", drive.joint, voltage)
+
+
+def _limit(drive: Drive) -> float:
+    return _number(drive, "limit") if "limit" in drive.parameters else math.inf
+
+
+def _number(drive: Drive, key: str, default: float | None = None) -> float:
+    value = drive.parameters.get(key, default)
     if value is None or not math.isfinite(value):
         raise ValueError(f"its {key} is not stated")
     return value

@@ -77,18 +77,18 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
     for joint in kinematics.joints:
         if joint.type == "general" and joint.freedoms == 6:
             continue
-        component, why = _joint(joint)
-        if component is None:
+        made, why = _joint(joint)
+        if made is None:
             failures.append((joint.name, why))
             continue
         first, second = (f"body {name}" for name in joint.bodies)
-        builder.add(component, a=first, b=second, shaft=f"shaft {joint.name}")
+        builder.add(made, a=first, b=second, shaft=f"shaft {joint.name}")
     modelled = {c.subject: c for c in builder.components if isinstance(c, JointComponent)}
     for number, drive in enumerate(assembly.function.drives, start=1):
-        actor, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number)
-        if actor is not None:
-            builder.add(actor, shaft=f"shaft {joint_name}")
-        else:
+        actors, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number)
+        for component in actors:
+            builder.add(component, shaft=f"shaft {joint_name}", terminals=f"terminals {number}")
+        if not actors:
             (forces_missing if by_force else failures).append((drive.joint, why))
     if gears:
         for number, coupling in enumerate(assembly.function.couplings, start=1):

@@ -10,13 +10,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour.joints import JointGeometry, JointKind
-from kinform.behaviour.signals import Signal
+from kinform.behaviour.ports import FRAME, Component, Node, Port
+from kinform.behaviour.shafts import (
+    Actor,
+    Controller,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    EndStop,
+    MotionDrive,
+    Servo,
+    Spring,
+    VoltageController,
+    VoltageSource,
+)
 
 __all__ = [
     "Actor",
     "Component",
+    "Controller",
     "Damper",
+    "DcMotor",
     "EffortDrive",
+    "EndStop",
     "Gear",
     "Ground",
     "JointComponent",
@@ -25,40 +41,15 @@ __all__ = [
     "Node",
     "Port",
     "RigidBody",
+    "Servo",
     "Spring",
+    "SpringDamper",
     "System",
+    "VoltageController",
+    "VoltageSource",
 ]
 
 Array = NDArray[np.float64]
-
-FRAME = 6
-"""Across: a twist (ω; v). Through: a wrench (τ; f)."""
-
-
-@dataclass(frozen=True)
-class Port:
-    """A place where a component exchanges power: so many across and as many through variables."""
-
-    name: str
-    size: int
-
-
-@dataclass(frozen=True)
-class Component:
-    """Something with ports. `name` is unique in its system; `subject` is what the user calls it."""
-
-    name: str
-    subject: str
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        """Its ports in their fixed order."""
-        return (Port("frame", FRAME),)
-
-    @property
-    def equations(self) -> int:
-        """How many equations its behaviour makes between its port variables."""
-        return FRAME
 
 
 @dataclass(frozen=True)
@@ -100,51 +91,6 @@ class JointComponent(Component):
 
 
 @dataclass(frozen=True)
-class _OnShaft(Component):
-    """Something on the shaft of a joint with one freedom; one equation."""
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("shaft", 1),)
-
-    @property
-    def equations(self) -> int:
-        return 1
-
-
-@dataclass(frozen=True, eq=False)
-class MotionDrive(_OnShaft):
-    """The joint's value follows the signal, whatever effort that takes."""
-
-    signal: Signal
-
-
-@dataclass(frozen=True, eq=False)
-class EffortDrive(_OnShaft):
-    """The effort follows the signal (N·m or N)."""
-
-    signal: Signal
-
-
-@dataclass(frozen=True)
-class Spring(_OnShaft):
-    """effort = stiffness · (rest − value); N·m/rad and rad, or N/m and m."""
-
-    stiffness: float
-    rest: float
-
-
-@dataclass(frozen=True)
-class Damper(_OnShaft):
-    """effort = −damping · rate; N·m·s/rad or N·s/m."""
-
-    damping: float
-
-
-Actor = MotionDrive | EffortDrive | Spring | Damper
-
-
-@dataclass(frozen=True)
 class Gear(Component):
     """value at a = ratio · value at b; the efforts do no work between them. Two equations."""
 
@@ -173,13 +119,31 @@ class LoadComponent(Component):
     """True: force and torque turn with the body."""
 
 
-@dataclass(frozen=True)
-class Node:
-    """Ports joined: across variables equal, through variables summing to zero."""
+@dataclass(frozen=True, eq=False)
+class SpringDamper(Component):
+    """A spring and a damper in parallel between a point of one body and a point of another.
 
-    ports: tuple[tuple[str, str], ...]
-    """(component, port) by name."""
-    size: int
+    Its pull along the line is stiffness · (length − rest) + damping · d(length)/dt. Twelve equations.
+    """
+
+    point: Array
+    """(3,) m, of the body at port a, in the world at the pose of the meshes."""
+    other: Array
+    """(3,) m, of the body at port b."""
+    stiffness: float
+    """N/m."""
+    damping: float
+    """N·s/m."""
+    rest: float
+    """m."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("a", FRAME), Port("b", FRAME))
+
+    @property
+    def equations(self) -> int:
+        return 2 * FRAME
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,6 +212,11 @@ class System:
         return tuple(c for c in self.components if isinstance(c, Gear))
 
     @property
+    def springs(self) -> tuple[SpringDamper, ...]:
+        """Springs and dampers between points, in order."""
+        return tuple(c for c in self.components if isinstance(c, SpringDamper))
+
+    @property
     def loads(self) -> tuple[LoadComponent, ...]:
         """Loads in order."""
         return tuple(c for c in self.components if isinstance(c, LoadComponent))
@@ -257,9 +226,12 @@ class System:
         component = self._by_name[joint]
         if not isinstance(component, JointComponent) or component.kind.rates == 0:
             return ()
-        return tuple(
-            c for c, _ in self.at(joint, "shaft") if isinstance(c, MotionDrive | EffortDrive | Spring | Damper)
-        )
+        return tuple(c for c, _ in self.at(joint, "shaft") if isinstance(c, Actor))
+
+    def supply(self, motor: str) -> VoltageSource | VoltageController:
+        """What gives the motor of that name its voltage; ValueError when there is not exactly one."""
+        (only,) = (c for c, _ in self.at(motor, "terminals") if isinstance(c, VoltageSource | VoltageController))
+        return only
 
     def body_at(self, component: str, port: str) -> Ground | RigidBody:
         """The body or ground at the node of a port; ValueError when there is not exactly one."""

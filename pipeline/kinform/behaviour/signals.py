@@ -117,18 +117,22 @@ class Spline:
 
         self.knots = table.knots
         self._ends = (table.levels[0], table.levels[-1])
-        self._value: Any = CubicSpline(table.knots, table.levels, bc_type="clamped")
-        self._rate: Any = self._value.derivative(1)
-        self._acceleration: Any = self._value.derivative(2)
+        self.curve: Any = CubicSpline(table.knots, table.levels, bc_type="clamped")
+        self._rate: Any = self.curve.derivative(1)
+        self._acceleration: Any = self.curve.derivative(2)
         middles = np.linspace(table.knots[:-1], table.knots[1:], 17).ravel()
-        gap = self._value(middles) - np.interp(middles, table.knots, table.levels)
+        gap = self.curve(middles) - np.interp(middles, table.knots, table.levels)
         self.deviation = float(np.abs(gap).max())
         """Greatest difference from the straight lines of the table."""
+
+    def coefficients(self, stretch: int) -> list[float]:
+        """Coefficients of the powers 0 … 3 of the time since the knot that begins the stretch."""
+        return [float(c) for c in self.curve.c[::-1, stretch]]
 
     def value(self, t: float) -> float:
         if t <= self.knots[0]:
             return self._ends[0]
-        return self._ends[1] if t >= self.knots[-1] else float(self._value(t))
+        return self._ends[1] if t >= self.knots[-1] else float(self.curve(t))
 
     def rate(self, t: float) -> float:
         return float(self._rate(t)) if self.knots[0] < t < self.knots[-1] else 0.0

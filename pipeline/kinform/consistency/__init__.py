@@ -7,6 +7,7 @@ what a code means.
 
 from __future__ import annotations
 
+from kinform.consistency._baseline import Baseline, adopt, read_baseline, with_baseline
 from kinform.consistency._check import check, verdict
 from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
 from kinform.consistency._rule import Outcome, Rule
@@ -15,13 +16,17 @@ from kinform.consistency.rules import RULES
 __all__ = [
     "CODE_VERSION",
     "RULES",
+    "Baseline",
     "Outcome",
     "Rule",
     "UnknownRuleError",
+    "adopt",
     "check",
     "explain",
+    "read_baseline",
     "rules_markdown",
     "verdict",
+    "with_baseline",
 ]
 
-CODE_VERSION: int = 4
+CODE_VERSION: int = 9

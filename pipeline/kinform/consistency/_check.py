@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from kinform.consistency._context import Context
+from kinform.consistency._control import Applied, apply, selected, unused
+from kinform.consistency._rule import Rule, skipped
 from kinform.consistency.rules import RULES
+from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
 
@@ -15,13 +20,32 @@ def check(design: Design) -> CheckReport:
 
     Stages that a rule needs and that have not been run leave the rule inconclusive, never passed.
     """
-    context = Context(design)
-    outcomes = [(rule, rule.check(context)) for rule in RULES]
-    findings = [finding for _, outcome in outcomes for finding in outcome.findings]
-    return CheckReport(
-        findings=tuple(sorted(findings, key=_order)),
-        rules=tuple(RuleOutcome(rule.code, rule.name, out.name, out.reason) for rule, out in outcomes),
+    settings = design.assembly.check
+    context = Context(replace(design, kinematics=design.ranged))
+    applied = {rule.code: _run(rule, context) for rule in RULES if rule is not CONTROL}
+    used = [entry for one in applied.values() for entry in one.used]
+    used += [entry for entry in settings.ignore if entry.code.casefold() in (CONTROL.code.casefold(), CONTROL.name)]
+    alone = all(one.outcome.outcome in ("skipped", "ignored") for one in applied.values())
+    applied[CONTROL.code] = apply(
+        CONTROL, CONTROL.check(replace(context, unused_settings=unused(RULES, settings, used))), settings
     )
+    rules = [applied[rule.code].outcome for rule in RULES]
+    if alone:
+        # a rule about the rules verifies nothing of the design
+        nothing = RuleOutcome(CONTROL.code, CONTROL.name, "skipped", "no other rule ran")
+        rules = [nothing if rule.code == CONTROL.code else rule for rule in rules]
+    return CheckReport(
+        findings=tuple(sorted((f for one in applied.values() for f in one.findings), key=_order)),
+        rules=tuple(rules),
+        ignored=tuple(sorted((i for one in applied.values() for i in one.ignored), key=lambda i: _order(i.finding))),
+    )
+
+
+def _run(rule: Rule, context: Context) -> Applied:
+    """The rule under the settings of the manifest."""
+    settings = context.assembly.check
+    outcome = rule.check(context) if selected(rule, settings) else skipped("not selected by [check]")
+    return apply(rule, outcome, settings)
 
 
 def verdict(report: CheckReport, fail_on: str = "error") -> int:

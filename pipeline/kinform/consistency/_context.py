@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.consistency._compare import Comparison, bodies_of, compare
+from kinform.consistency._control import Unused
 from kinform.consistency._plausibility import Doubt, doubts
 from kinform.consistency._rule import Outcome, inconclusive, skipped
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -57,6 +58,8 @@ class Context:
     """One design under check."""
 
     design: Design
+    unused_settings: tuple[Unused, ...] | None = None
+    """Entries of `[check]` without effect; None before the other rules have run."""
 
     @property
     def assembly(self) -> Assembly:
@@ -149,6 +152,11 @@ class Context:
         if all(comparison.state == "stated" for comparison in found):
             return skipped("all joints come from the function itself: there is no geometry to compare")
         return found
+
+    @cached_property
+    def answers(self) -> dict[int, Any]:
+        """Answers to requirements that were worked out already, by the identity of the requirement."""
+        return {}
 
     @cached_property
     def intended_pairs(self) -> frozenset[tuple[str, str]]:

@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
+from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
+from kinform.form.tables import rows_of
 from kinform.model.assembly import Assumption
+from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (
     Coupling,
     Drive,
@@ -216,6 +219,37 @@ class Purposes:
             self.scope.problems.add("the table has fewer than two rows", shown, 1, "give rows of time and value")
         return tuple(times), tuple(values)
 
+    def _path(self, name: str, *path: str | int) -> list[list[float]]:
+        """Rows of time, point (m) and perhaps quaternion wxyz, in the world, of a CSV file."""
+        scope = self.scope
+        found = self.sources.find(name, scope.folder, scope.file, scope.line(*path), "the path")
+        if found is None:
+            return []
+        shown = self.sources.shown(found)
+        out: list[list[float]] = []
+        R = scope.X_WF[:3, :3]
+        turn = Rotation.from_matrix(R)
+        for number, row in rows_of(found):
+            if len(row) not in (4, 8) or (out and len(row) != len(out[0])):
+                scope.problems.add("the row is not time, x, y, z, or these with a quaternion", shown, number,
+                                   "give 4 numbers a row, or 8")  # fmt: skip
+                continue
+            if out and row[0] <= out[-1][0]:
+                scope.problems.add(f"time {row[0]:g} does not follow {out[-1][0]:g}", shown, number,
+                                   "sort the rows by time")  # fmt: skip
+            point = scope.point(row[1:4])
+            assert point is not None
+            pose: list[float] = []
+            if len(row) == 8:
+                if not np.linalg.norm(row[4:]) > 0.0:
+                    scope.problems.add("the quaternion is zero", shown, number, "give qw, qx, qy, qz")
+                    continue
+                pose = (turn * Rotation.from_quat(row[4:], scalar_first=True)).as_quat(scalar_first=True).tolist()
+            out.append([row[0], *point.tolist(), *pose])
+        if len(out) < 2:
+            scope.problems.add("the path has fewer than two rows", shown, 1, "give rows of time, x, y, z")
+        return out
+
     def loads(self) -> list[Load]:
         """`[[function.load]]`."""
         function = self.scope.manifest.function
@@ -263,12 +297,14 @@ class Purposes:
                 out[key] = value
             else:
                 out[key] = self._converted(quantity.kind, value, table, *path, key)
+                if quantity.kind == "path":
+                    out["rows"] = self._path(value, *path)
                 if quantity.kind == "frame":
                     out["X_WF"] = self.scope.X_WF.tolist()
         return out
 
     def _converted(self, kind: str, value: Any, table: BaseModel, *path: str | int) -> Any:
-        if kind in ("point", "direction", "vector") and value and isinstance(value[0], list):
+        if kind in ("point", "direction", "vector") and (not value or isinstance(value[0], list)):
             return [self._converted(kind, item, table, *path) for item in value]
         if kind in ("place", "part", "joint"):
             resolve = self.joint if kind == "joint" else self.place
@@ -292,6 +328,20 @@ class Purposes:
         }
         converted = convert[kind](value)
         return None if converted is None else converted.tolist()
+
+    def check(self) -> CheckSettings:
+        """`[check]` of the top manifest."""
+        table = self.scope.manifest.check
+        if table is None:
+            return CheckSettings()
+        ignore = tuple(
+            Ignore(entry.code, entry.subject, entry.reason, self.scope.file, self.scope.line("check", "ignore", k))
+            for k, entry in enumerate(table.ignore)
+        )
+        return CheckSettings(
+            tuple(table.select), tuple(sorted(table.severity.items())), ignore,
+            self.scope.file, self.scope.line("check"),
+        )  # fmt: skip
 
     def simulation(self) -> SimulationRequest | None:
         """`[simulation]` of the top manifest."""

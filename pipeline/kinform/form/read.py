@@ -142,6 +142,7 @@ class _Reader:
             source=Source(top.file, top.line("assembly")),
             files=tuple(sorted(self.sources.files)),
             notes=tuple(self._notes()),
+            check=purposes[0].check(),
         )
 
     def _notes(self) -> list[str]:
@@ -149,6 +150,10 @@ class _Reader:
             f"[tolerances] of {scope.file} are not used: those of {self.found[0].file} hold for the whole assembly"
             for scope in self.found[1:]
             if scope.manifest.tolerances.model_fields_set
+        ] + [
+            f"[check] of {scope.file} is not used: that of {self.found[0].file} holds for the whole assembly"
+            for scope in self.found[1:]
+            if scope.manifest.check is not None
         ]
 
     def _stated_parts(self) -> set[str]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.evidence import COAXIAL, FAR, Evidence, Item
 from kinform.kinematics.freedoms import fits, freedoms
-from kinform.kinematics.screws import perpendicular
+from kinform.kinematics.screws import cross, perpendicular
 from kinform.kinematics.subspace import name_space
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
@@ -74,7 +74,7 @@ def meets(patches: Sequence[Patch]) -> bool:
     lines = [patch.axis for patch in patches if patch.kind == "line"]
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
-        or (patch.kind == "plane" and lines and all(np.linalg.norm(np.cross(patch.axis, d)) < 1e-3 for d in lines))
+        or (patch.kind == "plane" and lines and all(np.linalg.norm(cross(patch.axis, d)) < 1e-3 for d in lines))
         for patch in patches
     )
 
@@ -159,14 +159,14 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
     """m a radian of the screw about a line that leaves what touches besides surfaces of revolution about it much
     more nearly free than the turn does; 0 where there is none."""
     own = [i for i in evidence.items if i.patch.kind not in COAXIAL or i.patch.one_sided or not _about(i, axis)]
-    if not own:
+    if all(i.patch.kind == "plane" and _about(i, axis) for i in own):
         return 0.0
     points, normals = np.concatenate([i.points for i in own]), np.concatenate([i.normals for i in own])
     weights = np.concatenate([i.weights for i in own])
     arm = points - point
     radial = arm - (arm @ axis)[:, None] * axis
     radius = float(weights @ np.linalg.norm(radial, axis=1) / weights.sum())
-    turning, sliding = np.einsum("ij,ij->i", normals, np.cross(axis, arm)), normals @ axis
+    turning, sliding = np.einsum("ij,ij->i", normals, cross(axis, arm)), normals @ axis
     u, v = perpendicular(axis)
     sector = np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * SECTORS).astype(int) % SECTORS
     share = np.bincount(sector, weights=weights, minlength=SECTORS) / weights.sum()
@@ -179,7 +179,7 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
 
 
 def _about(item: Item, axis: Array) -> bool:
-    return float(np.linalg.norm(np.cross(item.patch.axis, axis))) < 0.01
+    return float(np.linalg.norm(cross(item.patch.axis, axis))) < 0.01
 
 
 def _stray(evidence: Evidence) -> str:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.certainty import TOUCHING
 from kinform.kinematics.higher import is_higher
 from kinform.kinematics.mobility import Closure
+from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint
@@ -38,20 +39,21 @@ def couplings(
     closure: Closure,
 ) -> tuple[Coupling, ...]:
     """All couplings of two joints through a higher pair or a screw, in the order of those; `closure` of all joints."""
-    rates = [
-        closure.rates[:, closure.offset[k] : closure.offset[k + 1]][:, 0] if joint.type in SINGLE else None
-        for k, joint in enumerate(joints)
-    ]
+    ties = [k for k, joint in enumerate(joints) if joint.type == "screw" or is_higher(joint, patches)]
+    if not ties:
+        return ()
+    rates = closure.sparse_rates
     around: dict[str, list[int]] = {body.name: [] for body in bodies}
     for k, joint in enumerate(joints):
         for name in joint.bodies:
             around[name].append(k)
     out = []
-    for k, through in enumerate(joints):
-        if through.type != "screw" and not is_higher(through, patches):
-            continue
+    for k in ties:
+        through = joints[k]
         for a, b in _sides(through, joints, around, k):
-            found = _ratio(rates[a], rates[b])
+            columns = rates[:, [closure.offset[a], closure.offset[b]]].tocoo()
+            moving = np.unique(columns.row)
+            found = _ratio(*rates[moving][:, [closure.offset[a], closure.offset[b]]].toarray().T)
             if found is not None:
                 pair = (joints[a], joints[b])
                 unsure = any(j.status in ("ambiguous", "blocked") for j in (through, *pair))
@@ -80,9 +82,9 @@ def _sides(through: Joint, joints: Sequence[Joint], around: Mapping[str, list[in
     return sorted(found)
 
 
-def _ratio(a: Array | None, b: Array | None) -> float | None:
+def _ratio(a: Array, b: Array) -> float | None:
     """a over b where all motions have one ratio, and both move at all."""
-    if a is None or b is None or not len(a):
+    if not len(a):
         return None
     size = np.array([np.abs(a).max(), np.abs(b).max()])
     if (size <= FIXED * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), 1e-300)).any():
@@ -101,7 +103,7 @@ def _uncertainty(ratio: float, through: Joint, pair: tuple[Joint, Joint], patche
         total = 0.0
         for joint in pair:
             twist = joint.twists[0]
-            velocity = twist[3:] + np.cross(twist[:3], point)
+            velocity = twist[3:] + cross(twist[:3], point)
             along = abs(float(velocity @ normal))
             aside = float(np.linalg.norm(velocity - normal * float(velocity @ normal)))
             off = patch.uncertainty[0] * aside + patch.uncertainty[1] * float(np.linalg.norm(twist[:3]))
@@ -139,7 +141,7 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     side = height[faces] > 0.0
     faces = faces[side.any(axis=1) & ~side.all(axis=1)]
     corners = mesh.vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
     first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
     owner = np.tile(np.arange(len(faces)), 3)
@@ -151,6 +153,6 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     twin = np.flatnonzero((key[1:] == key[:-1]) & (forward[1:] != forward[:-1]))
     one, two = normals[owner[twin]], normals[owner[twin + 1]]
     edge = mesh.vertices[key[twin] % len(height)] - mesh.vertices[key[twin] // len(height)]
-    sense = np.where(forward[twin], 1.0, -1.0) * np.einsum("ij,ij->i", np.cross(one, two), edge)
+    sense = np.where(forward[twin], 1.0, -1.0) * np.einsum("ij,ij->i", cross(one, two), edge)
     angle = np.arccos(np.clip(np.einsum("ij,ij->i", one, two), -1.0, 1.0))
     return float(angle[sense > 0.0].sum()) / (2.0 * np.pi)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.screws import Frame, canonical, perpendicular
+from kinform.kinematics.screws import Frame, canonical, cross, perpendicular
 
 __all__ = ["group_of", "in_words"]
 
@@ -91,7 +91,7 @@ def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
         twist = turns[:, 0]
         lead = 2.0 * np.pi * frame.length * _lead(twist)
         # along a slide it may be anywhere
-        place = frame.centre + frame.length * np.cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
+        place = frame.centre + frame.length * cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
         through = "" if slides.shape[1] > 1 else f" through {_point(place)}"
         if abs(lead) > 1e-6 * frame.length and np.linalg.norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - EXACT:
             return [f"screws about {_vector(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]

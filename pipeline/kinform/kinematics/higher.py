@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.certainty import TOUCHING, meets
 from kinform.kinematics.graph import UnionFind
 from kinform.kinematics.mobility import body_twists, close
-from kinform.kinematics.screws import Frame, scaled, span, twist_at_origin
+from kinform.kinematics.screws import Frame, cross, scaled, span, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint
 
@@ -95,7 +95,7 @@ def _pair(
     points = np.concatenate([p.points for p in own])
     normals = np.concatenate([p.normals if p.parts[0] in first.parts else -p.normals for p in own])
     counts = [len(p.points) for p in own]
-    slip = relative[None, :, 3:] + np.cross(relative[None, :, :3], points[:, None])
+    slip = relative[None, :, 3:] + cross(relative[None, :, :3], points[:, None])
     return _Pair(
         index=index,
         relative=relative,

@@ -191,7 +191,7 @@ def _slides(
     found: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
     drawn = [(item.patch.axis, item.area) for item in evidence.items if item.patch.kind == "extrusion"]
     for axis, _ in _directions(drawn, alignment):
-        if all(np.linalg.norm(np.cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+        if all(np.linalg.norm(cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
             found.append((axis, True))
 
     def add(direction: Array, curved: bool) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.query import QueryAnswer, ask
-from kinform.kinematics.screws import perpendicular
+from kinform.kinematics.screws import cross, perpendicular
 from kinform.model.design import Design
 from kinform.model.function import IntendedJoint
 
@@ -97,7 +97,7 @@ def _motions(joint: IntendedJoint) -> list[tuple[str, Array]]:
 
 
 def _turn(axis: Array, point: Array) -> tuple[str, Array]:
-    return "turn", np.concatenate([axis, np.cross(point, axis)])
+    return "turn", np.concatenate([axis, cross(point, axis)])
 
 
 def _slide(direction: Array) -> tuple[str, Array]:

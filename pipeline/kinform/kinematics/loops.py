@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.cycles import Cycle, short_cycles
-from kinform.kinematics.screws import Frame, scaled
+from kinform.kinematics.screws import Frame, cross, scaled
 
 __all__ = ["Block", "Solution", "axes_frame", "close_block", "loop_matrix"]
 
@@ -137,8 +137,8 @@ def _turns(twist: Array, size: float) -> bool:
 def _feet(turns: Array, centre: Array) -> Array:
     """(n, 3) points of the axes of the twists (n, 6) nearest to `centre`."""
     omega = turns[:, :3]
-    velocity = turns[:, 3:] + np.cross(omega, centre)
-    feet: Array = centre + np.cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
+    velocity = turns[:, 3:] + cross(omega, centre)
+    feet: Array = centre + cross(omega, velocity) / (omega**2).sum(axis=1)[:, None]
     return feet
 
 

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.graph import Forest, blocks, forest
 from kinform.kinematics.loops import FEW, Block, Solution, close_block
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 __all__ = ["Closure", "body_twists", "close"]
 
@@ -39,6 +43,18 @@ class Closure:
     def mobility(self) -> int:
         """Dimension of the null space of the bilateral constraints, relative to ground."""
         return len(self.solutions)
+
+    @property
+    def sparse_rates(self) -> csr_array:
+        """(k, n) the solutions as a sparse matrix."""
+        from scipy.sparse import csr_array
+
+        counts = [len(s.columns) for s in self.solutions]
+        rows = np.repeat(np.arange(len(counts)), counts)
+        columns = np.concatenate([np.zeros(0, np.int64), *(s.columns for s in self.solutions)])
+        values = np.concatenate([np.zeros(0), *(s.rates for s in self.solutions)])
+        shape = (len(counts), self.offset[-1] + 6 * len(self.loose))
+        return csr_array((values, (rows, columns)), shape=shape)
 
     @property
     def rates(self) -> Array:

@@ -58,6 +58,8 @@ class LoopSystem:
     """(loops, n) how often, and in which sense, a loop runs through a coordinate."""
     ahead: Array
     """(n, n) rates that add up to the twist of what a coordinate acts on."""
+    reach: Array
+    """(N, n) rates that add up to the twist of each body."""
 
     @property
     def coordinates(self) -> int:
@@ -66,6 +68,24 @@ class LoopSystem:
 
     def close(self, q: Array) -> Closed:
         """Residual and Jacobian of the loops at configurations (D, n)."""
+        bodies, inside, across = self._placed(q)
+        batch = len(q)
+        columns = _carried(bodies[:, self.first[self.joint]] @ inside, self.screws)
+        members, a, b = self.chords
+        gap = bodies[:, a] @ across[:, members] @ _inverse(bodies[:, b])
+        turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
+        residual = np.stack(
+            [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
+        )
+        jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
+        return Closed(residual.reshape(batch, -1), jacobian.reshape(batch, 6 * len(members), len(self.screws)), columns)
+
+    def bodies(self, q: Array) -> Array:
+        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
+        return self._placed(q)[0]
+
+    def _placed(self, q: Array) -> tuple[Array, Array, Array]:
+        """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
         steps = _exponentials(self.screws, q)
         inside = np.empty((batch, len(self.screws), 4, 4))
@@ -78,15 +98,7 @@ class LoopSystem:
             moves = across[:, members]
             moves[:, backward] = _inverse(moves[:, backward])
             bodies[:, nodes] = bodies[:, parents] @ moves
-        columns = _carried(bodies[:, self.first[self.joint]] @ inside, self.screws)
-        members, a, b = self.chords
-        gap = bodies[:, a] @ across[:, members] @ _inverse(bodies[:, b])
-        turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
-        residual = np.stack(
-            [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
-        )
-        jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
-        return Closed(residual.reshape(batch, -1), jacobian.reshape(batch, 6 * len(members), len(self.screws)), columns)
+        return bodies, inside, across
 
     def curvature(self, columns: Array, rates: Array) -> Array:
         """(D, 6 loops) change of the Jacobian along `rates` (D, n), times `rates`: the acceleration that
@@ -147,6 +159,7 @@ def loop_system(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], frame
         ),
         loops=loops,
         ahead=reach[first[joint]] + earlier,
+        reach=reach,
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.motions import Motions
 from kinform.kinematics.releases import direction_words
-from kinform.kinematics.screws import Frame, rows, scaled, span
+from kinform.kinematics.screws import Frame, cross, rows, scaled, span
 from kinform.kinematics.ways import Attempt, attempt, pair_ways
 from kinform.model.contacts import Patch
 from kinform.model.design import Design
@@ -76,7 +76,7 @@ def query(
     if turn is None:
         return ask(design, a, b, np.concatenate([np.zeros(3), direction]), "slide")
     point = np.asarray(turn[1], dtype=float)
-    return ask(design, a, b, np.concatenate([direction, np.cross(point, direction)]), "turn")
+    return ask(design, a, b, np.concatenate([direction, cross(point, direction)]), "turn")
 
 
 def ask(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
@@ -94,7 +94,7 @@ def ask(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer
     patches = _patches(design, first, second)
     points = [p.points for _, p in patches] if patches else [np.zeros((1, 3))]
     if motion[:3].any():
-        points.append((np.cross(motion[:3], motion[3:]) / float(motion[:3] @ motion[:3]))[None])
+        points.append((cross(motion[:3], motion[3:]) / float(motion[:3] @ motion[:3]))[None])
     frame = Frame.of(np.concatenate(points))
     twist = scaled(motion[:, None], frame)[:, 0]
     twist = twist / np.linalg.norm(twist)
@@ -191,7 +191,7 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
     for k, patch in patches:
         speed = rows(patch.points, patch.normals, frame) @ twist
         arms = (patch.points - frame.centre) / frame.length
-        motion = np.linalg.norm(twist[3:] + np.cross(twist[:3], arms), axis=1)
+        motion = np.linalg.norm(twist[3:] + cross(twist[:3], arms), axis=1)
         if np.sqrt((speed**2).mean()) > 0.02 * max(np.sqrt((motion**2).mean()), 1e-12):
             out.append(_blocker(k, patch))
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))

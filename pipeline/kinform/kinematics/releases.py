@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.cone import FREE, HELD, extreme_rays, held_for_certain, opening, reduced, unit_rows, within
 from kinform.kinematics.constraints import extreme_samples
-from kinform.kinematics.screws import Frame, twist_at_origin
+from kinform.kinematics.screws import Frame, cross, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint, Release
 from kinform.model.names import BodyName, PartName
@@ -108,7 +108,7 @@ class ContactRows:
     def rows(self, k: int, frame: Frame, *, turned: bool) -> Array:
         """Rows (n, 6) of the extreme samples of one patch, against twists scaled in `frame`."""
         _, normals, moments = self._of(k, turned=turned)
-        return np.hstack([(moments + np.cross(self._matrix.centre - frame.centre, normals)) / frame.length, normals])
+        return np.hstack([(moments + cross(self._matrix.centre - frame.centre, normals)) / frame.length, normals])
 
     def _two_way(self, k: int) -> bool:
         """Does this patch alone hold whatever it does not let slide?"""
@@ -135,7 +135,7 @@ class ContactRows:
             return points, sign * block[:, 3:], sign * block[:, :3] * self._matrix.length
         samples = extreme_samples(patch)
         points, normals = patch.points[samples], sign * patch.normals[samples]
-        return points, normals, np.cross(points - self._matrix.centre, normals)
+        return points, normals, cross(points - self._matrix.centre, normals)
 
 
 def pair_cones(rows: ContactRows, joints: Sequence[Joint], patches: Sequence[Patch]) -> list[Cone | None]:
@@ -269,7 +269,7 @@ def released(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     rate = float(np.linalg.norm(omega))
     direction = omega / rate
     lead = float(direction @ velocity) / rate
-    point = frame.centre + np.cross(omega, velocity) / rate**2
+    point = frame.centre + cross(omega, velocity) / rate**2
     twist = (twist_at_origin(ray[:, None], frame) / rate).ravel()
     about = direction_words(direction)
     if abs(lead) < SAME * frame.length:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.cone import HELD, reduced, unit_rows, within
 from kinform.kinematics.graph import UnionFind, blocks
 from kinform.kinematics.releases import Cone, ContactRows, certainly_held, cone_of, stated
-from kinform.kinematics.screws import Frame, scaled, twist_at_origin
+from kinform.kinematics.screws import Frame, cross, scaled, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
 from kinform.model.names import BodyName, JointName
@@ -189,7 +189,7 @@ def _in_frame(link: Link, frame: Frame) -> Array:
 def moved_rows(rows: Array, own: Frame, frame: Frame) -> Array:
     """Rows (n, 6) against twists scaled in `own` as rows against twists scaled in `frame`."""
     normals = rows[:, 3:]
-    moments = rows[:, :3] * own.length + np.cross(own.centre - frame.centre, normals)
+    moments = rows[:, :3] * own.length + cross(own.centre - frame.centre, normals)
     return np.hstack([moments / frame.length, normals])
 
 

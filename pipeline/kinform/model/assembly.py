@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
@@ -189,6 +190,8 @@ class Assembly:
     """Every file read (manifests, meshes, tables), relative to the top manifest's folder, sorted."""
     notes: tuple[str, ...] = field(default=())
     """What the reader did on its own account, in sentences."""
+    check: CheckSettings = field(default=CheckSettings())
+    """How the rules are applied."""
 
     def part(self, name: str) -> Part:
         """The part of that name; KeyError otherwise."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -29,3 +29,23 @@ class Design:
     simulation: Simulation | None = None
     report: CheckReport | None = None
     fingerprints: Fingerprints = field(default_factory=Fingerprints)
+
+    @property
+    def ranged(self) -> Kinematics | None:
+        """The kinematics with the ranges of joints that the simulation found."""
+        found = self.simulation.ranges if self.simulation is not None else None
+        if self.kinematics is None or found is None:
+            return self.kinematics
+        known = {item.joint: item for item in found}
+        joints = tuple(
+            replace(
+                joint,
+                range_lower=known[joint.name].lower.value,
+                range_upper=known[joint.name].upper.value,
+                range_status=known[joint.name].status,
+            )
+            if joint.name in known
+            else joint
+            for joint in self.kinematics.joints
+        )
+        return replace(self.kinematics, joints=joints)

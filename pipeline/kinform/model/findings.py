@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["SEVERITIES", "CheckReport", "Finding", "RuleOutcome"]
+__all__ = ["SEVERITIES", "CheckReport", "Finding", "Ignored", "RuleOutcome"]
 
 SEVERITIES = ("note", "warning", "error")
 
@@ -31,8 +31,19 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class Ignored:
+    """A finding that is accepted: by `[check]` in the manifest, with its reason, or by a baseline."""
+
+    finding: Finding
+    by: str
+    """manifest or baseline."""
+    reason: str = ""
+
+
+@dataclass(frozen=True)
 class RuleOutcome:
-    """What became of one rule: passed, failed, inconclusive or skipped (does not apply)."""
+    """What became of one rule: passed, failed, inconclusive, skipped (does not apply, or not selected), or
+    ignored (all that it found, or that it could not decide, is accepted)."""
 
     code: str
     rule: str
@@ -46,11 +57,13 @@ class CheckReport:
 
     findings: tuple[Finding, ...]
     rules: tuple[RuleOutcome, ...]
+    ignored: tuple[Ignored, ...] = ()
+    """Findings that are accepted, in the order of findings; they decide nothing."""
 
     @property
     def ran(self) -> int:
         """How many rules were decided: passed, failed or inconclusive."""
-        return sum(rule.outcome != "skipped" for rule in self.rules)
+        return sum(rule.outcome not in ("skipped", "ignored") for rule in self.rules)
 
     @property
     def inconclusive(self) -> int:

@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Simulation"]
+from kinform.model.collisions import Collision, JointRange
+
+__all__ = ["DriveUse", "Simulation"]
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DriveUse:
+    """What one drive did in a dynamic run: for a prescribed motion what it must be able to do."""
+
+    joint: str
+    kind: str
+    """motion, effort, spring, damper, servo, dc_motor, stop."""
+    peak: float
+    """Greatest effort at an output time, N·m or N."""
+    rms: float
+    """Root of the mean square of the effort over time."""
+    peak_power: float
+    """Greatest power that it put in, W; negative when it only took power out."""
+    work: float
+    """J put in over the run, springs included."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,3 +68,22 @@ class Simulation:
     """Every value that was assumed, in sentences."""
     failures: tuple[tuple[str, str], ...] = ()
     """(subject, what cannot be simulated and why)."""
+    joint_acceleration: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, n) rad/s² or m/s²; nan where unknown."""
+    F_A: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    """(T, joints, 6) wrench (τ; f) of each joint on its first body, about the joint's point as that body
+    carries it, in world axes; no times below dynamic."""
+    F_B: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    """The same on its second body."""
+    undetermined: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 6), dtype=np.bool_))
+    """(joints, 6) components that redundancy leaves open: F_A and F_B hold the smallest that balance."""
+    drives: tuple[DriveUse, ...] = ()
+    """What acts on the shafts of joints, in order."""
+    balance: Array = field(default_factory=lambda: np.zeros(0))
+    """(T,) greatest error of the balance of a body or a node over the greatest wrench then."""
+    ranges: tuple[JointRange, ...] | None = None
+    """How far joints go until something stops them; None: not computed."""
+    collisions: tuple[Collision, ...] | None = None
+    """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
+    uncollided: tuple[tuple[str, str, str], ...] = ()
+    """(part, part, why it is not known whether they collide)."""

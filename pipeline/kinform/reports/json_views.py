@@ -18,6 +18,7 @@ from kinform.behaviour.joints import KINDS
 from kinform.errors import StageError
 from kinform.kinematics import Motions, insight
 from kinform.model.assembly import Assembly, Part
+from kinform.model.collisions import JointRange
 from kinform.model.design import Design
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
@@ -193,7 +194,7 @@ def _contacts(design: Design) -> dict[str, Any]:
 
 
 def _joints(design: Design) -> dict[str, Any]:
-    kinematics = _kinematics(design)
+    kinematics = design.ranged or _kinematics(design)
     return {
         "bodies": [_fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [_joint(joint) for joint in kinematics.joints],
@@ -295,8 +296,26 @@ def _simulation(design: Design) -> dict[str, Any]:
         "bodies": run.body_names,
         "joints": [_course(run, *coordinate) for coordinate in coordinates(run)] if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
+        "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
+        "drives": [_fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
         "assumptions": run.assumptions,
         "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
+        "ranges": None if run.ranges is None else [_range(item) for item in run.ranges],
+        "collisions": None
+        if run.collisions is None
+        else [_fields(item, "parts", "time", "place", "depth") for item in run.collisions],
+        "collisions_unknown": [{"parts": [a, b], "reason": why} for a, b, why in run.uncollided],
+    }
+
+
+def _range(item: JointRange) -> dict[str, Any]:
+    of_end = ("status", "value", "parts", "place", "reason", "leaves")
+    return {
+        "joint": item.joint,
+        "status": item.status,
+        "lower": _fields(item.lower, *of_end),
+        "upper": _fields(item.upper, *of_end),
+        "left_out": item.left_out,
     }
 
 

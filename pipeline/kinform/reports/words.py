@@ -35,7 +35,8 @@ def severity_counts(report: CheckReport) -> str:
 def rule_counts(report: CheckReport) -> str:
     """ "30 rules ran, 8 skipped, 1 inconclusive"."""
     skipped = sum(rule.outcome == "skipped" for rule in report.rules)
-    return f"{counted(report.ran, 'rule')} ran, {skipped} skipped, {report.inconclusive} inconclusive"
+    ignored = f", {counted(len(report.ignored), 'finding')} ignored" if report.ignored else ""
+    return f"{counted(report.ran, 'rule')} ran, {skipped} skipped, {report.inconclusive} inconclusive{ignored}"
 
 
 def verdict_line(report: CheckReport) -> str:

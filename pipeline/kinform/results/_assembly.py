@@ -21,8 +21,9 @@ from kinform.model.assembly import (
     Subassembly,
     freeze,
 )
+from kinform.model.checks import CheckSettings
 from kinform.model.tolerances import Tolerances
-from kinform.results import _function
+from kinform.results import _checks, _function
 from kinform.results._table import (
     flag,
     integer,
@@ -95,6 +96,7 @@ def write(group: h5py.Group, assembly: Assembly) -> None:
     write_texts(group, "files", assembly.files)
     write_texts(group, "notes", assembly.notes)
     _function.write(group.create_group("function"), assembly.function)
+    _checks.write(group.create_group("check"), assembly.check)
     if assembly.simulation is not None:
         _function.write_request(group.create_group("simulation"), assembly.simulation)
 
@@ -117,6 +119,7 @@ def read(group: h5py.Group) -> Assembly:
         ),
         files=read_texts(group, "files"),
         notes=read_texts(group, "notes"),
+        check=_checks.read(group["check"]) if "check" in group else CheckSettings(),
     )
 
 

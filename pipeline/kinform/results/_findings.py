@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import h5py
 
-from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.results._table import integer, pair, read_records, real, text, texts, write_records
+from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
+from kinform.results._table import integer, pair, read_records, read_rows, real, text, texts, write_records, write_rows
 
 __all__ = ["read", "write"]
 
@@ -14,6 +16,7 @@ _FINDINGS = (
     text("intended"), pair("place", real, ("x", "y", "z"), "m"), text("file"), integer("line", optional=True),
     text("remedy"),
 )  # fmt: skip
+_IGNORED = (*_FINDINGS, text("by"), text("reason"))
 _RULES = (text("code"), text("rule"), text("outcome"), text("reason"))
 
 
@@ -21,6 +24,8 @@ def write(group: h5py.Group, report: CheckReport) -> None:
     """Write findings and rules."""
     write_records(group, "findings", _FINDINGS, report.findings)
     write_records(group, "rules", _RULES, report.rules)
+    accepted = [vars(item.finding) | {"by": item.by, "reason": item.reason} for item in report.ignored]
+    write_rows(group, "ignored", _IGNORED, accepted)
 
 
 def read(group: h5py.Group) -> CheckReport:
@@ -28,4 +33,10 @@ def read(group: h5py.Group) -> CheckReport:
     return CheckReport(
         findings=read_records(group, "findings", _FINDINGS, Finding),
         rules=read_records(group, "rules", _RULES, RuleOutcome),
+        ignored=tuple(map(_ignored, read_rows(group, "ignored", _IGNORED))) if "ignored" in group else (),
     )
+
+
+def _ignored(row: dict[str, Any]) -> Ignored:
+    by, reason = row.pop("by"), row.pop("reason")
+    return Ignored(Finding(**row), by, reason)

@@ -28,14 +28,14 @@ _CODE = {
     "contacts": ("contacts", "fastening"),
     "joints": ("kinematics",),
     "mass": ("mass", "kinematics"),
-    "simulation": ("simulation", "behaviour", "function", "kinematics"),
+    "simulation": ("simulation", "behaviour", "function", "kinematics", "collisions"),
     "findings": ("consistency", "function", "kinematics"),
 }
 """Packages whose code decides the result of each stage."""
 
 _ASSEMBLY_FIELDS = (
     "name", "units", "parts", "groups", "assumptions", "ground", "tolerances", "infer_fasteners", "function",
-    "simulation", "subassemblies", "source", "files", "notes",
+    "simulation", "subassemblies", "source", "files", "notes", "check",
 )  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def of_pair(tolerances: Tolerances, first: Inputs, second: Inputs) -> Inputs:
     return {"the tolerances": digest(tolerances), **first, **second}
 
 
-def of_stage(stage: str, design: Design, level: str | None = None) -> Inputs:
+def of_stage(stage: str, design: Design, level: str | None = None, ranges: bool = True) -> Inputs:
     """Inputs of a whole stage: contacts, joints, mass, simulation or findings."""
     view = inputs.assembly_for(stage, design.assembly)
     found = {name.replace("_", " "): digest(getattr(view, name)) for name in _ASSEMBLY_FIELDS}
@@ -90,6 +90,10 @@ def of_stage(stage: str, design: Design, level: str | None = None) -> Inputs:
         found["mass"] = digest(design.mass)
     if stage == "findings":
         found["the simulated motion"] = digest(design.simulation)
+    if stage == "simulation":
+        found |= {"surfaces": digest(design.surfaces), "contacts": digest(design.contacts)}
+        if not ranges:
+            found["whether ranges are asked for"] = "no"
     return found if level is None else found | {"level": level}
 
 

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.model.assembly import Assembly, Mesh, Part, Source
+from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
 from kinform.model.kinematics import ConstraintMatrix, Kinematics, Misfit, Mobility
 
@@ -112,6 +113,7 @@ def _bare(assembly: Assembly) -> Assembly:
         source=_NOWHERE,
         files=(),
         notes=(),
+        check=CheckSettings(),
     )
 
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.simulate import simulate
+from kinform.simulation.solve import Course, simulate_system
 
-__all__ = ["CODE_VERSION", "SolverSettings", "simulate"]
+__all__ = ["CODE_VERSION", "Course", "SolverSettings", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 1
+CODE_VERSION: int = 2

@@ -25,7 +25,7 @@ class _Links:
     slots: tuple[Slot, ...]
     length: float
     parent: list[int] = field(default_factory=lambda: [-1])
-    screws: list[tuple[int, int, Array]] = field(default_factory=list)
+    screws: list[tuple[int, int, OneFreedom]] = field(default_factory=list)
     balls: list[BallLink] = field(default_factory=list)
     columns: dict[int, tuple[Array, int, int, float]] = field(default_factory=dict)
 
@@ -44,7 +44,7 @@ class _Links:
         return parent
 
     def _screw(self, primitive: OneFreedom, link: int, q: int, v: int, parent: int) -> None:
-        self.screws.append((link, q, primitive.terms))
+        self.screws.append((link, q, primitive))
         scale = 1.0 if primitive.omega.any() else self.length
         self.columns[v] = (primitive.twist, parent, link, scale)
 
@@ -141,7 +141,8 @@ def _finish(
         parent=np.array(links.parent, dtype=np.int64),
         screw_link=np.array([link for link, _, _ in links.screws], dtype=np.int64),
         screw_q=np.array([q for _, q, _ in links.screws], dtype=np.int64),
-        screw_terms=np.array([terms for _, _, terms in links.screws]).reshape(-1, 3, 4, 4),
+        screw_terms=np.array([primitive.terms for _, _, primitive in links.screws]).reshape(-1, 3, 4, 4),
+        screw_primitives=tuple(primitive for _, _, primitive in links.screws),
         balls=tuple(links.balls),
         column=np.array([column[0] for column in columns]).reshape(-1, 6),
         column_frame=np.array([column[1] for column in columns], dtype=np.int64),

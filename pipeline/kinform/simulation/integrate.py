@@ -1,143 +1,169 @@
-"""Motion under forces, through time: DOP853 with its dense output, loops closed again after each step.
+"""Motion under forces, through time: from one end stop, knot of a law or change of method to the next.
 
-The state is positions, rates and the work done so far; prescribed joints are put where their laws have
-them at every evaluation. Where a law is not smooth the integrator starts afresh.
+The kernel integrates with DOP853 and closes loops after each step. Where it finds the model stiff the
+implicit method takes over. Runs of few steps are made by the kernel's functions as they are: importing
+and compiling them would take longer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.simulation.dynamics import Dynamics, SingularMassError
-from kinform.simulation.record import Record, Sample
+from kinform.simulation.dynamics import Dynamics
+from kinform.simulation.engine import Engine, engine, ready
+from kinform.simulation.implicit import run_implicit
+from kinform.simulation.kernel import layout
+from kinform.simulation.record import Record
+from kinform.simulation.run import Run
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start
+from kinform.simulation.stiffness import is_stiff
+from kinform.simulation.stops import Contact
 
 __all__ = ["run_dynamic"]
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
+Say = Callable[[str], None]
 
-
-class _Run:
-    """One run: the state and the samples so far."""
-
-    def __init__(self, dynamics: Dynamics, start: Start, times: Array, settings: SolverSettings):
-        self.dynamics, self.times, self.settings = dynamics, times, settings
-        self.mechanism, self.actuation = dynamics.mechanism, dynamics.actuation
-        self.sizes = len(start.q), len(start.q) + len(start.v)
-        self.y = np.concatenate([start.q, start.v, [0.0]])
-        self.samples: list[Sample] = []
-        self.steps = 0
-        self.margin, self.tightest = np.inf, 0.0
-
-    def split(self, t: float, y: Array) -> tuple[Array, Array, float]:
-        """Positions, rates and work, prescribed joints on their laws."""
-        q, v = y[: self.sizes[0]].copy(), y[self.sizes[0] : self.sizes[1]].copy()
-        if len(self.actuation.led):
-            q[self.actuation.led_q] = self.actuation.led_values(t)
-            v[self.actuation.led] = self.actuation.led_rates(t)
-        return q, v, float(y[-1])
-
-    def closed(self, t: float, y: Array) -> tuple[Array, Array, float]:
-        """The same with loops closed."""
-        q, v, work = self.split(t, y)
-        if self.mechanism.closed:
-            q, v = self.dynamics.project(q, v)
-        return q, v, work
-
-    def rates(self, t: float, y: Array) -> Array:
-        """Derivative of the state."""
-        q, v, _ = self.split(t, y)
-        motion = self.dynamics.motion(t, q, v)
-        if motion.margin < self.margin:
-            self.margin, self.tightest = motion.margin, t
-        if motion.margin < self.settings.near:
-            # Close to a singular pose the accelerations depend on how well the loops are closed.
-            q, v = self.dynamics.project(q, v)
-            motion = self.dynamics.motion(t, q, v)
-        return np.concatenate([self.mechanism.q_rates(q, v), motion.acceleration, [motion.power]])
-
-    def sample(self, t: float, y: Array) -> None:
-        """Keep the state at an output time."""
-        q, v, work = self.closed(t, y)
-        effort = self.dynamics.motion(t, q, v).effort
-        self.samples.append(Sample(t, q, v, effort, (*self.dynamics.energy(q, v), work)))
-
-    def record(self, stopped: str) -> Record:
-        """What there is, with a warning where the loops came close to a singular pose."""
-        notes: tuple[str, ...] = ()
-        if self.margin < self.settings.doubtful:
-            notes = (
-                f"near t = {self.tightest:.4g} s the loops pass a singular pose, where they could go on in "
-                "several ways: taken is the one that the momentum continues",
-            )
-        return Record(tuple(self.samples), stopped, notes)
-
-    def gap(self, t: float) -> float:
-        """Largest gap of the loops at the present state."""
-        q, _, _ = self.split(t, self.y)
-        return float(np.abs(self.mechanism.gap(self.mechanism.poses(q), q)).max(initial=0.0))
+PLAIN = 400
+"""Steps times links that are made without the compiled functions: half a second, as long as loading them."""
+UNREADY = 8
+"""Times more where they would have to be compiled first."""
+LARGE = 1000
+"""Rates times independent rows of the loops from which on plain functions would take too long at all."""
+STALL = 1000
+"""Steps after which the run must have come on: at their pace it would take ten times its budget."""
+LOOK = 250
+"""Steps after which the run is looked at for stiffness."""
 
 
 def run_dynamic(
-    dynamics: Dynamics, start: Start, times: Array, settings: SolverSettings, progress: Progress | None
+    dynamics: Dynamics,
+    start: Start,
+    times: Array,
+    settings: SolverSettings,
+    progress: Progress | None,
+    say: Say | None = None,
 ) -> Record:
-    """Positions, rates, efforts and energy at `times` (s), until the end or until it cannot go on."""
-    run = _Run(dynamics, start, times, settings)
+    """Positions, rates, efforts and work at `times` (s), until the end or until it cannot go on.
+
+    `say` is told when the equations are compiled, which takes seconds once on a machine.
+    """
     first, last = float(times[0]), float(times[-1])
-    inner = [knot for knot in dynamics.actuation.knots if first < knot < last]
-    try:
-        run.sample(first, run.y)
-        for begin, end in zip([first, *inner], [*inner, last], strict=True):
-            why = _segment(run, begin, end, progress) if end > begin else ""
-            if why:
-                return run.record(why)
-    except SingularMassError:
-        reached = run.samples[-1].time if run.samples else first
-        return run.record(f"after t = {reached:.6g} s a free motion moves no mass")
-    except np.linalg.LinAlgError:
-        reached = run.samples[-1].time if run.samples else first
-        return run.record(f"after t = {reached:.6g} s the motion grew beyond all numbers")
+    knots = [knot for knot in dynamics.actuation.knots if first < knot < last]
+    run = Run(dynamics, start, times, settings)
+    driver = _Driver(run, progress, say)
+    if not run.begin(driver.engine):
+        return run.record(f"after t = {first:.6g} s a free motion moves no mass")
+    for begin, end in zip([first, *knots], [*knots, last], strict=True):
+        why = driver.stretch(begin, end) if end > begin else ""
+        if why:
+            return run.record(why)
     return run.record("")
 
 
-def _segment(run: _Run, begin: float, end: float, progress: Progress | None) -> str:
-    """Integrate over a stretch in which all laws are smooth; why it stopped, or ""."""
-    from scipy.integrate import DOP853
+_GOING = (layout.DONE, layout.PAUSED, layout.SPENT, layout.STIFFENED, layout.WORN)
+"""The kernel came back, and the run goes on."""
 
-    settings = run.settings
-    before_end = float(np.nextafter(end, begin))
 
-    def rates(t: float, y: Array) -> Array:
-        return run.rates(min(t, before_end), y)
+class _Driver:
+    """Calls the kernel until a stretch is done."""
 
-    solver: Any = DOP853(rates, begin, run.y, end, rtol=settings.rtol, atol=settings.atol)
-    while solver.status == "running":
-        solver.step()
-        run.steps += 1
-        if solver.status == "failed":
-            return (
-                f"at t = {solver.t:.6g} s the motion becomes too fast to follow: "
-                "the mechanism is singular there or the model is stiff"
-            )
-        dense = solver.dense_output()
-        while len(run.samples) < len(run.times) and run.times[len(run.samples)] <= solver.t:
-            t = float(run.times[len(run.samples)])
-            run.sample(t, dense(t))
-            if progress is not None:
-                progress(len(run.samples), len(run.times))
-        q, v, work = run.closed(solver.t, solver.y)
-        run.y = np.concatenate([q, v, [work]])
-        if run.mechanism.closed:
-            if not run.gap(solver.t) < settings.open:
-                return f"at t = {solver.t:.6g} s the loops cannot be closed any more: the pose is singular"
-            # The integrator goes on from the closed state, and so must the slope that it keeps.
-            solver.y, solver.f = run.y, rates(solver.t, run.y)
-        if run.steps > settings.steps:
-            return f"at t = {solver.t:.6g} s {settings.steps} steps were used up: the model is stiff"
-    return ""
+    def __init__(self, run: Run, progress: Progress | None, say: Say | None):
+        self.run, self.progress, self.say = run, progress, say
+        self.contact = Contact(run)
+        self.engine: Engine = engine(compiled=False)
+        self.looked = 0
+        self.mark = (0, float(run.times[0]))
+        share = PLAIN if ready() else PLAIN * UNREADY
+        self.plain = max(1, share // len(run.dynamics.mechanism.parent))
+        if run.dynamics.mechanism.rates * run.dynamics.rank > LARGE:
+            self._compile()
+
+    def stretch(self, begin: float, end: float) -> str:
+        """Integrate over a stretch in which all laws are smooth; why it stopped, or ""."""
+        run = self.run
+        run.open_stretch(begin, end)
+        if run.settings.method == "implicit":
+            self.engine = engine(compiled=Engine.loaded)
+            return run_implicit(run, self.engine, self.contact, self._report)
+        while True:
+            status = self._advance()
+            self._report()
+            if self.contact.holding and status in _GOING:
+                self.contact.release_if_pulled(self.engine)
+            if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
+                return ""
+            if status == layout.STOPPED:
+                why = self.contact.strike(self.engine)
+            elif status in (layout.STIFFENED, layout.SPENT, layout.PAUSED) and self._stiff():
+                why = run_implicit(run, self.engine, self.contact, self._report)
+            else:
+                why = self._problem(status)
+            if why:
+                return why
+
+    def _advance(self) -> int:
+        """One call of the kernel, compiled once the run has shown to be long."""
+        run, tally = self.run, self.run.tally
+        if not self.engine.compiled and (tally[layout.STEPS] >= self.plain or Engine.loaded):
+            self._compile()
+        left = run.settings.steps - int(tally[layout.STEPS])
+        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else self.plain)
+        tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
+        self.contact.remember()
+        return self.engine.advance(run)
+
+    def _stiff(self) -> bool:
+        """Whether to go on implicitly; looked at now and then."""
+        run = self.run
+        run.tally[layout.STIFF] = 0
+        if run.settings.method == "explicit" or run.tally[layout.STEPS] < self.looked + LOOK:
+            return False
+        self.looked = int(run.tally[layout.STEPS])
+        return is_stiff(run, self.engine)
+
+    def _stalled(self) -> bool:
+        """Whether STALL steps have brought the run on by less than a share of it that would ever end."""
+        run, (steps, t) = self.run, self.mark
+        if run.tally[layout.STEPS] < steps + STALL:
+            return False
+        self.mark = int(run.tally[layout.STEPS]), float(run.clock[layout.NOW])
+        share = STALL / (10.0 * run.settings.steps)
+        return bool(self.mark[1] - t < share * (run.times[-1] - run.times[0]))
+
+    def _compile(self) -> None:
+        if self.say is not None and not ready():
+            self.say("compiling the equations of motion: some seconds, once on this machine")
+        self.engine = engine(compiled=True)
+
+    def _problem(self, status: int) -> str:
+        """Why the run cannot go on, or "" when it can."""
+        run, t = self.run, float(self.run.clock[layout.NOW])
+        if status == layout.WORN:
+            run.choose()
+        if status in _GOING:
+            if self._stalled():
+                return (
+                    f"at t = {t:.6g} s the steps become too short to get on: "
+                    f"the mechanism is singular there or the model is stiff{run.loops()}"
+                )
+            if run.tally[layout.STEPS] >= run.settings.steps:
+                return f"at t = {t:.6g} s {run.settings.steps} steps were used up: the model is stiff or singular"
+            return ""
+        if status == layout.MASSLESS:
+            return f"after t = {t:.6g} s a free motion moves no mass"
+        if status == layout.OPENED:
+            return f"at t = {t:.6g} s the loops cannot be closed any more: the pose is singular{run.loops()}"
+        return (
+            f"at t = {t:.6g} s the motion becomes too fast to follow: "
+            f"the mechanism is singular there or the model is stiff{run.loops()}"
+        )
+
+    def _report(self) -> None:
+        if self.progress is not None:
+            self.progress(int(self.run.tally[layout.NEXT]), len(self.run.times))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.follow import Follower, Led
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.record import Record, Sample
+from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start
 
@@ -35,18 +35,31 @@ def run_kinematic(
 ) -> Record:
     """Positions and rates at `times` (s), until the end or until a loop stops."""
     follower = _follower(mechanism, actuation, start, settings)
-    unknown = np.full(mechanism.rates, np.nan)
-    samples: list[Sample] = []
+    q, v = np.zeros((len(times), len(start.q))), np.zeros((len(times), mechanism.rates))
+
+    def record(done: int, stopped: str) -> Record:
+        unknown = np.full((done, mechanism.rates), np.nan)
+        return Record(
+            times[:done],
+            q[:done],
+            v[:done],
+            unknown,
+            unknown,
+            unknown,
+            np.zeros((done, 0)),
+            np.full(done, np.nan),
+            stopped,
+        )
+
     for k, t in enumerate(times):
         if k:
             stop = follower.go(float(times[k - 1]), float(t))
             if stop is not None:
-                return Record(tuple(samples), f"at t = {stop.place:.6g} s {stop.reason}")
-        v = follower.rates(float(t))
-        samples.append(Sample(float(t), follower.q.copy(), v, unknown, (np.nan, np.nan, np.nan)))
+                return record(k, f"at t = {stop.place:.6g} s {stop.reason}")
+        q[k], v[k] = follower.q, follower.rates(float(t))
         if progress is not None:
             progress(k + 1, len(times))
-    return Record(tuple(samples), "")
+    return record(len(times), "")
 
 
 def resting(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour.joints import JointKind
+from kinform.behaviour.primitives import OneFreedom
 from kinform.simulation.spatial import along_motion, multiply, rotation_vector, to_matrix
 
 __all__ = ["BallLink", "Mechanism", "Slot"]
@@ -72,6 +73,8 @@ class Mechanism:
     screw_q: Index
     screw_terms: Array
     """(P, 3, 4, 4): E₁, E₂, E₃ of the exponential."""
+    screw_primitives: tuple[OneFreedom, ...]
+    """(P,) the same, from the parent's side to the link's."""
     balls: tuple[BallLink, ...]
     column: Array
     """(n, 6) twist of each rate at the zero pose."""

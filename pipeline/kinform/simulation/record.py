@@ -2,37 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.simulation import Simulation
-from kinform.simulation.closure import rank_of
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.spatial import quaternions
+from kinform.simulation.spatial import quaternions, rotation_vector
+from kinform.simulation.states import States, states_at
 
-__all__ = ["Record", "Sample", "blank", "publish"]
+__all__ = ["Record", "blank", "closure_rows", "publish", "spread"]
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Sample:
-    """One output time: positions (nq,), rates (n,), efforts (n,), and kinetic energy, potential, work (J)."""
-
-    time: float
-    q: Array
-    v: Array
-    effort: Array
-    energy: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
 class Record:
-    """Samples in order; `stopped` says why the run ended early, "" when it did not."""
+    """T output times in order; `stopped` says why the run ended early, "" when it did not."""
 
-    samples: tuple[Sample, ...]
+    time: Array
+    """(T,) s."""
+    q: Array
+    """(T, nq)."""
+    v: Array
+    """(T, n)."""
+    acceleration: Array
+    """(T, n); nan where unknown."""
+    effort: Array
+    """(T, n) by all drives and springs on shafts, what a prescribed motion needs included; nan where unknown."""
+    needed: Array
+    """(T, n) of that what prescribed motions and end stops need."""
+    extra: Array
+    """(T, states) of controllers and motors."""
+    work: Array
+    """(T,) J that drives, dampers and loads put in so far; nan where unknown."""
     stopped: str
     notes: tuple[str, ...] = ()
     """What is to be known of the run, in sentences."""
@@ -63,37 +67,42 @@ def blank(status: str, reason: str, failures: tuple[tuple[str, str], ...] = ()) 
     )
 
 
-def publish(mechanism: Mechanism, record: Record, level: str, assumptions: tuple[str, ...], free: float) -> Simulation:
-    """The record as results keep it; `free` decides the rank of the loops.
+def publish(
+    mechanism: Mechanism, record: Record, level: str, assumptions: tuple[str, ...], free: float
+) -> tuple[Simulation, States]:
+    """The record as results keep it, without energy and reactions, and the states of the links.
 
-    Balls: the position is a quaternion wxyz; velocity and effort have a zero before their three numbers.
+    `free` decides the rank of the loops. Balls: the position is a quaternion wxyz; velocity and effort
+    have a zero before their three numbers.
     """
-    samples = record.samples
-    poses = np.array([mechanism.poses(sample.q)[mechanism.link_of] for sample in samples])
-    poses = poses.reshape(-1, len(mechanism.bodies), 4, 4)
+    known = np.nan_to_num(record.acceleration)
+    states = states_at(mechanism, record.q, record.v, known)
+    poses = states.poses[:, mechanism.link_of]
     R = poses[..., :3, :3]
     p = poses[..., :3, 3] + mechanism.centre - R @ mechanism.centre
     offsets = [slot.q.start for slot in mechanism.slots]
     offsets.append(mechanism.slots[-1].q.stop if mechanism.slots else 0)
-    return Simulation(
+    simulation = Simulation(
         status="stopped" if record.stopped else "done",
         reason=record.stopped,
         level=level,
-        time=np.array([sample.time for sample in samples]),
+        time=record.time,
         body_names=mechanism.bodies,
         p_WB=p,
         q_WB=_continuous(quaternions(R.reshape(-1, 3, 3)).reshape(*R.shape[:2], 4)),
         joint_names=tuple(slot.name for slot in mechanism.slots),
         joint_types=tuple(slot.kind.name for slot in mechanism.slots),
         joint_offset=np.array(offsets, dtype=np.int64),
-        joint_position=_positions(mechanism, np.array([sample.q for sample in samples])),
-        joint_velocity=_spread(mechanism, np.array([sample.v for sample in samples])),
-        joint_effort=_spread(mechanism, np.array([sample.effort for sample in samples])),
-        energy=np.array([sample.energy for sample in samples]).reshape(-1, 3),
-        residual=np.array([_residual(mechanism, sample.q) for sample in samples]),
-        rank=np.array([_rank(mechanism, sample.q, free) for sample in samples], dtype=np.int64),
+        joint_position=_positions(mechanism, record.q),
+        joint_velocity=spread(mechanism, record.v),
+        joint_effort=spread(mechanism, record.effort),
+        energy=np.full((len(record.time), 3), np.nan),
+        residual=_residuals(mechanism, record.q, states),
+        rank=_ranks(mechanism, states, free),
         assumptions=(*assumptions, *record.notes),
     )
+    accelerations = spread(mechanism, record.acceleration)
+    return replace(simulation, joint_acceleration=accelerations, balance=np.full(len(record.time), np.nan)), states
 
 
 def _continuous(q: Array) -> Array:
@@ -115,7 +124,7 @@ def _positions(mechanism: Mechanism, q: Array) -> Array:
     return out
 
 
-def _spread(mechanism: Mechanism, v: Array) -> Array:
+def spread(mechanism: Mechanism, v: Array) -> Array:
     """Rates or efforts (T, n) in the columns of positions; a ball's have a zero first."""
     width = mechanism.slots[-1].q.stop if mechanism.slots else 0
     out = np.zeros((len(v), width))
@@ -125,13 +134,35 @@ def _spread(mechanism: Mechanism, v: Array) -> Array:
     return out
 
 
-def _residual(mechanism: Mechanism, q: Array) -> float:
-    """Largest gap of a loop (rad or m)."""
-    gap = np.abs(mechanism.gap(mechanism.poses(q), q))
-    loops = gap[: 6 * len(mechanism.closures)].reshape(-1, 6)
-    loops[:, 3:] *= mechanism.length
-    return float(gap.max(initial=0.0))
+def _residuals(mechanism: Mechanism, q: Array, states: States) -> Array:
+    """(T,) largest gap of a loop (rad or m)."""
+    out = np.abs(q @ mechanism.gear_q.T).max(axis=1, initial=0.0)
+    for a, b in mechanism.closures:
+        ends, targets = states.poses[:, a], states.poses[:, b]
+        R = targets[:, :3, :3] @ ends[:, :3, :3].transpose(0, 2, 1)
+        p = targets[:, :3, 3] - (R @ ends[:, :3, 3, None])[..., 0]
+        gap = np.concatenate([rotation_vector(R), p], axis=1)
+        out = np.maximum(out, np.abs(gap).max(axis=1))
+    return np.asarray(out)
 
 
-def _rank(mechanism: Mechanism, q: Array, free: float) -> int:
-    return rank_of(mechanism.closure(mechanism.screws(mechanism.poses(q))), mechanism.scale, free)
+def closure_rows(mechanism: Mechanism, states: States) -> Array:
+    """(T, 6C + G, n) derivative of the gaps by the rates."""
+    count, n = states.screws.shape[:2]
+    scale = np.array([1.0, 1.0, 1.0, mechanism.length, mechanism.length, mechanism.length])
+    difference = mechanism.moves[mechanism.closures[:, 1]] - mechanism.moves[mechanism.closures[:, 0]]
+    rows = np.einsum("cn,tnk->tckn", difference, states.screws / scale).reshape(count, -1, n)
+    gears = np.broadcast_to(mechanism.gear_v, (count, *mechanism.gear_v.shape))
+    return np.concatenate([rows, gears], axis=1)
+
+
+def _ranks(mechanism: Mechanism, states: States, free: float) -> NDArray[np.int64]:
+    """(T,) rank of the loops: singular values above `free` times the largest."""
+    out = np.zeros(len(states.poses), dtype=np.int64)
+    if not mechanism.closed or not mechanism.rates:
+        return out
+    for first in range(0, len(out), 256):
+        some = States(*(getattr(states, name)[first : first + 256] for name in States.__dataclass_fields__))
+        values = np.linalg.svd(closure_rows(mechanism, some) * mechanism.scale, compute_uv=False)
+        out[first : first + 256] = np.count_nonzero(values > free * values[:, :1], axis=1)
+    return out

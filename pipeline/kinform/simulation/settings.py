@@ -15,10 +15,20 @@ class SolverSettings:
     """Relative error a step of the integrator: pendulum periods come out to 1e-9."""
     atol: float = 1e-12
     """Absolute error a step, rad or m."""
-    steps: int = 20_000
-    """Steps of the integrator before it gives up: a stiff model would run for ever."""
-    closed: float = 1e-12
-    """A loop is closed when its gap is below this, 1000 roundings."""
+    method: str = "auto"
+    """explicit; implicit; auto: explicit, and implicit once a stiff model would take it too many steps."""
+    ahead: int = 20_000
+    """So many: an implicit step costs what dozens of explicit ones do."""
+    implicit_rtol: float = 1e-8
+    """Relative error a step of the implicit method, of order 5: with less its steps grow many."""
+    implicit_atol: float = 1e-10
+    """Absolute error a step of the implicit method."""
+    steps: int = 200_000
+    """Steps of the integrators before they give up: a chaotic or nearly singular model would run for ever."""
+    keep: float = 0.1
+    """Independent rows of the loops are chosen again when a pivot falls below this share of what it was."""
+    closed: float = 1e-14
+    """A loop is closed when its gap is below this, a few dozen roundings."""
     open: float = 1e-7
     """A gap that stays above this is no rounding and no misfit that snapping leaves: it does not close."""
     free: float = 1e-4

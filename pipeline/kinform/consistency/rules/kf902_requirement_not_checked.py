@@ -1,40 +1,77 @@
-"""The function states a requirement that kinform does not check yet.
+"""A requirement could not be decided: what it needs is not known, or the answer is too near to the limit.
 
 The rule is inconclusive as long as there is one: a requirement that nobody checked is not met.
 
 Why it matters: silence would look like a pass.
 
-What to do: check the requirement by other means until its kind is supported.
+What to do: see the reason and the remedy of each: a range, a density or a simulation is missing, or a finer mesh
+would decide. Or check the requirement by other means and ignore it with that reason.
 
-Example: `[[function.require]]` with `kind = "reach"`.
+Example: `[[function.require]]` with `kind = "torque"` where nothing drives the joint.
 """
 
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, inconclusive, skipped
+from kinform.consistency._requirements import Judge, answer
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.consistency._words import counted
+from kinform.consistency.rules import (
+    kf421_region_not_reached,
+    kf422_path_not_followed,
+    kf423_clearance_too_small,
+    kf424_holding_effort_exceeded,
+    kf425_torque_exceeded,
+    kf426_speed_exceeded,
+    kf427_reaction_exceeded,
+    kf428_mass_out_of_bounds,
+    kf429_centre_of_mass_off,
+    kf430_inertia_out_of_bounds,
+    kf431_unbalanced,
+    kf432_not_retained,
+    kf433_fit_out_of_bounds,
+)
 
-__all__ = ["RULE"]
+__all__ = ["JUDGES", "RULE"]
+
+JUDGES: dict[str, Judge] = {
+    "reach": kf421_region_not_reached.judge,
+    "follow": kf422_path_not_followed.judge,
+    "clear": kf423_clearance_too_small.judge,
+    "hold": kf424_holding_effort_exceeded.judge,
+    "torque": kf425_torque_exceeded.judge,
+    "speed": kf426_speed_exceeded.judge,
+    "reaction": kf427_reaction_exceeded.judge,
+    "mass": kf428_mass_out_of_bounds.judge,
+    "centre_of_mass": kf429_centre_of_mass_off.judge,
+    "inertia": kf430_inertia_out_of_bounds.judge,
+    "balance": kf431_unbalanced.judge,
+    "retained": kf432_not_retained.judge,
+    "fit": kf433_fit_out_of_bounds.judge,
+}
 
 
 def check(context: Context) -> Outcome:
-    """Every requirement."""
+    """Every requirement that is undecided."""
     requirements = context.function.requirements
     if not requirements:
         return skipped("the function states no requirement")
+    answers = [(requirement, answer(context, requirement, JUDGES[requirement.kind])) for requirement in requirements]
+    open_ = [(requirement, found) for requirement, found in answers if found.state == "undecided"]
     findings = [
         RULE.finding(
             [requirement.name],
-            f"the requirement '{requirement.name}' of kind {requirement.kind} is not checked yet",
-            found="not checked",
-            intended=requirement.kind,
+            f"the requirement '{requirement.name}' of kind {requirement.kind} could not be decided: {found.message}",
+            found=found.found or "not checked",
+            intended=found.intended or requirement.kind,
             declared=requirement,
-            remedy="Check it by other means.",
+            remedy=found.remedy,
         )
-        for requirement in requirements
+        for requirement, found in open_
     ]
-    return inconclusive(f"{counted(len(requirements), 'requirement')} not checked", findings)
+    if not open_:
+        return decided(reason=f"{counted(len(requirements), 'requirement')} decided")
+    return inconclusive(f"{counted(len(open_), 'requirement')} not decided", findings)
 
 
 RULE = Rule("KF902", "requirement-not-checked", "note", __doc__, check)

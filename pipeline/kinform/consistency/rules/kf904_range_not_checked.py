@@ -1,56 +1,57 @@
-"""The function states the range of a joint, and kinform does not check ranges yet.
+"""The function states the range of a joint, and how far the parts let it go is not known.
 
-The rule is inconclusive as long as there is one, also when a side is free (`inf`).
+A note for each stated range of which a side is not known: no such joint was found, it is one of several freedoms, its
+loops have a singular pose, or parts overlap from the start. KF412 compares what is known.
 
 Why it matters: whether the parts collide inside the range is not known.
 
-What to do: check the range by other means until ranges are supported.
+What to do: follow the reason that is given; resolve overlaps of parts first.
 
-Example: `range = [-110, 110]` for a shoulder.
+Example: `range = [-110, 110]` for a shoulder whose motor overlaps its bracket in the pose of the meshes.
 """
 
 from __future__ import annotations
 
-import math
-
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, inconclusive, skipped
-from kinform.consistency._words import angle, counted, length
-from kinform.model.function import IntendedJoint
+from kinform.consistency._ranged import Ranged, ranged, shown
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import counted
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
     """Every intended range."""
-    ranged = [joint for joint in context.function.joints if joint.range is not None]
-    if not ranged:
+    items = ranged(context)
+    if not items:
         return skipped("no intended joint states a range")
-    findings = [
-        RULE.finding(
-            [joint.name],
-            f"the range of joint '{joint.name}' is not checked yet",
-            found="not checked",
-            intended=_shown(joint, context.units),
-            place=joint.point,
-            declared=joint,
-            remedy="Check it by other means.",
-        )
-        for joint in ranged
-    ]
-    return inconclusive(f"{counted(len(ranged), 'range')} not checked", findings)
+    findings = []
+    for item in items:
+        why = _unknown(item)
+        if why:
+            lower, upper = item.intended.range or (0.0, 0.0)
+            findings.append(
+                RULE.finding(
+                    [item.intended.name],
+                    f"the range of joint '{item.intended.name}' is not known: {why}",
+                    found="not known",
+                    intended=f"{shown(lower, item.intended, context.units)} to {shown(upper, item.intended, context.units)}",
+                    place=item.intended.point,
+                    declared=item.intended,
+                    remedy="Follow the reason, or check it by other means.",
+                )
+            )
+    if findings:
+        return inconclusive(f"{counted(len(findings), 'range')} not checked", findings)
+    return decided()
 
 
-def _shown(joint: IntendedJoint, units: str) -> str:
-    assert joint.range is not None
-    linear = joint.type == "prismatic"
-
-    def side(value: float) -> str:
-        if math.isinf(value):
-            return "free"
-        return length(value, units) if linear else angle(value)
-
-    return f"{side(joint.range[0])} to {side(joint.range[1])}"
+def _unknown(item: Ranged) -> str:
+    """Why the range is not known; empty where it is."""
+    if item.reason:
+        return item.reason
+    sides = (("lower", item.lower), ("upper", item.upper))
+    return "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
 
 
 RULE = Rule("KF904", "range-not-checked", "note", __doc__, check)

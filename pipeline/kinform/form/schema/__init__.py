@@ -6,7 +6,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from kinform.form.schema import common, function, parts, require
+from kinform.form.schema import check, common, function, parts, require
+from kinform.form.schema.check import CheckTable
 from kinform.form.schema.common import Finite, Positive, Table, Vector
 from kinform.form.schema.function import FunctionTable
 from kinform.form.schema.parts import (
@@ -20,7 +21,7 @@ from kinform.form.schema.parts import (
     TolerancesTable,
 )
 
-__all__ = ["Initial", "Manifest", "SimulationTable", "common", "function", "json_schema", "parts", "require"]
+__all__ = ["Initial", "Manifest", "SimulationTable", "check", "common", "function", "json_schema", "parts", "require"]
 
 
 class Initial(Table):
@@ -60,6 +61,7 @@ class Manifest(Table):
     )
     function: FunctionTable | None = Field(None, description="what the device is for")
     simulation: SimulationTable | None = Field(None, description="the motion to simulate")
+    check: CheckTable | None = Field(None, description="which rules run, their severities, and what is ignored")
 
 
 def json_schema() -> dict[str, Any]:

@@ -1,0 +1,79 @@
+"""`kinform export`: the model and its motion as files of other tools."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinform_cli import console, files
+from kinform_cli.errors import refuse
+from kinform_cli.options import Debug, Quiet, Results, examples
+from kinform_cli.text import count
+
+__all__ = ["EXAMPLES", "Target", "export"]
+
+EXAMPLES = examples(
+    "kinform export arm.h5 --to urdf -o arm_urdf",
+    "kinform export arm.h5 --to mjcf -o arm_mjcf --strict",
+    "kinform export arm.h5 --to modelica -o arm_modelica",
+    "kinform export arm.h5 --to csv -o .",
+)
+
+
+class Target(StrEnum):
+    """What can be written."""
+
+    csv = "csv"
+    dot = "dot"
+    glb = "glb"
+    json = "json"
+    mjcf = "mjcf"
+    modelica = "modelica"
+    sdf = "sdf"
+    svg = "svg"
+    urdf = "urdf"
+    vhdl_ams = "vhdl-ams"
+
+
+def export(
+    source: Results,
+    to: Annotated[Target, typer.Option("--to", show_default=False, help="Format to write.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="DIR", show_default=False, help="Folder to write into; made if missing."
+        ),
+    ],
+    strict: Annotated[
+        bool,
+        typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model."),
+    ] = False,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Write the model, or its motion, in the format of another tool.
+
+    What the format cannot carry is named on stderr, and in the file itself.
+    """
+    if output.exists() and not output.is_dir():
+        raise refuse("this is a file, not a folder", file=output, remedy="name a folder with -o")
+    design = files.read(source)
+    from kinform import exports
+    from kinform.errors import InputError, Problem
+
+    with files.needing(source):
+        try:
+            made = exports.export(design, to.value, strict=strict)
+        except exports.LostError as error:
+            remedy = "without --strict it is written, and named in the file"
+            problems = [Problem(f"{to.value} cannot carry {text}", str(source), None, remedy) for text in error.lost]
+            raise InputError(problems) from None
+        except exports.ExportError as error:
+            raise refuse(str(error), file=source) from None
+    written = exports.write(made, output)
+    console.say(f"{output}: {count(len(written), 'file')} of {to.value}")
+    for text in made.lost:
+        console.warn(f"{to.value} does not carry {text}")

@@ -1,0 +1,154 @@
+"""What acts on the shaft of a joint with one freedom: drives, springs, controllers, motors, stops."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kinform.behaviour.ports import Component, Port
+from kinform.behaviour.signals import Signal
+
+__all__ = [
+    "Actor",
+    "Controller",
+    "Damper",
+    "DcMotor",
+    "EffortDrive",
+    "EndStop",
+    "MotionDrive",
+    "Servo",
+    "Spring",
+    "VoltageController",
+    "VoltageSource",
+]
+
+
+@dataclass(frozen=True)
+class OnShaft(Component):
+    """Something on the shaft of a joint with one freedom; one equation."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("shaft", 1),)
+
+    @property
+    def equations(self) -> int:
+        return 1
+
+
+@dataclass(frozen=True, eq=False)
+class MotionDrive(OnShaft):
+    """The joint's value follows the signal, whatever effort that takes."""
+
+    signal: Signal
+
+
+@dataclass(frozen=True, eq=False)
+class EffortDrive(OnShaft):
+    """The effort follows the signal (N·m or N)."""
+
+    signal: Signal
+
+
+@dataclass(frozen=True)
+class Spring(OnShaft):
+    """effort = stiffness · (rest − value); N·m/rad and rad, or N/m and m."""
+
+    stiffness: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Damper(OnShaft):
+    """effort = −damping · rate; N·m·s/rad or N·s/m."""
+
+    damping: float
+
+
+@dataclass(frozen=True)
+class EndStop(OnShaft):
+    """The value stays between `lower` and `upper` (rad or m); impacts are without rebound."""
+
+    lower: float = -math.inf
+    upper: float = math.inf
+
+
+@dataclass(frozen=True)
+class Controller:
+    """kp · e + ki · ∫e + kd · ė, e the target less the value, kept within ±limit.
+
+    The integral rests while the output is at its limit and would be pushed further.
+    """
+
+    kp: float
+    ki: float = 0.0
+    kd: float = 0.0
+    limit: float = math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Servo(OnShaft):
+    """The effort (N·m or N) is the controller's output for the target."""
+
+    target: Signal
+    controller: Controller
+
+
+@dataclass(frozen=True)
+class DcMotor(OnShaft):
+    """Motor with a gear: electric terminals (voltage across, current through) and a shaft. Two equations.
+
+    L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own.
+    """
+
+    resistance: float
+    """Ω."""
+    inductance: float
+    """H; 0: the current follows at once."""
+    constant: float
+    """k: N·m/A, which equals V·s/rad."""
+    gear: float
+    """g: motor turns a turn of the joint, or radians of the motor a metre."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("shaft", 1), Port("terminals", 1))
+
+    @property
+    def equations(self) -> int:
+        return 2
+
+
+@dataclass(frozen=True, eq=False)
+class VoltageSource(Component):
+    """The voltage across its terminals follows the signal (V); one equation."""
+
+    signal: Signal
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("terminals", 1),)
+
+    @property
+    def equations(self) -> int:
+        return 1
+
+
+@dataclass(frozen=True, eq=False)
+class VoltageController(OnShaft):
+    """A voltage across its terminals by a controller that reads the shaft without loading it. Two equations."""
+
+    target: Signal
+    controller: Controller
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("shaft", 1), Port("terminals", 1))
+
+    @property
+    def equations(self) -> int:
+        return 2
+
+
+Actor = MotionDrive | EffortDrive | Spring | Damper | EndStop | Servo | DcMotor
+"""What gives a shaft effort, or holds it."""

@@ -1,0 +1,150 @@
+"""Collisions along a run that was computed, and distances of parts at given poses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation, Slerp
+
+from kinform.collisions.pairs import PairTest, Shapes
+from kinform.collisions.ranges import shapes_of
+from kinform.collisions.recorded import Nodes, course, moving_pairs
+from kinform.collisions.scan import Course, first_crossing
+from kinform.model.assembly import Assembly
+from kinform.model.collisions import Collision
+from kinform.model.contacts import Contacts
+from kinform.model.kinematics import Kinematics
+from kinform.model.simulation import Simulation
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["along", "clearance", "part_poses"]
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+TIME = 1e-4
+"""Share of the time between two outputs to which a first contact is found."""
+DEPTHS = 12
+"""Output times after the first contact at which the depth is measured."""
+
+
+def along(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts | None,
+    kinematics: Kinematics,
+    simulation: Simulation,
+    progress: Progress | None = None,
+) -> tuple[tuple[Collision, ...], tuple[tuple[str, str, str], ...]]:
+    """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
+
+    Second: pairs of which that is not known, and why: they overlap from the start, roll or mesh, or stay too close.
+    Between output times bodies move evenly. Empty for runs without poses.
+    """
+    if len(simulation.time) < 2 or not len(simulation.body_names):
+        return (), ()
+    shapes = shapes_of(assembly, surfaces, contacts, kinematics)
+    names = list(simulation.body_names)
+    nodes = _nodes(simulation)
+    pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
+    untested = [(a, b, "they roll or mesh") for a, b in rolling]
+    out = []
+    end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
+    for done, (test, a, b) in enumerate(pairs):
+        if progress is not None:
+            progress(done, len(pairs))
+        way = course(test, a, b, nodes)
+        found = first_crossing(test, way, end, TIME * step, start=float(simulation.time[0]))
+        first, second = test.part_names
+        if found.overlaps:
+            untested.append((first, second, "they overlap from the start"))
+        if found.exhausted is not None:
+            untested.append((first, second, f"they stay too close to be followed after t = {found.exhausted:.6g} s"))
+        if found.hit is not None and found.place is not None:
+            place = (nodes.between(found.hit)[a] @ np.append(found.place, 1.0))[:3]
+            depth = _depth(test, way, simulation.time, found.hit)
+            out.append(Collision(test.part_names, found.hit, place, depth))
+    if progress is not None:
+        progress(len(pairs), len(pairs))
+    return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
+
+
+def clearance(assembly: Assembly, pairs: Sequence[tuple[str, str]], poses: Mapping[str, Array]) -> tuple[Array, Array]:
+    """Distances (T, pairs) m between parts at displacements `poses` (T, 4, 4) of each part from the pose of the meshes
+    (`part_poses`), 0 where they touch or cross; and the places (T, pairs, 2, 3) m in the world that are nearest.
+
+    Mating surfaces count: parts that touch have no clearance. Parts that are not in `poses` rest. Raises KeyError.
+    """
+    shapes = Shapes(assembly, {}, None)
+    count = max((len(pose) for pose in poses.values()), default=1)
+    rest = np.broadcast_to(np.eye(4), (count, 4, 4))
+    distance, places = np.full((count, len(pairs)), np.inf), np.full((count, len(pairs), 2, 3), np.nan)
+    for n, names in enumerate(pairs):
+        if any(shapes.part(name).mesh is None for name in names):
+            continue
+        objects = [fcl.CollisionObject(shapes.model(name)) for name in names]
+        moves = [np.asarray(poses.get(name, rest)) for name in names]
+        starts = [shapes.part(name).X_WP for name in names]
+        for t in range(count):
+            for item, move, X in zip(objects, moves, starts, strict=True):
+                placed = move[t] @ X
+                item.setTransform(fcl.Transform(placed[:3, :3], placed[:3, 3]))
+            result = fcl.DistanceResult()
+            found = fcl.distance(*objects, fcl.DistanceRequest(enable_nearest_points=True), result)
+            distance[t, n] = max(float(found), 0.0)
+            places[t, n] = result.nearest_points
+    return distance, places
+
+
+def part_poses(kinematics: Kinematics, simulation: Simulation) -> dict[str, Array]:
+    """Displacement (T, 4, 4) of each part from the pose of the meshes at the output times of a run."""
+    displacements = _displacements(simulation)
+    number = {name: n for n, name in enumerate(simulation.body_names)}
+    return {
+        str(part): displacements[:, number[body.name]]
+        for body in kinematics.bodies
+        for part in body.parts
+        if body.name in number
+    }
+
+
+def _displacements(simulation: Simulation) -> Array:
+    steps, bodies = simulation.p_WB.shape[:2]
+    out = np.zeros((steps, bodies, 4, 4))
+    w, x, y, z = np.moveaxis(simulation.q_WB.reshape(-1, 4), 1, 0)
+    out[..., :3, :3] = Rotation.from_quat(np.stack([x, y, z, w], axis=1)).as_matrix().reshape(steps, bodies, 3, 3)
+    out[..., :3, 3] = simulation.p_WB
+    out[..., 3, 3] = 1.0
+    return out
+
+
+def _nodes(simulation: Simulation) -> Nodes:
+    displacements, time = _displacements(simulation), simulation.time
+    turns = [Slerp(time, Rotation.from_matrix(displacements[:, b, :3, :3])) for b in range(displacements.shape[1])]
+
+    def between(s: float) -> Array:
+        out = np.zeros((displacements.shape[1], 4, 4))
+        n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
+        share = (s - time[n]) / (time[n + 1] - time[n])
+        out[:, :3, :3] = [turn(s).as_matrix() for turn in turns]
+        out[:, :3, 3] = (1.0 - share) * displacements[n, :, :3, 3] + share * displacements[n + 1, :, :3, 3]
+        out[:, 3, 3] = 1.0
+        return out
+
+    return Nodes(time, displacements, between)
+
+
+def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
+    """m: how deep two parts are in each other at the worst of some output times from the first contact on."""
+    after = time[time >= hit]
+    chosen = after[np.unique(np.linspace(0, len(after) - 1, DEPTHS).astype(int))] if len(after) else np.array([hit])
+    depths = []
+    for s in chosen:
+        D = way.displacement(float(s))
+        crossing = test.crossing(D)
+        if crossing.surfaces:
+            depths.append(test.depth(D, crossing))
+    return max(depths, default=0.0)

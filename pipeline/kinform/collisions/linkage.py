@@ -1,0 +1,250 @@
+"""The ranges of joints that loops tie together, where all that is left is one motion: it is followed both ways.
+
+The motion is continued by arc length in joint coordinates, a step along the null vector of the loop closure and
+Newton's method back onto the loops, so that rockers turn back at their dead points (Allgower and Georg 1990). It ends
+where parts meet, where the linkage comes back to its pose, or where a second motion branches off.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.collisions.pairs import Shapes
+from kinform.collisions.recorded import Nodes, course, moving_pairs
+from kinform.collisions.scan import first_crossing
+from kinform.collisions.single import exponential
+from kinform.kinematics.graph import forest
+from kinform.kinematics.motion import LoopSystem, loop_system
+from kinform.kinematics.screws import Frame
+from kinform.model.collisions import JointRange, RangeEnd
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.names import PartName
+
+__all__ = ["drive_loops"]
+
+Array = NDArray[np.float64]
+Edge = tuple[int, int]
+
+STEP = 0.04
+"""Arc length of a step: rad, and share of the block's size."""
+STEPS = 900
+"""Steps to each side at most."""
+RANK = 1e-4
+"""Singular values of the closure below this leave motions; one more of them within `SINGULAR` is a branching."""
+SINGULAR = 2e-3
+
+
+CLOSED = 1e-6
+"""rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
+
+
+class _Linkage:
+    """One block of joints, with the assembly's bodies hanging on it."""
+
+    def __init__(self, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]):
+        joints = [kinematics.joints[k] for k in block]
+        placed = [j.point for j in joints if j.point is not None]
+        centre, length = np.zeros(3), 1.0
+        if placed:
+            low, high = np.min(placed, axis=0), np.max(placed, axis=0)
+            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), 1e-3)
+        self.system: LoopSystem = loop_system(
+            [edges[k] for k in block], [j.twists for j in joints], Frame(centre, length)
+        )
+        self.twists, self.unit, self.turns = [], [], []
+        self.owner: list[int] = []
+        for k, joint in zip(block, joints, strict=True):
+            for twist in joint.twists:
+                turning = float(np.linalg.norm(twist[:3]))
+                turns = turning > 1e-9
+                self.twists.append(twist / (turning if turns else float(np.linalg.norm(twist[3:]))))
+                self.unit.append(1.0 if turns else length)
+                self.turns.append(turns)
+                self.owner.append(k)
+        ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
+        self.tree = forest(len(kinematics.bodies), edges, ground)
+        self.edges = edges
+
+    def poses(self, q: Array) -> Array:
+        """(B, 4, 4) displacement of each body at coordinates q (n,); joints outside of the block rest."""
+        across: dict[int, Array] = {}
+        for n, k in enumerate(self.owner):
+            across[k] = across.get(k, np.eye(4)) @ exponential(self.twists[n], float(q[n]) * self.unit[n])
+        out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
+        for node in self.tree.order:
+            up, k = self.tree.parent[node], self.tree.edge[node]
+            if up >= 0:
+                move = across.get(k)
+                if move is not None and self.edges[k][1] != node:
+                    move = np.linalg.inv(move)
+                out[node] = out[up] if move is None else out[up] @ move
+        return out
+
+    def closed(self, q: Array) -> Array | None:
+        """The nearest coordinates at which the loops close."""
+        for _ in range(12):
+            found = self.system.close(q[None])
+            residual = found.residual[0]
+            if np.abs(residual).max() < 1e-12:
+                return q
+            q = np.asarray(q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0], float)
+        return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
+
+    def tangent(self, q: Array) -> tuple[Array, bool] | None:
+        """Unit null vector at q, and whether it is the only one; None where there is none."""
+        jacobian = self.system.close(q[None]).jacobian[0]
+        _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
+        values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
+        count = int((values < RANK).sum())
+        if count == 0:
+            return None
+        return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > SINGULAR)
+
+
+@dataclass(frozen=True, eq=False)
+class _Path:
+    q: Array
+    """(T, n)."""
+    why: str
+    """How it ended: returned, or why no further."""
+
+
+def _follow(linkage: _Linkage, sign: float) -> _Path:
+    q = np.zeros(linkage.system.coordinates)
+    found = linkage.tangent(q)
+    assert found is not None
+    along = sign * found[0]
+    path = [q]
+    turns = np.array(linkage.turns)
+    for _ in range(STEPS):
+        following = linkage.closed(q + STEP * along)
+        if following is None or float(np.linalg.norm(following - q)) < 0.3 * STEP:
+            return _Path(np.array(path), "the loops cannot be closed further")
+        found = linkage.tangent(following)
+        if found is None or not found[1]:
+            return _Path(np.array(path), "a singular pose, from which motions branch")
+        q = following
+        path.append(q)
+        along = found[0] if float(found[0] @ along) >= 0.0 else -found[0]
+        around = np.where(turns, (q + math.pi) % (2.0 * math.pi) - math.pi, q)
+        if len(path) > 8 and float(np.linalg.norm(around)) < STEP:
+            return _Path(np.array(path), "returned")
+    return _Path(np.array(path), "the motion is too long to be followed to its end")
+
+
+def drive_loops(
+    shapes: Shapes, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]
+) -> dict[int, JointRange] | str:
+    """The ranges of the joints of one block; or why they are not known."""
+    doubtful = [
+        k for k in block if kinematics.joints[k].type == "general" or kinematics.joints[k].status == "ambiguous"
+    ]
+    if doubtful:
+        return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
+    linkage = _Linkage(kinematics, edges, block)
+    first = linkage.tangent(np.zeros(linkage.system.coordinates))
+    if first is None:
+        return "the loops do not move"
+    if not first[1]:
+        return "its loops have more than one freedom, or a singular pose"
+    ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, sign)) for sign in (-1.0, 1.0)]
+    out = {}
+    for k in block:
+        columns = [n for n, owner in enumerate(linkage.owner) if owner == k]
+        if len(columns) == 1:
+            out[k] = _range(kinematics.joints[k], linkage, columns[0], ends)
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Travelled:
+    q: Array
+    """(T, n) of what is free."""
+    why: str
+    parts: tuple[PartName, ...]
+    place: Array | None
+    left_out: tuple[tuple[PartName, PartName], ...]
+
+
+def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: _Path) -> _Travelled:
+    """The path until parts meet."""
+    names = [str(body.name) for body in kinematics.bodies]
+    s = np.arange(len(path.q), dtype=float)
+
+    def at(x: float) -> Array:
+        n = min(int(x), len(path.q) - 1)
+        if x == n:
+            return np.asarray(path.q[n])
+        guess = path.q[n] + (x - n) * (path.q[n + 1] - path.q[n])
+        found = linkage.closed(guess)
+        return np.asarray(guess) if found is None else found
+
+    nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), lambda x: linkage.poses(at(x)))
+    pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
+    end, why, place = float(s[-1]), path.why, None
+    parts: tuple[PartName, ...] = ()
+    left_out = set(rolling)
+    for test, a, b in pairs:
+        found = first_crossing(test, course(test, a, b, nodes), end, 1e-3)
+        if found.overlaps:
+            left_out.add(test.part_names)
+        if found.exhausted is not None:
+            end, why, parts, place = found.exhausted, f"{' and '.join(test.names)} stay too close", (), None
+        elif found.at is not None and found.place is not None:
+            end, why, parts = found.at, "", test.part_names
+            place = (nodes.between(found.at)[a] @ np.append(found.place, 1.0))[:3]
+    q = np.concatenate([path.q[: int(end) + 1], at(end)[None]])
+    return _Travelled(q, why, parts, place, tuple(sorted(left_out)))
+
+
+def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travelled]) -> JointRange:
+    """The values that one joint takes along what is free to both sides."""
+    unit = linkage.unit[column] * _sense(joint, linkage.twists[column])
+    values = [end.q[:, column] * unit for end in ends]
+    low, high = (min(_least(sign * v) for v in values) * sign for sign in (1.0, -1.0))
+    left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
+    returned = any(end.why == "returned" for end in ends)
+    if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
+        free = RangeEnd("unknown", reason=_overlap(left_out)) if left_out else RangeEnd("unbounded")
+        return JointRange(joint.name, free, free, left_out)
+    sides = []
+    for value in (low, high):
+        n = min(range(2), key=lambda k: abs(float(values[k][-1]) - value))
+        at_end = abs(float(values[n][-1]) - value) < 1e-9
+        end = ends[n]
+        if at_end and end.parts:
+            sides.append(RangeEnd("found", float(value), end.parts, end.place))
+        elif at_end and end.why != "returned":
+            sides.append(RangeEnd("unknown", reason=end.why))
+        elif left_out:
+            sides.append(RangeEnd("unknown", reason=_overlap(left_out)))
+        else:
+            sides.append(RangeEnd("found", float(value), reason="the linkage turns back"))
+    return JointRange(joint.name, sides[0], sides[1], left_out)
+
+
+def _least(values: Array) -> float:
+    """The least of values at even steps, between them where it is not at an end: of the parabola through three."""
+    n = int(np.argmin(values))
+    if n == 0 or n >= len(values) - 2:
+        return float(values[n])
+    a, b, c = (float(v) for v in values[n - 1 : n + 2])
+    bend = a - 2.0 * b + c
+    return b - (a - c) ** 2 / (8.0 * bend) if bend > 0.0 else b
+
+
+def _overlap(pairs: Sequence[tuple[str, str]]) -> str:
+    return f"overlap from the start: {', '.join(' and '.join(pair) for pair in pairs[:3])}"
+
+
+def _sense(joint: Joint, twist: Array) -> float:
+    """1 where the twist goes with the joint's axis, −1 where against it."""
+    if joint.axis is None:
+        return 1.0
+    own = twist[3:] if joint.type == "prismatic" else twist[:3]
+    return 1.0 if float(own @ joint.axis) >= 0.0 else -1.0

@@ -1,0 +1,304 @@
+"""Two parts of different bodies, as far as a motion can bring them into collision.
+
+Facets of surfaces that the pair's own motion maps onto themselves are left out (`invariant`). What is left of mating
+parts may still cross by chord errors where a border of one surface runs along a mate: such segments, all of whose
+points lie on a mating surface to within the errors of the pair, are no collision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.collisions.crossing import crossings
+from kinform.collisions.invariant import Allowed, Extent, extents, sliding_on_themselves
+from kinform.contacts.bvh import MeshIndex, MeshStore
+from kinform.kinematics.screws import cross
+from kinform.model.assembly import Assembly, Mesh, Part
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.names import PartName
+from kinform.model.surfaces import MeshSurfaces, Surface
+
+__all__ = ["Crossing", "PairTest", "Shapes"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+SurfacePair = tuple[int, int]
+
+PRESERVED = 0.03
+"""A patch mates along a motion whose velocity is within this share of tangential to it."""
+SAMPLES = 16
+"""Ends of crossing segments between which the depth is looked for."""
+INSIDE = 40
+"""Places between them that are asked whether they are inside both parts, the deepest first."""
+MOST = 200_000
+"""Crossing facets that one question may return."""
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """Facets that cross at one pose."""
+
+    surfaces: frozenset[SurfacePair]
+    segments: Array
+    """(n, 2, 3) m, shared by the facets that cross, in the frame of the first part."""
+    slack: float
+    """m: chord errors of the surfaces that cross; less deep, it may be no crossing of what the facets stand for."""
+
+
+NONE = Crossing(frozenset(), np.zeros((0, 2, 3)), 0.0)
+
+
+def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    used, corners = np.unique(faces, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    model = fcl.BVHModel()
+    model.beginModel(len(used), len(corners))
+    model.addSubModel(np.ascontiguousarray(vertices[used]), np.ascontiguousarray(corners))
+    model.endModel()
+    return model
+
+
+@dataclass
+class Shapes:
+    """Meshes with what is asked of them, each worked out once."""
+
+    assembly: Assembly
+    surfaces: dict[str, MeshSurfaces]
+    contacts: Contacts | None
+    body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
+    """Parts of each body that have a mesh."""
+    _extents: dict[str, Extent] = field(default_factory=dict)
+    _invariant: dict[tuple[str, bytes, Allowed], Flags] = field(default_factory=dict)
+    _borders: dict[str, list[set[int]]] = field(default_factory=dict)
+    _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
+    _store: MeshStore = field(default_factory=MeshStore)
+    _patches: dict[tuple[str, str], list[int]] | None = None
+    _parts: dict[str, Part] = field(default_factory=dict)
+
+    def part(self, name: str) -> Part:
+        """The part of that name."""
+        if not self._parts:
+            self._parts = {part.name: part for part in self.assembly.parts}
+        return self._parts[name]
+
+    def mesh(self, name: str) -> Mesh:
+        """Its mesh."""
+        mesh = self.part(name).mesh
+        assert mesh is not None
+        return mesh
+
+    def surfaces_of(self, name: str) -> MeshSurfaces:
+        """Its surfaces."""
+        return self.surfaces[self.mesh(name).digest]
+
+    def allowed(self, first: str, second: str) -> Allowed:
+        """What surfaces of a pair may be off an exact invariance."""
+        tolerances = self.assembly.tolerances
+        contact = tolerances.contact_of(self.mesh(first).diagonal, self.mesh(second).diagonal)
+        return Allowed(0.25 * contact, 1.5 * tolerances.alignment)
+
+    def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
+        """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
+        key = (name, twists.tobytes(), allowed)
+        if key not in self._invariant:
+            self._invariant[key] = self._find_invariant(name, twists, allowed)
+        return self._invariant[key]
+
+    def _find_invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
+        mesh, surfaces = self.mesh(name), self.surfaces_of(name)
+        if mesh.digest not in self._extents:
+            self._extents[mesh.digest] = extents(mesh, surfaces)
+        X = self.part(name).X_WP
+        omega = twists[:, :3] @ X[:3, :3]
+        moment = (twists[:, 3:] + cross(twists[:, :3], np.broadcast_to(X[:3, 3], omega.shape))) @ X[:3, :3]
+        local = np.hstack([omega, moment])
+        return sliding_on_themselves(surfaces, self._extents[mesh.digest], local, allowed)
+
+    def borders(self, name: str) -> list[set[int]]:
+        """For each surface of a part, the surfaces that share an edge with it, and itself."""
+        mesh, surfaces = self.mesh(name), self.surfaces_of(name)
+        if mesh.digest not in self._borders:
+            near: list[set[int]] = [{n} for n in range(len(surfaces.surfaces))]
+            edges = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+            labels = np.repeat(surfaces.labels, 3)
+            order = np.lexsort((edges[:, 1], edges[:, 0]))
+            edges, labels = edges[order], labels[order]
+            same = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1]))
+            for a, b in np.unique(np.stack([labels[same], labels[same + 1]], axis=1), axis=0).tolist():
+                near[a].add(b)
+                near[b].add(a)
+            self._borders[mesh.digest] = near
+        return self._borders[mesh.digest]
+
+    def overlapping(self, first: str, second: str) -> bool:
+        """Whether the solids of two parts overlap at the pose of the meshes, other than where they mate."""
+        found = self.contacts.interferences if self.contacts is not None else ()
+        return any(set(item.parts) == {first, second} and not item.mated for item in found)
+
+    def index(self, name: str) -> MeshIndex:
+        """Its facets, to be asked for insides and distances."""
+        return self._store.index(self.mesh(name))
+
+    def model(self, name: str, facets: Ints | None = None) -> fcl.BVHModel:
+        """FCL's model of some facets of a part (m, part frame)."""
+        mesh = self.mesh(name)
+        key = (mesh.digest, b"" if facets is None else facets.tobytes())
+        if key not in self._models:
+            self._models[key] = _model(mesh.vertices, mesh.faces if facets is None else mesh.faces[facets])
+        return self._models[key]
+
+    def patches(self, first: str, second: str) -> list[int]:
+        """Indices of the patches between two parts, in either order."""
+        if self._patches is None:
+            self._patches = {}
+            for n, patch in enumerate(self.contacts.patches if self.contacts is not None else ()):
+                self._patches.setdefault(patch.parts, []).append(n)
+        return self._patches.get((min(first, second), max(first, second)), [])
+
+
+class PairTest:
+    """Parts `names`, with the facets that a motion may bring together; poses are of the second in the first."""
+
+    def __init__(self, shapes: Shapes, first: str, second: str, facets: tuple[Ints, Ints], mates: Sequence[Patch]):
+        self.names = (first, second)
+        self._shapes = shapes
+        self.overlapping = shapes.overlapping(first, second)
+        """Whether the solids overlap at the pose of the meshes, other than where they mate."""
+        self.facets = facets
+        self.X_WA, self.X_WB = shapes.part(first).X_WP, shapes.part(second).X_WP
+        self._meshes = (shapes.mesh(first), shapes.mesh(second))
+        self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
+        self._near = (shapes.borders(first), shapes.borders(second))
+        self._mates = [self._own(patch) for patch in mates]
+        self._slacks = [
+            patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + 1e-6 * self.size for patch in mates
+        ]
+        self._bare = {pair for pair, patch in zip(self._mates, mates, strict=True) if patch.kind in _SHAPELESS}
+        self.empty = not (len(facets[0]) and len(facets[1]))
+        if not self.empty:
+            self._objects = tuple(
+                fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
+            )
+
+    @property
+    def part_names(self) -> tuple[PartName, PartName]:
+        """Names of the parts, sorted."""
+        first, second = sorted(PartName(name) for name in self.names)
+        return first, second
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the smaller part (m)."""
+        return min(mesh.diagonal for mesh in self._meshes)
+
+    def _own(self, patch: Patch) -> SurfacePair:
+        a, b = patch.surfaces
+        return (a, b) if patch.parts[0] == self.names[0] else (b, a)
+
+    def corners(self, which: int) -> Array:
+        """(8, 3) corners of the box of the facets of a part that count, in the world at the pose of the meshes."""
+        mesh = self._meshes[which]
+        points = mesh.vertices[np.unique(mesh.faces[self.facets[which]])]
+        low, high = points.min(axis=0), points.max(axis=0)
+        bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
+        X = self.X_WA if which == 0 else self.X_WB
+        return np.asarray(np.where(bits, high, low) @ X[:3, :3].T + X[:3, 3])
+
+    def _place(self, D: Array) -> Array:
+        """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
+        return np.asarray(X)
+
+    def distance(self, D: Array) -> float:
+        """Distance (m) of the facets at a displacement (4, 4); 0 where they touch or cross."""
+        if self.empty:
+            return float("inf")
+        self._place(D)
+        found = fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult())
+        return max(float(found), 0.0)
+
+    def crossing(self, D: Array) -> Crossing:
+        """Facets that cross at a displacement (4, 4), other than along mates."""
+        if self.empty:
+            return NONE
+        X = self._place(D)
+        request = fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False)
+        result = fcl.CollisionResult()
+        fcl.collide(*self._objects, request, result)
+        if not result.contacts:
+            return NONE
+        hits = np.unique(np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64), axis=0)
+        f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
+        first = self._meshes[0].vertices[self._meshes[0].faces[f]]
+        second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
+        found, segments = crossings(first, second, 1e-9 * self.size)
+        pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
+        segments = segments[found]
+        out: dict[SurfacePair, Array] = {}
+        slack = 0.0
+        for pair in sorted({(int(a), int(b)) for a, b in pairs}):
+            own = segments[(pairs == pair).all(axis=1)]
+            own = own[~self._along_mate(pair, own)]
+            if len(own):
+                out[pair] = own
+                slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
+        return Crossing(frozenset(out), np.concatenate(list(out.values())), slack) if out else NONE
+
+    def depth(self, D: Array, crossing: Crossing, least: float = 0.0) -> float:
+        """m: how deep the parts go into each other between the places where they cross; 0 where it is not above `least`."""
+        points = crossing.segments.reshape(-1, 3)
+        points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
+        a, b = np.triu_indices(len(points), 1)
+        middles = 0.5 * (points[a] + points[b])
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        other = (middles - X[:3, 3]) @ X[:3, :3]
+        own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
+        away, _ = own.whole().depths(middles)
+        away_other, _ = far.whole().depths(other)
+        total = away + away_other
+        for n in np.argsort(-total, kind="stable")[:INSIDE]:
+            if total[n] <= least:
+                break
+            if own.contains(middles[n : n + 1])[0] and far.contains(other[n : n + 1])[0]:
+                return float(total[n])
+        return 0.0
+
+    def _along_mate(self, pair: SurfacePair, segments: Array) -> Flags:
+        """(n,) which segments (n, 2, 3) lie on a mate that both surfaces belong to or border."""
+        out = np.zeros(len(segments), dtype=bool)
+        for mate, slack in zip(self._mates, self._slacks, strict=True):
+            if pair[0] not in self._near[0][mate[0]] or pair[1] not in self._near[1][mate[1]]:
+                continue
+            if mate in self._bare and pair == mate:
+                return np.ones(len(segments), dtype=bool)
+            away = _distance(self._surfaces[0].surfaces[mate[0]], segments.reshape(-1, 3))
+            if away is not None:
+                out |= (away.reshape(-1, 2) <= slack).all(axis=1)
+        return out
+
+
+_SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")
+"""Mates of these are left out as they are: their facets say no more than that they touch."""
+
+
+def _distance(surface: Surface, points: Array) -> Array | None:
+    """(n,) m distance of points (n, 3) from a plane, cylinder, cone or sphere; None for other kinds."""
+    away = points - surface.point
+    if surface.kind == "plane":
+        return np.asarray(np.abs(away @ surface.axis))
+    if surface.kind == "sphere":
+        return np.asarray(np.abs(np.linalg.norm(away, axis=1) - surface.radius))
+    if surface.kind not in ("cylinder", "cone"):
+        return None
+    height = away @ surface.axis
+    across = np.linalg.norm(away - height[:, None] * surface.axis, axis=1)
+    if surface.kind == "cylinder":
+        return np.asarray(np.abs(across - surface.radius))
+    return np.asarray(np.abs(across * np.cos(surface.half_angle) - height * np.sin(surface.half_angle)))

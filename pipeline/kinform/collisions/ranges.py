@@ -1,0 +1,108 @@
+"""The range of every joint of one freedom until something stops it, from the pose of the meshes.
+
+A joint outside of loops is driven alone, everything else at rest. The joints of a block of loops that has one freedom
+are driven together. Of other joints the range is not known, and it is said why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from kinform.collisions.linkage import drive_loops
+from kinform.collisions.pairs import Shapes
+from kinform.collisions.single import drive_alone
+from kinform.kinematics.graph import UnionFind, blocks
+from kinform.model.assembly import Assembly
+from kinform.model.collisions import JointRange, RangeEnd
+from kinform.model.contacts import Contacts
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["ONE_FREEDOM", "ranges", "shapes_of", "unknown"]
+
+Progress = Callable[[int, int], None]
+
+ONE_FREEDOM = ("revolute", "prismatic", "screw")
+
+
+def ranges(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts | None,
+    kinematics: Kinematics,
+    progress: Progress | None = None,
+) -> tuple[JointRange, ...]:
+    """The range of each joint that is not fixed, in the order of the joints."""
+    shapes = shapes_of(assembly, surfaces, contacts, kinematics)
+    index = {body.name: n for n, body in enumerate(kinematics.bodies)}
+    joints = kinematics.joints
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
+    looped = {k: block for block in blocks(len(index), edges) if len(block) > 1 for k in block}
+    out: dict[int, JointRange] = {}
+    driven = [k for k, joint in enumerate(joints) if joint.type != "fixed"]
+    for done, k in enumerate(driven):
+        if progress is not None:
+            progress(done, len(driven))
+        if k in out:
+            continue
+        joint = joints[k]
+        reason = _refused(joint, kinematics, shapes)
+        if reason:
+            out[k] = unknown(joint, reason)
+        elif k in looped:
+            found = drive_loops(shapes, kinematics, edges, looped[k])
+            for n in looped[k]:
+                if _refused(joints[n], kinematics, shapes):
+                    continue
+                out[n] = unknown(joints[n], found) if isinstance(found, str) else found[n]
+        else:
+            still, moving = _sides(kinematics, edges, k, shapes)
+            out[k] = drive_alone(shapes, joint, still, moving)
+    if progress is not None:
+        progress(len(driven), len(driven))
+    return tuple(replace(out[k], slides=joints[k].type == "prismatic") for k in driven)
+
+
+def shapes_of(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts | None, kinematics: Kinematics
+) -> Shapes:
+    """The meshes of an assembly, for questions about motions."""
+    known = {p.name for p in assembly.parts if p.mesh is not None and p.mesh.digest in surfaces and len(p.mesh.faces)}
+    parts = {str(body.name): frozenset(str(p) for p in body.parts if p in known) for body in kinematics.bodies}
+    return Shapes(assembly, dict(surfaces), contacts, parts)
+
+
+def unknown(joint: Joint, reason: str) -> JointRange:
+    """The range of a joint of which nothing is known."""
+    return JointRange(joint.name, RangeEnd("unknown", reason=reason), RangeEnd("unknown", reason=reason))
+
+
+def _refused(joint: Joint, kinematics: Kinematics, shapes: Shapes) -> str:
+    if joint.type not in ONE_FREEDOM:
+        return f"a {joint.type} joint has no single range"
+    if joint.status == "ambiguous":
+        return "the joint is ambiguous"
+    if joint.axis is None or (joint.type != "prismatic" and joint.point is None):
+        return "the joint has no axis"
+    bare = [body.name for body in kinematics.bodies if not shapes.body_parts[body.name]]
+    own = [name for name in joint.bodies if name in bare]
+    if own:
+        return f"{' and '.join(own)} has no mesh" if len(own) == 1 else f"{' and '.join(own)} have no meshes"
+    return ""
+
+
+def _sides(
+    kinematics: Kinematics, edges: Sequence[tuple[int, int]], k: int, shapes: Shapes
+) -> tuple[list[str], list[str]]:
+    """Parts that rest and parts that move when joint k is driven alone: those that hang on its second body."""
+    sets = UnionFind(len(kinematics.bodies))
+    for n, (a, b) in enumerate(edges):
+        if n != k:
+            sets.union(a, b)
+    far = sets.find(edges[k][1])
+    still: list[str] = []
+    moving: list[str] = []
+    for n, body in enumerate(kinematics.bodies):
+        (moving if sets.find(n) == far else still).extend(sorted(shapes.body_parts[body.name]))
+    return sorted(still), sorted(moving)

@@ -1,0 +1,67 @@
+"""Parts stop a joint before the end of the range that the function states.
+
+A finding for each side of a stated range that is longer than what the meshes leave, from their pose and with all joints
+outside of its loops at rest, by more than 0.02° or 0.1 % of the range. A side stated as free (`inf`) must not be stopped.
+
+Why it matters: the device cannot do what it is for.
+
+What to do: cut away what is in the way, move the stop, or state the range that is needed.
+
+Example: a gimbal that shall turn by 45° hits its housing at 39°.
+"""
+
+from __future__ import annotations
+
+import math
+
+from kinform.consistency._context import Context
+from kinform.consistency._ranged import Ranged, ranged, shown
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency._words import quoted
+from kinform.model.collisions import RangeEnd
+from kinform.model.findings import Finding
+
+__all__ = ["RULE"]
+
+ANGLE = math.radians(0.02)
+"""rad by which a turn may fall short: a stop on facets is not where it is on the surface."""
+SHARE = 1e-3
+"""Share of a stated length by which a slide may fall short."""
+
+
+def check(context: Context) -> Outcome:
+    """Both sides of every stated range."""
+    known = [item for item in ranged(context) if not item.reason]
+    if not known:
+        return skipped("no range to compare")
+    findings = []
+    for item in known:
+        lower, upper = item.intended.range or (-math.inf, math.inf)
+        allowed = (
+            SHARE * (upper - lower) if item.intended.type == "prismatic" and math.isfinite(upper - lower) else ANGLE
+        )
+        for side, stated, end, toward in (("lower", lower, item.lower, -1.0), ("upper", upper, item.upper, 1.0)):
+            if end is None or end.value is None or end.status != "found":
+                continue
+            value = item.sign * end.value
+            if toward * (stated - value) > allowed:
+                findings.append(_finding(context, item, side, stated, value, end))
+    return decided(findings)
+
+
+def _finding(context: Context, item: Ranged, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
+    joint = item.intended
+    found, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
+    by = f"{' and '.join(quoted(part) for part in end.parts)} meet" if end.parts else end.reason
+    return RULE.finding(
+        [joint.name, *end.parts],
+        f"joint '{joint.name}' stops at {found} on the {side} side ({by}), intended is {intended}",
+        found=found,
+        intended=intended,
+        place=end.place if end.place is not None else joint.point,
+        declared=joint,
+        remedy="Cut away what is in the way, or state the range that is needed.",
+    )
+
+
+RULE = Rule("KF412", "joint-range-short", "error", __doc__, check)

@@ -1,0 +1,128 @@
+"""A point of a body, or a direction in which it points, does not cover the region that it is required to reach.
+
+Places spread over the region (a cone: 240 directions inside and 48 on its rim; a box: 7 along each edge; poses: all of
+them) are approached from sampled configurations within the ranges of the joints, those of the function and those that
+were found. A place that is reached is proved by its configuration; a hole between two places can be missed, and the
+report says how large. One that is not reached was not found from any start, and its distance is given. Near enough is
+the tolerance, by default a thousandth of the assembly's size, or 0.1°. Collisions are another requirement: `clear`.
+Joints whose range is not known may turn freely for a "no"; for a "yes" they make the requirement inconclusive (KF902),
+as closed loops with more than two freedoms do for a "no".
+
+Why it matters: the tool, the beam or the camera does not get where the task is.
+
+What to do: widen a range, lengthen a link, or move the base.
+
+Example: a camera that must point within 40° of +x, on a yaw of ±45° and a pitch of ±30°.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinform.consistency._context import Context
+from kinform.consistency._plausibility import extent
+from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
+from kinform.consistency._rule import Outcome
+from kinform.consistency._words import angle, counted, direction, length, place, quoted
+from kinform.function.configurations import Chain, chain_between
+from kinform.function.coverage import cover
+from kinform.function.regions import Targets, targets_of
+from kinform.model.function import Requirement
+
+__all__ = ["RULE", "judge"]
+
+NEAR = 1e-3
+SAMPLED = 2
+"""Freedoms of closed loops up to which sampling is dense enough for a "no"."""
+NEAR_ANGLE = math.radians(0.1)
+REMEDY = "Widen a range, lengthen a link, or move the base."
+
+
+def judge(context: Context, requirement: Requirement) -> Answer:
+    """The targets of the region that are not reached."""
+    values = requirement.values
+    pointing = "direction" in values
+    if pointing == ("point" in values):
+        return undecided("it needs either a point or a direction", "State one of them.")
+    targets = targets_of(values["region"], direction=pointing)
+    if isinstance(targets, str):
+        return undecided(targets, "Correct the requirement.")
+    chain = _chain(context, values["part"])
+    if isinstance(chain, Answer):
+        return chain
+    body = context.body(values["part"]) or ""
+    if not chain.looped and not _finite(chain):
+        return undecided(_endless(chain), "State the `range` of its [[function.joint]].")
+    near = values.get("angle_tolerance" if pointing else "tolerance")
+    if near is None:
+        near = NEAR_ANGLE if pointing else NEAR * (extent(context.assembly) or 1.0)
+    carried = np.array(values["direction" if pointing else "point"])
+    found = cover(chain, body, carried, targets.values, directions=pointing, near=near)
+    missed = np.flatnonzero(~(found.distance <= near))
+    if len(missed) and chain.looped and chain.freedoms > SAMPLED:
+        return undecided(
+            f"{len(missed)} of {len(targets.values)} places were not reached, but {chain.freedoms} freedoms in closed "
+            "loops are too many to be sampled densely", "Check it by other means, or require `follow` of a simulated motion.",
+        )  # fmt: skip
+    if len(missed):
+        return _missed(context, targets, found.distance, missed, near, found.samples)
+    text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
+    unknown = chain.undetermined(body)
+    if unknown:
+        return undecided(
+            f"{text}, but only if {quoted(unknown)} may turn freely: no range is known",
+            "State the `range` of the [[function.joint]].",
+        )
+    return met(text)
+
+
+def _chain(context: Context, part: str) -> Chain | Answer:
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return undecided(kinematics.reason, "Run `kinform joints`.")
+    body = kinematics.body_of(context.assembly.parts_of(part)[0])
+    ground = next((b.name for b in kinematics.bodies if b.ground), None)
+    if ground is None or body.ground:
+        return undecided(f"'{part}' does not move: it is the ground", "Require it of a part that moves.")
+    chain = chain_between(context.assembly, kinematics, ground, body.name)
+    return undecided(chain, "See KF401 and KF901.") if isinstance(chain, str) else chain
+
+
+def _finite(chain: Chain) -> bool:
+    return all(c.turns or math.isfinite(c.upper - c.lower) for c in chain.coordinates)
+
+
+def _endless(chain: Chain) -> str:
+    joint = next(c.joint for c in chain.coordinates if not c.turns and not math.isfinite(c.upper - c.lower))
+    return f"joint '{joint}' slides, and its range is not known"
+
+
+def _bound(context: Context, targets: Targets) -> str:
+    if targets.gap == 0.0:
+        return ""
+    size = angle(targets.gap) if targets.directions else length(targets.gap, context.units)
+    return f"; between them holes of up to {size} in radius can be missed"
+
+
+def _missed(
+    context: Context, targets: Targets, distance: np.ndarray, missed: np.ndarray, near: float, samples: int
+) -> Answer:
+    units = context.units
+    worst = int(missed[np.argmax(distance[missed])])
+    aim = targets.values[worst]
+    shown = direction(np.round(aim, 4)) if targets.directions else place(aim, units)
+    size = angle if targets.directions else (lambda v: length(v, units))
+    share = f"{len(missed)} of {len(targets.values)}"
+    return violated(
+        f"{share} places of the region are not reached; the nearest to {shown} is {size(float(distance[worst]))} off, "
+        f"found from {samples} sampled configurations",
+        found=f"{share} not reached, {size(float(distance[worst]))} off at most",
+        intended=f"all, within {size(near)}",
+        place=None if targets.directions else aim,
+        remedy=REMEDY,
+    )
+
+
+RULE = requirement_rule("KF421", "region-not-reached", "reach", __doc__, judge)

@@ -1,0 +1,190 @@
+"""Two parts collide, or come nearer than the required distance, along the simulated motion or over the ranges.
+
+Distances are those of the surfaces, by FCL, without the surfaces by which a pair mates and the edges that touch beside
+them. Along the motion steps are as long as the distance allows, so that nothing is passed over; between output times
+poses are interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
+Distances are certain up to 1e-4 of the size of the smaller part, 1e-3 where several joints move at once. A simulation
+that did not run, a range that is not known, a loop between the two (over ranges), or too many cells make the
+requirement inconclusive (KF902).
+
+Why it matters: what collides does not move there, and breaks.
+
+What to do: see the place and the time. Cut material away, or narrow the motion or the range.
+
+Example: `kind = "clear"`, `between = ["camera", "housing"]`, `distance = 1` for a camera that passes a rib by 0.4 mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.consistency._context import Context
+from kinform.consistency._requirements import (
+    Answer,
+    met,
+    requirement_rule,
+    shown_value,
+    simulated,
+    undecided,
+    violated,
+)
+from kinform.consistency._rule import Outcome
+from kinform.consistency._words import counted, length, number, quoted
+from kinform.function.configurations import Chain, chain_between
+from kinform.function.sweeps import Swept, along, over
+from kinform.model.function import Requirement
+from kinform.model.kinematics import Body, Joint, Kinematics
+from kinform.model.simulation import Simulation
+
+__all__ = ["RULE", "judge"]
+
+Array = NDArray[np.float64]
+
+REMEDY = "Cut material away, or narrow the motion or the range."
+Pair = tuple[Body, Sequence[str], Body, Sequence[str]]
+
+
+def judge(context: Context, requirement: Requirement) -> Answer:
+    """Every pair of the two groups of parts, or of all bodies."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return undecided(kinematics.reason, "Run `kinform joints`.")
+    if isinstance(context.contacts, Outcome):
+        return undecided(context.contacts.reason, "Give the parts meshes.")
+    motion = requirement.values.get("over", "motion") == "motion"
+    simulation = simulated(context) if motion else None
+    if isinstance(simulation, Answer):
+        return simulation
+    pairs = _pairs(context, kinematics, requirement.values.get("between"))
+    answers = [_one(context, kinematics, requirement, pair, simulation) for pair in pairs]
+    known = [one for one in answers if one is not None]
+    short = [one for one in known if one.state == "violated"]
+    if short:
+        more = f"; {counted(len(short) - 1, 'more pair')} of bodies too" if len(short) > 1 else ""
+        return replace(short[0], message=short[0].message + more)
+    if not known:
+        return undecided("none of the parts have meshes", "Give the parts meshes.")
+    open_ = [one for one in known if one.state == "undecided"]
+    if open_:
+        return open_[0]
+    if simulation is not None and simulation.status != "done":
+        return undecided(f"the simulation stopped: {simulation.reason}", "See KF502.")
+    return known[0] if len(known) == 1 else met(f"{counted(len(known), 'pair')} clear; {known[0].message}")
+
+
+def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | None) -> list[Pair]:
+    """Bodies with those of their parts that count."""
+    if between is None:
+        bodies = sorted(kinematics.bodies, key=lambda b: b.name)
+        return [(a, a.parts, b, b.parts) for k, a in enumerate(bodies) for b in bodies[k + 1 :]]
+    sides = []
+    for name in between:
+        parts = context.assembly.parts_of(name)
+        bodies = sorted(
+            {kinematics.body_of(p).name: kinematics.body_of(p) for p in parts}.values(), key=lambda b: b.name
+        )
+        sides.append([(body, [p for p in parts if p in body.parts]) for body in bodies])
+    return [(a, own, b, other) for a, own in sides[0] for b, other in sides[1]]
+
+
+def _one(
+    context: Context, kinematics: Kinematics, requirement: Requirement, pair: Pair, simulation: Simulation | None
+) -> Answer | None:
+    """One pair; None where one of the two has no mesh."""
+    from kinform.function.clearances import apart
+
+    a, own, b, other = pair
+    contacts = context.design.contacts
+    assert contacts is not None
+    groups = apart(context.assembly, contacts, context.design.surfaces, own, other)
+    if groups is None:
+        return None
+    if not any(p.tests for p in groups.pairs):
+        return undecided(f"all surfaces of {quoted([*own[:2], *other[:2]])} mate: nothing else can come near", "None.")
+    required = float(requirement.values.get("distance", 0.0))
+    if simulation is not None:
+        swept = along(groups, _displaced(simulation, a), _displaced(simulation, b), required)
+        return _answer(context, swept, required, quoted([*own[:2], *other[:2]]), _time(simulation, swept))
+    if a.name == b.name:
+        still = np.eye(4)[None]
+        return _answer(context, along(groups, still, still, required), required, quoted([*own[:2], *other[:2]]), "")
+    chain = chain_between(context.assembly, kinematics, a.name, b.name, "stated")
+    if isinstance(chain, str):
+        return undecided(chain, "See KF401 and KF901.")
+    box = _ranges(chain)
+    if isinstance(box, Answer):
+        return box
+    swept = over(groups, chain, a.name, b.name, *box, required)
+    return _answer(context, swept, required, quoted([*own[:2], *other[:2]]), _values(context, chain, swept))
+
+
+def _ranges(chain: Chain) -> tuple[Array, Array] | Answer:
+    """Least and greatest coordinates of a chain without loops; free turns take a full turn."""
+    if chain.looped:
+        return undecided(
+            "loops connect the two: their joint values depend on each other", 'Check it over = "motion", by simulation.'
+        )
+    if chain.unknown:
+        return undecided(f"the range of {quoted(chain.unknown)} is not known", "State the `range` of the joint.")
+    low, high = chain.lower, chain.upper
+    for k, coordinate in enumerate(chain.coordinates):
+        if coordinate.turns:
+            low[k], high[k] = max(low[k], -math.pi), min(high[k], math.pi)
+        elif not math.isfinite(high[k] - low[k]):
+            return undecided(f"joint '{coordinate.joint}' slides without an end", "State a finite `range`.")
+    return low, high
+
+
+def _displaced(simulation: Simulation, body: Body) -> Array:
+    """(T, 4, 4) displacements; bodies that the simulation does not have stay."""
+    from scipy.spatial.transform import Rotation
+
+    X = np.tile(np.eye(4), (len(simulation.time), 1, 1))
+    if body.name in simulation.body_names:
+        b = simulation.body_names.index(body.name)
+        X[:, :3, :3] = Rotation.from_quat(simulation.q_WB[:, b], scalar_first=True).as_matrix()
+        X[:, :3, 3] = simulation.p_WB[:, b]
+    return X
+
+
+def _answer(context: Context, swept: Swept, required: float, names: str, where: str) -> Answer:
+    units, near = context.units, swept.worst
+    shown = length(near.distance, units)
+    parts = quoted(near.parts) if near.parts[0] else names
+    if near.distance < required or near.distance <= 0.0:
+        what = f"{parts} collide" if near.distance <= 0.0 else f"{parts} come within {shown}"
+        return violated(
+            f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
+            intended=f"at least {length(required, units)}" if required > 0.0 else "no collision",
+            place=near.place, remedy=REMEDY,
+        )  # fmt: skip
+    if not swept.complete:
+        return undecided(
+            f"{names} pass each other so closely that {swept.poses} measured poses do not certify them",
+            "Lower the distance, or check it by other means.", found=f"nearest measured {shown}",
+        )  # fmt: skip
+    few = counted(swept.poses, "measured pose")
+    return met(f"{names} stay clear, certain within {length(swept.floor, units)} by {few}")
+
+
+def _time(simulation: Simulation, swept: Swept) -> str:
+    time = np.interp(swept.where, np.arange(len(simulation.time)), simulation.time)
+    return f" at t = {number(float(time))} s"
+
+
+def _values(context: Context, chain: Chain, swept: Swept) -> str:
+    kinematics = context.design.kinematics
+    joints: dict[str, Joint] = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
+    shown = [
+        f"{c.joint} = {shown_value(v, joints[c.joint], context.units)}"
+        for c, v in zip(chain.coordinates, swept.values, strict=True)
+    ]
+    return f" at {', '.join(shown)}"
+
+
+RULE = requirement_rule("KF423", "clearance-too-small", "clear", __doc__, judge)

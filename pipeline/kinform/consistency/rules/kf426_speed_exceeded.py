@@ -1,0 +1,45 @@
+"""The speed of a joint exceeds its limit during the simulation.
+
+The greatest of the output times counts: a shorter `step` finds shorter peaks. Without a simulation that ran to its
+end the requirement is inconclusive (KF902).
+
+Why it matters: motors, encoders and bearings have a greatest speed.
+
+What to do: slow the drive, or change the transmission.
+
+Example: `kind = "speed"`, `joint = "yaw"`, `limit = 180` (degrees a second).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.consistency._context import Context
+from kinform.consistency._peaks import peak
+from kinform.consistency._requirements import Answer, requirement_rule, resolved, shown_value, simulated, undecided
+from kinform.model.function import Requirement
+
+__all__ = ["RULE", "judge"]
+
+
+def judge(context: Context, requirement: Requirement) -> Answer:
+    """The peak speed beside its limit."""
+    name = requirement.values["joint"]
+    found = resolved(context, name)
+    if isinstance(found, Answer):
+        return found
+    simulation = simulated(context)
+    if isinstance(simulation, Answer):
+        return simulation
+    joint, _ = found
+    if joint.name not in simulation.joint_names:
+        return undecided(f"the simulation does not have the joint '{joint.name}'", "See KF501.")
+    column = int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
+    values = np.abs(simulation.joint_velocity[:, column])
+    return peak(
+        simulation, values, requirement.values["limit"], f"the speed of joint '{name}'",
+        lambda v: f"{shown_value(v, joint, context.units)}/s", "Slow the drive.", joint.point,
+    )  # fmt: skip
+
+
+RULE = requirement_rule("KF426", "speed-exceeded", "speed", __doc__, judge)

@@ -1,0 +1,44 @@
+"""The centre of mass of a part, a group or the whole is too far from where it is required, at the pose of the meshes.
+
+Why it matters: what is to stand, hang or turn in balance does not.
+
+What to do: move material, or the point. `kinform show F.h5 mass` lists all centres.
+
+Example: `kind = "centre_of_mass"`, `point = [0, 0, 0]`, `tolerance = 0.5` for a gimbal that is 2 mm off.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.consistency._context import Context
+from kinform.consistency._requirements import Answer, met, requirement_rule, violated
+from kinform.consistency._weighed import amount, whose
+from kinform.consistency._words import length, place
+from kinform.model.function import Requirement
+
+__all__ = ["RULE", "judge"]
+
+
+def judge(context: Context, requirement: Requirement) -> Answer:
+    """The distance of the centre of mass from its point."""
+    values, units = requirement.values, context.units
+    found = amount(context, values.get("of"))
+    if isinstance(found, Answer):
+        return found
+    wanted = np.array(values["point"])
+    distance = float(np.linalg.norm(found.centre - wanted))
+    text = (
+        f"the centre of mass of {whose(values.get('of'))} is at {place(found.centre, units)}, "
+        f"{length(distance, units)} from {place(wanted, units)}"
+    )
+    intended = f"within {length(values['tolerance'], units)} of {place(wanted, units)}"
+    if distance <= values["tolerance"]:
+        return met(text)
+    return violated(
+        text, found=place(found.centre, units), intended=intended, place=found.centre,
+        remedy="Move material, or correct the point.",
+    )  # fmt: skip
+
+
+RULE = requirement_rule("KF429", "centre-of-mass-off", "centre_of_mass", __doc__, judge)

@@ -1,0 +1,136 @@
+"""A part can leave the assembly in a direction that is not listed.
+
+It leaves where contact stops it one way only (`kinform show F.h5 joints` tells these ways), or where it slides in
+a joint without an end. Ground is held; parts of a `[[group]]` stay together. Directions agree within 1°. Whether a
+slide has an end is known from the range of its joint; where that is not known, or where contact does not say
+whether parts are held, the requirement is inconclusive (KF902).
+
+Why it matters: what can fall out does.
+
+What to do: add a shoulder, a clip, a lid or a screw; or list the direction, if assembly needs it.
+
+Example: `kind = "retained"`, `part = "shaft"` for a shaft with a shoulder on one side only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.consistency._context import Context
+from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
+from kinform.consistency._rule import Outcome
+from kinform.consistency._words import direction, quoted
+from kinform.model.function import Requirement
+from kinform.model.kinematics import Body, Kinematics, Release, Separation
+
+__all__ = ["RULE", "judge"]
+
+SAME = np.cos(np.radians(1.0))
+REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
+
+Array = NDArray[np.float64]
+
+
+def judge(context: Context, requirement: Requirement) -> Answer:
+    """Ways to leave that are not listed."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return undecided(kinematics.reason, "Run `kinform joints`.")
+    if isinstance(context.contacts, Outcome):
+        return undecided("without contacts nothing says whether it is held", "Give the parts meshes.")
+    name, listed = requirement.values["part"], np.array(requirement.values.get("directions", [])).reshape(-1, 3)
+    parts = set(context.assembly.parts_of(name))
+    bodies = [body for body in kinematics.bodies if parts & set(body.parts)]
+    if all(body.ground for body in bodies):
+        return undecided(f"'{name}' is the ground, which is held", "Require it of what shall not leave the ground.")
+    ways = [
+        (way, separation)
+        for separation in kinematics.separations
+        if any(parts & _parts(context, kinematics, member) for member in separation.bodies)
+        for way in separation.releases
+        if not (way.kind == "slide" and _listed(way.direction, listed))
+    ]
+    if ways:
+        return _leaves(context, name, *ways[0], more=len(ways) - 1)
+    for body in bodies:
+        if not body.ground and (found := _slides(kinematics, body, listed)) is not None:
+            return found
+    if kinematics.separations_reason:
+        return undecided(kinematics.separations_reason, "Group what is fastened, or export finer meshes.")
+    doubtful = [j for j in kinematics.joints if j.held is None and any(b.name in j.bodies for b in bodies)]
+    if doubtful:
+        why = doubtful[0].held_reason or "its joint is stated, not shown by contact"
+        return undecided(f"contact does not say whether joint '{doubtful[0].name}' holds it: {why}", "See its joints.")
+    return met("contact holds it in every direction that is not listed")
+
+
+def _leaves(context: Context, name: str, way: Release, separation: Separation, more: int) -> Answer:
+    others = [b for b in separation.bodies if name not in (b, *_parts(context, context.design.kinematics, b))]
+    together = f" together with {quoted(others)}" if others else ""
+    also = f", and in {more} more ways" if more else ""
+    return violated(
+        f"'{name}' can {way.words}{together}{also}",
+        found=direction(way.direction), intended="held, but for the listed directions",
+        place=way.point, remedy=REMEDY,
+    )  # fmt: skip
+
+
+def _parts(context: Context, kinematics: Kinematics | None, member: str) -> set[str]:
+    """Parts of what a separation names: a body, a group or a part."""
+    for body in kinematics.bodies if kinematics is not None else ():
+        if body.name == member:
+            return set(body.parts)
+    try:
+        return set(context.assembly.parts_of(member))
+    except KeyError:
+        return {member}
+
+
+def _listed(way: Array, listed: Array) -> bool:
+    return bool(len(listed) and (listed @ way).max() > SAME)
+
+
+def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
+    """Slides that keep contact: without an end they lead out of it."""
+    own = [joint for joint in kinematics.joints if body.name in joint.bodies]
+    if not own:
+        return violated(
+            f"'{body.name}' touches nothing and can leave every way", found="free", intended="held", remedy=REMEDY
+        )
+    index = [b.name for b in kinematics.bodies].index(body.name)
+    twists = kinematics.mobility.freedoms[:, index, :]
+    for way in _pure_slides(twists):
+        if _listed(way, listed) and _listed(-way, listed):
+            continue
+        ends = [j for j in own if j.axis is not None and abs(float(j.axis @ way)) > SAME and j.type == "prismatic"]
+        if any(j.range_status == "found" and _bounded(j.range_lower, j.range_upper) for j in ends):
+            continue
+        if any(j.range_status == "unbounded" for j in ends):
+            return violated(
+                f"'{body.name}' slides along {direction(way)} without an end", found=direction(way),
+                intended="held, but for the listed directions", place=ends[0].point, remedy=REMEDY,
+            )  # fmt: skip
+        return undecided(
+            f"'{body.name}' slides along {direction(way)}, and whether the slide has an end is not known",
+            "List both directions if it may leave there, or have the range of its joint found.",
+        )
+    return None
+
+
+def _bounded(low: float | None, high: float | None) -> bool:
+    return low is not None and high is not None and bool(np.isfinite([low, high]).all())
+
+
+def _pure_slides(twists: Array) -> Array:
+    """(k, 3) orthonormal directions in which the body can move without turning; twists (f, 6)."""
+    if not len(twists):
+        return np.zeros((0, 3))
+    _, values, right = np.linalg.svd(twists[:, :3].T)
+    rank = int(np.count_nonzero(values > 1e-6 * max(values.max(initial=0.0), 1e-300)))
+    moving = right[rank:] @ twists[:, 3:]
+    _, sizes, ways = np.linalg.svd(moving, full_matrices=False)
+    return np.asarray(ways[sizes > 1e-6 * max(float(np.abs(twists[:, 3:]).max(initial=0.0)), 1e-300)])
+
+
+RULE = requirement_rule("KF432", "not-retained", "retained", __doc__, judge)

@@ -1,0 +1,52 @@
+"""In the simulated motion, parts run into each other outside of the surfaces on which they mate.
+
+A finding for each pair of parts of different bodies, with the time and the place of the first contact. Surfaces that
+slide on themselves in a joint are left out, and so is what is no deeper than the chord errors of facets.
+
+Why it matters: the real device stops or breaks there; the rest of the simulated motion means nothing.
+
+What to do: change the shape, the motion that drives the joint, or its start.
+
+Example: a camera scans by ±45°, and its gimbal hits the housing at 39°.
+"""
+
+from __future__ import annotations
+
+from kinform.consistency._context import Context
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._words import counted, length, number, place, quoted
+
+__all__ = ["RULE"]
+
+
+def check(context: Context) -> Outcome:
+    """Every pair of parts that meets in the run."""
+    if not context.meshes:
+        return skipped("no part has a mesh")
+    run = context.simulation
+    if isinstance(run, Outcome):
+        return run
+    if len(run.time) < 2:
+        return skipped("nothing moved")
+    if run.collisions is None:
+        return inconclusive("collisions have not been looked for: run `kinform simulate`")
+    findings = [
+        RULE.finding(
+            item.parts,
+            f"{quoted(item.parts[0])} and {quoted(item.parts[1])} collide at t = {number(item.time, 6)} s, "
+            f"at {place(item.place, context.units)}, up to {length(item.depth, context.units)} deep",
+            found=f"t = {number(item.time, 6)} s",
+            intended="no collision",
+            place=item.place,
+            remedy="Change the shape, the motion, or its start.",
+        )
+        for item in run.collisions
+    ]
+    if run.uncollided:
+        first, second, why = run.uncollided[0]
+        reason = f"{counted(len(run.uncollided), 'pair')} not tested: {first} and {second}: {why}"
+        return inconclusive(reason, findings)
+    return decided(findings)
+
+
+RULE = Rule("KF505", "parts-collide", "error", __doc__, check)

@@ -1,0 +1,14 @@
+"""Models that other tools run: one module or folder per format, one registry.
+
+Every exporter reads the port model of `kinform.behaviour` and what belongs to it (`model.ExportModel`).
+What a format cannot carry is named in `Exported.lost` and in the files themselves. Nothing written depends
+on clock, host or path.
+"""
+
+from __future__ import annotations
+
+from kinform.exports.exported import Exported, ExportError, LostError
+from kinform.exports.registry import FORMATS, Format, export
+from kinform.exports.write import write
+
+__all__ = ["FORMATS", "ExportError", "Exported", "Format", "LostError", "export", "write"]

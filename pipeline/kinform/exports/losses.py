@@ -1,0 +1,29 @@
+"""What formats of trees of links cannot say, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from kinform.behaviour import MotionDrive
+from kinform.exports.robot import Robot
+
+__all__ = ["tree_losses"]
+
+
+def tree_losses(made: Robot, format: str, *, springs: bool = False) -> Iterator[str]:
+    """Loops, laws of drives, springs, loads and initial values. `springs`: the format has them."""
+    for closing in made.closing:
+        yield f"{closing.joint.subject}: the joint closes a loop, and {format} has trees only; it is left out"
+        for actor in made.model.system.actors(closing.joint.name):
+            yield f"{closing.joint.subject}: what acts on it ({type(actor).__name__}) is left out with it"
+    for link in made.links:
+        for drive in link.drives:
+            what = "its motion follows a law" if isinstance(drive, MotionDrive) else "its effort follows a law"
+            yield f"{drive.subject}: {what}, which {format} does not have; only that it is driven"
+        if not springs:
+            for spring in link.springs:
+                yield f"{spring.subject}: a spring of {spring.stiffness:g} N·m/rad or N/m"
+    for load in made.loads:
+        yield f"{load.subject}: a load"
+    if made.moved:
+        yield "the initial positions and velocities; zero is the pose of the meshes"

@@ -1,0 +1,268 @@
+"""mjcf: the model as MuJoCo runs it, loops included, starting where our simulation starts.
+
+Body frames have their origin on the joint that carries them and the axes of the world at the pose of the
+meshes; joints of a body act in the order in which they are listed, from the parent. A loop closes in a
+ball (`connect`), a hinge (two `connect` on its axis) or a weld; where only another kind of joint could close
+it, a body is made of two halves that are welded. Meshes are for the eye: mating surfaces always touch, so
+they must not collide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour import Constant, MotionDrive
+from kinform.behaviour.primitives import Ball
+from kinform.exports.exported import Exported
+from kinform.exports.mjcf_drives import actuators, gears, load
+from kinform.exports.model import ExportModel
+from kinform.exports.names import MJCF
+from kinform.exports.robot import Robot, RobotLink, robot
+from kinform.exports.text import render, vector
+from kinform.exports.tree import Closing, Link, Motion
+from kinform.simulation.spatial import to_matrix
+
+__all__ = ["export"]
+
+Array = NDArray[np.float64]
+
+CLOSABLE = ("spherical", "revolute", "fixed")
+LEAST_MOMENT = 1e-14
+"""kg·m²: below 1e-15 MuJoCo refuses a moment of inertia."""
+GRAIN = 1e-9
+"""kg and kg·m², of bodies whose mass is not known."""
+MOST_FACETS = 200_000
+"""More than these MuJoCo does not read from STL."""
+STEP, STEP_OF_LOOPS = 0.001, 0.0002
+"""s, of RK4; loops are stiff springs to MuJoCo and need the shorter one."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Joint:
+    name: str
+    type: str
+    position: Array
+    axis: Array
+    range: tuple[float, float] | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+
+
+@dataclass(eq=False)
+class _Body:
+    link: RobotLink
+    joints: list[_Joint]
+    share: float = 1.0
+    """Of the mass: halves of a body that was cut."""
+    twin: bool = False
+    children: list[_Body] = field(default_factory=list)
+    qpos: list[float] = field(default_factory=list)
+    qvel: list[float] = field(default_factory=list)
+
+    @property
+    def full_inertia(self) -> str:
+        """ixx iyy izz ixy ixz iyz."""
+        i = self.share * self.link.inertia
+        return vector((i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]))
+
+    @property
+    def mass(self) -> float | None:
+        """Its share."""
+        return None if self.link.mass is None else self.share * self.link.mass
+
+
+@dataclass(frozen=True)
+class _Equality:
+    kind: str
+    """connect or weld."""
+    name: str
+    first: str
+    second: str
+    anchor: str
+
+
+def export(model: ExportModel) -> Exported:
+    """NAME.xml and meshes/."""
+    made = robot(model, MJCF, CLOSABLE)
+    lost = [*model.lost, *_losses(made)]
+    made = _with_moments(made, lost)
+    root, twins = _bodies(made)
+    equalities = [row for closing in made.closing for row in _closure(made, closing, twins)]
+    rows = actuators(made)
+    ordered = list(_walk(root))
+    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    if equalities:
+        remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
+    text = render(
+        "model.mjcf.j2", robot=made, root=root, equalities=equalities, actuators=rows, lost=lost,
+        remarks=remarks, materials=_materials(made), step=STEP_OF_LOOPS if equalities else STEP,
+        qpos=[x for body in ordered for x in body.qpos], qvel=[x for body in ordered for x in body.qvel],
+        loads=[load(made, one) for one in made.loads], most=MOST_FACETS, inf=np.inf,
+        screws=[screw for body in ordered for screw in _screws(body)], gears=gears(made, lost),
+        ctrl=[*(row["start"] for row in rows), *(1.0 for _ in made.loads)],
+    )  # fmt: skip
+    return Exported({f"{made.stem}.xml": text, **made.meshes}, tuple(lost), tuple(remarks))
+
+
+def _losses(made: Robot) -> list[str]:
+    out = []
+    for link in made.links:
+        for drive in link.drives:
+            if isinstance(drive, MotionDrive):
+                out.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
+            elif not isinstance(drive.signal, Constant):
+                out.append(f"{drive.subject}: its effort follows a law; its actuator holds the effort at the start")
+        for visual in link.visuals:
+            if visual.facets > MOST_FACETS:
+                out.append(f"{visual.name}: its mesh; MuJoCo reads up to {MOST_FACETS} facets")
+    for closing in made.closing:
+        if closing.joint.kind.name in CLOSABLE and made.model.system.actors(closing.joint.name):
+            out.append(f"{closing.joint.subject}: what acts on it; it closes a loop and has no coordinate in MJCF")
+    return out
+
+
+def _with_moments(made: Robot, lost: list[str]) -> Robot:
+    """Moments of inertia that are zero, and masses that are not known, raised to what MuJoCo accepts."""
+    links = []
+    for k, link in enumerate(made.links):
+        if k and link.mass is None:
+            link = replace(link, mass=GRAIN, inertia=GRAIN * np.eye(3))
+            lost.append(f"{link.name}: a body without mass, which MuJoCo refuses; it has {GRAIN:g} kg")
+        elif k:
+            least = float(np.linalg.eigvalsh(link.inertia)[0])
+            if least < LEAST_MOMENT:
+                link = replace(link, inertia=link.inertia + (LEAST_MOMENT - min(least, 0.0)) * np.eye(3))
+                lost.append(f"{link.name}: a moment of inertia of zero; it is {LEAST_MOMENT:g} kg·m²")
+        links.append(link)
+    return replace(made, links=tuple(links))
+
+
+def _bodies(made: Robot) -> tuple[_Body, dict[str, str]]:
+    """The nested bodies, and for joints that cut a body the name of its second half."""
+    bodies = [_Body(link, _joints(made, link)) for link in made.links]
+    for k, link in enumerate(made.links):
+        if k:
+            bodies[max(link.link.parent, 0)].children.append(bodies[k])
+        _state(made, bodies[k])
+    twins: dict[str, str] = {}
+    names = {link.name for link in made.links}
+    for closing in made.closing:
+        if closing.joint.kind.name not in CLOSABLE:
+            twins[closing.joint.subject] = _cut(made, closing, bodies, names)
+    return bodies[0], twins
+
+
+def _cut(made: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -> str:
+    """Half of the second body (the first where that is the ground), carried by the closing joint."""
+    forward = closing.b != 0
+    parent, cut = (closing.a, closing.b) if forward else (closing.b, closing.a)
+    whole = bodies[cut]
+    name = f"{whole.link.name} half"
+    while name in names:
+        name += "_"
+    names.add(name)
+    point = closing.joint.geometry.point
+    origin = whole.link.link.origin if point is None else point
+    link = Link(whole.link.link.body, parent, closing.joint, forward, origin)
+    shift = whole.link.link.origin - origin
+    half = replace(
+        whole.link, link=link, name=name, offset=origin - made.tree.links[parent].origin,
+        centre=whole.link.centre + shift, visuals=(), actors=made.model.system.actors(closing.joint.name),
+        range=made.model.ranges.get(closing.joint.subject),
+    )  # fmt: skip
+    # Every cut halves what is left, so that the whole body keeps its mass.
+    whole.share *= 0.5
+    body = _Body(half, _joints(made, half), whole.share, True)
+    _state(made, body)
+    bodies[parent].children.append(body)
+    return name
+
+
+def _joints(made: Robot, link: RobotLink) -> list[_Joint]:
+    if link.link.joint is None:
+        return []
+    point = link.link.joint.geometry.point
+    position = np.zeros(3) if point is None else point - link.link.origin
+    return [row for motion in link.link.motions for row in _joint(made, link, motion, position)]
+
+
+def _joint(made: Robot, link: RobotLink, motion: Motion, position: Array) -> list[_Joint]:
+    name, primitive = made.joint_names[motion.name], motion.primitive
+    if isinstance(primitive, Ball):
+        return [_Joint(name, "ball", position, np.zeros(3))]
+    single = link.link.joint is not None and link.link.joint.kind.rates == 1
+    on_it = (link.range, link.damping, link.stiffness, link.rest) if single else ()
+    if not primitive.omega.any():
+        return [_Joint(name, "slide", position, primitive.slide, *on_it)]
+    turn = _Joint(name, "hinge", position, primitive.omega, *on_it)
+    if not primitive.slide.any():
+        return [turn]
+    return [turn, _Joint(f"{name}.slide", "slide", position, primitive.omega)]
+
+
+def _state(made: Robot, body: _Body) -> None:
+    """Coordinates and rates of the body's joints at the start."""
+    joint = body.link.link.joint
+    if joint is None:
+        if body.link.link.parent < 0 and body.link.link.body is not made.tree.links[0].body:
+            body.qpos, body.qvel = [*body.link.link.origin.tolist(), 1.0, 0.0, 0.0, 0.0], [0.0] * 6
+        return
+    q, v = made.model.coordinates(joint.subject)
+    if joint.kind.name == "spherical":
+        sign = 1.0 if body.link.link.forward else -1.0
+        body.qpos = [float(q[0]), *(sign * q[1:]).tolist()]
+        body.qvel = (to_matrix(q).T @ v if body.link.link.forward else -v).tolist()
+        return
+    for motion in body.link.link.motions:
+        body.qpos.append(float(q[motion.coordinate]))
+        body.qvel.append(float(v[motion.coordinate]))
+        primitive = motion.primitive
+        if not isinstance(primitive, Ball) and primitive.omega.any() and primitive.slide.any():
+            lead = float(primitive.slide @ primitive.omega)
+            body.qpos.append(lead * body.qpos[-1])
+            body.qvel.append(lead * body.qvel[-1])
+
+
+def _walk(body: _Body) -> Iterator[_Body]:
+    yield body
+    for child in body.children:
+        yield from _walk(child)
+
+
+def _closure(made: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equality]:
+    joint = closing.joint
+    a = made.links[closing.a]
+    first, second = ("world" if k == 0 else made.links[k].name for k in (closing.a, closing.b))
+    if joint.subject in twins:
+        whole = second if closing.b != 0 else first
+        return [_Equality("weld", f"{joint.subject} half", whole, twins[joint.subject], "")]
+    if joint.kind.rates == 0:
+        return [_Equality("weld", joint.subject, first, second, "")]
+    point = np.asarray(joint.geometry.point) - a.link.origin
+    if joint.kind.name == "spherical":
+        return [_Equality("connect", joint.subject, first, second, vector(point))]
+    reach = 0.5 * made.model.mechanism.length * np.asarray(joint.geometry.axis)
+    return [
+        _Equality("connect", f"{joint.subject} {side}", first, second, vector(point + sign * reach))
+        for side, sign in (("lower", -1.0), ("upper", 1.0))
+    ]
+
+
+def _screws(body: _Body) -> list[dict[str, Any]]:
+    """Turns and the slides that follow them, with metres a radian."""
+    out = []
+    for motion, joint in zip(body.link.link.motions, body.joints, strict=False):
+        primitive = motion.primitive
+        if not isinstance(primitive, Ball) and primitive.omega.any() and primitive.slide.any():
+            out.append({"joint": joint.name, "lead": float(primitive.slide @ primitive.omega)})
+    return out
+
+
+def _materials(made: Robot) -> dict[str, tuple[float, float, float, float]]:
+    return dict(sorted((visual.material, visual.rgba) for link in made.links for visual in link.visuals))

@@ -1,0 +1,194 @@
+"""What every exporter reads: the port model of a design, where it starts, and what is left out of it.
+
+It is the model that the simulation of the design used, so that an export and our trajectory are about the
+same thing: the same joints, drives and initial values.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
+from kinform.behaviour.components import DcMotor, EndStop, Servo, SpringDamper, VoltageController, VoltageSource
+from kinform.errors import StageError
+from kinform.function import resolve
+from kinform.model.assembly import Assembly
+from kinform.model.design import Design
+from kinform.model.function import SimulationRequest
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassProperties
+from kinform.model.simulation import Simulation
+from kinform.simulation.assemble import assemble
+from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.spatial import quaternions
+
+__all__ = ["BodyStart", "ExportModel", "export_model"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyStart:
+    """Where a body is at time zero and how it moves, in the world."""
+
+    position: Array
+    """(3,) m, p_WB."""
+    quaternion: Array
+    """(4,) q_WB, wxyz, w ≥ 0."""
+    velocity: Array
+    """(3,) m/s of the body's origin."""
+    omega: Array
+    """(3,) rad/s."""
+
+
+@dataclass(frozen=True, eq=False)
+class ExportModel:
+    """The port model and what belongs to it."""
+
+    assembly: Assembly
+    kinematics: Kinematics
+    simulation: Simulation | None
+    """Our own run, where there is one: done or stopped."""
+    system: System
+    masses: tuple[MassProperties, ...]
+    """Of bodies, the ground included; empty where they are not computed."""
+    mechanism: Mechanism
+    gravity: Array
+    """(3,) m/s²."""
+    duration: float
+    step: float
+    q: Array
+    """(nq,) joint coordinates at time zero, in the order of the mechanism."""
+    v: Array
+    """(n,) joint rates at time zero."""
+    start: dict[str, BodyStart]
+    """By name of body."""
+    ranges: dict[str, tuple[float, float]]
+    """(lower, upper) rad or m of joints with one freedom, ±inf for a free side, by name of joint."""
+    adrift: tuple[str, ...]
+    """Bodies that no joints connect with the ground, sorted."""
+    lost: tuple[str, ...]
+    """What is missing in the port model itself."""
+
+    @property
+    def name(self) -> str:
+        """What the user calls it."""
+        return self.assembly.name
+
+    @property
+    def with_forces(self) -> bool:
+        """Whether our own run, if any, is one of dynamics."""
+        return self.simulation is None or self.simulation.level == "dynamic"
+
+    def coordinates(self, joint: str) -> tuple[Array, Array]:
+        """Coordinates and rates of a joint at time zero."""
+        (slot,) = (s for s in self.mechanism.slots if s.name == joint)
+        return self.q[slot.q], self.v[slot.v]
+
+
+def export_model(design: Design) -> ExportModel:
+    """The model of a design. Raises StageError before joints are derived."""
+    if design.ranged is None:
+        raise StageError("`kinform export`", "joints")
+    assembly, run = design.assembly, design.simulation
+    if run is not None and run.status not in ("done", "stopped"):
+        run = None
+    kinematics, gears = design.ranged, all(part.mesh is None for part in assembly.parts)
+    if run is not None and run.level == "functional":
+        from kinform.kinematics import functional
+
+        kinematics, gears = functional(assembly), True
+    behaviour = build(assembly, kinematics, design.mass, gears=gears)
+    mechanism, adrift = assemble(behaviour.system)
+    q, v = _initial(mechanism, run)
+    request = assembly.simulation or SimulationRequest()
+    return ExportModel(
+        assembly=assembly,
+        kinematics=kinematics,
+        simulation=run,
+        system=behaviour.system,
+        masses=() if design.mass is None else design.mass.bodies,
+        mechanism=mechanism,
+        gravity=np.asarray(request.gravity, dtype=np.float64),
+        duration=request.duration,
+        step=request.step,
+        q=q,
+        v=v,
+        start=_starts(mechanism, q, v),
+        ranges=_ranges(assembly, kinematics, behaviour.system.joints),
+        adrift=tuple(sorted(adrift)),
+        lost=_lost(behaviour, adrift),
+    )
+
+
+def _initial(mechanism: Mechanism, run: Simulation | None) -> tuple[Array, Array]:
+    """Coordinates and rates of our own run at its beginning, else rest at the pose of the meshes."""
+    q, v = mechanism.start, np.zeros(mechanism.rates)
+    if run is None or not len(run.time) or run.joint_names != tuple(slot.name for slot in mechanism.slots):
+        return q, v
+    for k, slot in enumerate(mechanism.slots):
+        columns = slice(int(run.joint_offset[k]), int(run.joint_offset[k + 1]))
+        q[slot.q] = run.joint_position[0, columns]
+        v[slot.v] = run.joint_velocity[0, columns][1 if slot.has_ball else 0 :]
+    return q, v
+
+
+def _starts(mechanism: Mechanism, q: Array, v: Array) -> dict[str, BodyStart]:
+    X = mechanism.poses(q)
+    V = mechanism.twists(mechanism.screws(X), v)
+    out = {}
+    for name, link in zip(mechanism.bodies, mechanism.link_of, strict=True):
+        R, omega = X[link, :3, :3], V[link, :3]
+        about_centre = X[link, :3, 3] - R @ mechanism.centre
+        velocity = V[link, 3:] + np.cross(omega, about_centre)
+        out[name] = BodyStart(about_centre + mechanism.centre, quaternions(R[None])[0], velocity, omega)
+    return out
+
+
+def _ranges(
+    assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]
+) -> dict[str, tuple[float, float]]:
+    """Ranges that the geometry leaves; where that is not known, those that the function states."""
+    single = {joint.subject for joint in joints if joint.kind.rates == 1}
+    out: dict[str, tuple[float, float]] = {}
+    for stated in assembly.function.joints:
+        found = resolve(assembly, kinematics, stated.name)
+        if stated.range is not None and found.joint is not None and found.joint.name in single:
+            low, high = stated.range if found.sign > 0 else (-stated.range[1], -stated.range[0])
+            out[found.joint.name] = (float(low), float(high))
+    for joint in kinematics.joints:
+        if joint.name in single and joint.range_status in ("found", "unbounded"):
+            low = -np.inf if joint.range_lower is None else joint.range_lower
+            high = np.inf if joint.range_upper is None else joint.range_upper
+            out[joint.name] = (float(low), float(high))
+    return dict(sorted(out.items()))
+
+
+_ELSEWHERE: dict[type[Component], str] = {
+    Servo: "a servo",
+    DcMotor: "a DC motor",
+    VoltageSource: "the voltage of a motor",
+    VoltageController: "the controller of a motor",
+    EndStop: "end stops with impacts",
+    SpringDamper: "a spring between two points",
+}
+"""What the equations of the other formats are not written for."""
+
+
+def _lost(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:
+    out = [f"{subject}: {why}" for subject, why in (*behaviour.failures, *behaviour.forces_missing)]
+    out += [f"{body.subject}: its mass is not known" for body in _weightless(behaviour.system)]
+    out += [
+        f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
+        for component in behaviour.system.components
+        if type(component) in _ELSEWHERE
+    ]
+    out += [f"{name}: no joints connect this body with the ground; it is free" for name in sorted(adrift)]
+    return tuple(out)
+
+
+def _weightless(system: System) -> list[RigidBody]:
+    return [body for body in system.bodies if isinstance(body, RigidBody) and body.mass is None]

@@ -1,0 +1,57 @@
+"""The formats, and the way to any of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+
+from kinform.exports.exported import Exported, LostError
+from kinform.exports.model import ExportModel, export_model
+from kinform.model.design import Design
+
+__all__ = ["FORMATS", "Format", "export"]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format: its name on the command line, the module that writes it, and what for."""
+
+    name: str
+    module: str
+    purpose: str
+
+    @property
+    def write(self) -> Callable[[ExportModel], Exported]:
+        """Its exporter, imported when it is needed."""
+        found: Callable[[ExportModel], Exported] = import_module(f"kinform.exports.{self.module}").export
+        return found
+
+
+FORMATS: dict[str, Format] = {
+    known.name: known
+    for known in (
+        Format("csv", "series", "the motion as tables of bodies and joints"),
+        Format("dot", "dot", "the kinematic graph, for Graphviz"),
+        Format("glb", "glb", "shapes in motion, for viewers of glTF"),
+        Format("json", "port_model", "the port model, with its schema"),
+        Format("mjcf", "mjcf", "bodies, joints, loops and drives, for MuJoCo"),
+        Format("modelica", "modelica", "components and connectors, for solvers of equations"),
+        Format("sdf", "sdf", "links and joints, for Gazebo and Drake"),
+        Format("svg", "svg", "the kinematic graph, drawn"),
+        Format("urdf", "urdf", "a tree of links and joints, for ROS and its relatives"),
+        Format("vhdl-ams", "vhdl_ams", "entities of the standard IEEE 1076.1"),
+    )
+}
+
+
+def export(design: Design, format: str, *, strict: bool = False) -> Exported:
+    """The design in a format of FORMATS.
+
+    Raises StageError before joints are derived, ExportError when there is nothing to write, KeyError for
+    an unknown format, and with `strict` LostError when the format cannot carry all of the model.
+    """
+    made = FORMATS[format].write(export_model(design))
+    if strict and made.lost:
+        raise LostError(format, made.lost)
+    return made

@@ -1,0 +1,164 @@
+"""The tree with what URDF, SDF and MJCF say of links and joints alike: inertia, shapes, limits, drives."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour import (
+    Actor,
+    Damper,
+    EffortDrive,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    RigidBody,
+    Spring,
+)
+from kinform.behaviour.components import Gear
+from kinform.exports.looks import Shape, shapes, stl
+from kinform.exports.model import ExportModel
+from kinform.exports.names import FILES, XML, Language, identifiers
+from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
+
+__all__ = ["Robot", "RobotLink", "Visual", "robot"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Visual:
+    """A mesh of a link, in the link frame."""
+
+    name: str
+    file: str
+    """With ending, in the folder meshes/."""
+    facets: int
+    material: str
+    """A name for the format, never empty."""
+    rgba: tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class RobotLink:
+    """A link with all that is on it."""
+
+    link: Link
+    name: str
+    offset: Array
+    """(3,) m from the parent's origin to its own, in the common axes."""
+    mass: float | None
+    """kg; None: not known, or the ground."""
+    centre: Array
+    """(3,) m, centre of mass in the link frame."""
+    inertia: Array
+    """(3, 3) kg·m² about the centre of mass."""
+    visuals: tuple[Visual, ...]
+    actors: tuple[Actor, ...]
+    range: tuple[float, float] | None
+    """rad or m, of its joint; None: not known."""
+
+    @property
+    def damping(self) -> float:
+        """Of all dampers on its joint."""
+        return sum(actor.damping for actor in self.actors if isinstance(actor, Damper))
+
+    @property
+    def springs(self) -> tuple[Spring, ...]:
+        """The springs on its joint."""
+        return tuple(actor for actor in self.actors if isinstance(actor, Spring))
+
+    @property
+    def stiffness(self) -> float:
+        """Of all springs on its joint together."""
+        return sum(spring.stiffness for spring in self.springs)
+
+    @property
+    def rest(self) -> float:
+        """Value of the joint at which its springs balance."""
+        return sum(s.stiffness * s.rest for s in self.springs) / self.stiffness if self.stiffness else 0.0
+
+    @property
+    def drives(self) -> tuple[MotionDrive | EffortDrive, ...]:
+        """The drives on its joint."""
+        return tuple(actor for actor in self.actors if isinstance(actor, MotionDrive | EffortDrive))
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """Links, loops, names and files."""
+
+    model: ExportModel
+    name: str
+    stem: str
+    """Name of the file without ending."""
+    tree: Tree
+    links: tuple[RobotLink, ...]
+    joint_names: dict[str, str]
+    """By the joint's or motion's own name."""
+    meshes: dict[str, bytes] = field(default_factory=dict)
+
+    @property
+    def closing(self) -> tuple[Closing, ...]:
+        """Joints that close loops of moving bodies."""
+        return tuple(closing for closing in self.tree.closing if not closing.rigid)
+
+    @property
+    def loads(self) -> tuple[LoadComponent, ...]:
+        """Forces on bodies."""
+        return self.model.system.loads
+
+    @property
+    def gears(self) -> tuple[tuple[Gear, JointComponent, JointComponent], ...]:
+        """Couplings with the joints at a and b."""
+        system = self.model.system
+        return tuple((gear, system.joint_at(gear.name, "a"), system.joint_at(gear.name, "b")) for gear in system.gears)
+
+    def link_of(self, joint: str) -> RobotLink | None:
+        """The link that a joint carries; None for a joint that closes a loop."""
+        return next((k for k in self.links if k.link.joint is not None and k.link.joint.subject == joint), None)
+
+    @property
+    def moved(self) -> bool:
+        """Whether it starts elsewhere than at rest in the pose of the meshes."""
+        return bool(np.any(self.model.q != self.model.mechanism.start) or np.any(self.model.v))
+
+
+def robot(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> Robot:
+    """The tree of a model, with names for the language."""
+    tree = grow(model.system, closable)
+    seen = shapes(model)
+    names = identifiers((link.body.subject for link in tree.links), language)
+    spoken = {name for joint in model.system.joints for name in (joint.subject, *coordinate_names(joint))}
+    joints = identifiers(spoken, language, suffixes=("", ".x", ".y", ".z", ".slide", " lower", " upper", " half"))
+    links, meshes = [], {}
+    for link in tree.links:
+        parent = tree.links[link.parent].origin if link.parent >= 0 else np.zeros(3)
+        own = seen.get(link.body.subject, ())
+        for shape in own:
+            meshes[f"meshes/{shape.file}.stl"] = stl(shape.placed - link.origin, shape.faces)
+        links.append(_link(model, link, names[link.body.subject], link.origin - parent, own))
+    title = identifiers([model.name], language)[model.name]
+    return Robot(model, title, identifiers([model.name], FILES)[model.name], tree, tuple(links), joints, meshes)
+
+
+def _link(model: ExportModel, link: Link, name: str, offset: Array, own: tuple[Shape, ...]) -> RobotLink:
+    body, mass, centre, inertia = link.body, None, np.zeros(3), np.zeros((3, 3))
+    if isinstance(body, RigidBody) and body.mass is not None:
+        mass, centre, inertia = body.mass, body.centre_of_mass - link.origin, body.inertia
+    elif isinstance(body, Ground):
+        known = [b for b in (model.masses if model.masses else ()) if b.name == body.subject and b.mass is not None]
+        if known:
+            mass, centre, inertia = known[0].mass, known[0].centre_of_mass - link.origin, known[0].inertia
+    visuals = tuple(
+        Visual(shape.part, f"{shape.file}.stl", len(shape.faces), shape.material or "unstated", shape.rgba)
+        for shape in own
+    )
+    joint = link.joint
+    actors = () if joint is None else model.system.actors(joint.name)
+    limits = None if joint is None else model.ranges.get(joint.subject)
+    return RobotLink(link, name, offset, mass, centre, inertia, visuals, actors, limits)

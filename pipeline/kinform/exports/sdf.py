@@ -1,0 +1,140 @@
+"""sdf: links, joints, limits, springs and meshes, as Gazebo and Drake read them.
+
+Link frames are those of `tree`. Cylindrical and planar joints, and universal ones whose axes are askew,
+are chains of joints with links of almost no mass between them, because a link without mass counts as
+1 kg in SDF.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour.joints import KINDS
+from kinform.behaviour.primitives import OneFreedom
+from kinform.exports.chains import Hinge, chain
+from kinform.exports.exported import Exported
+from kinform.exports.losses import tree_losses
+from kinform.exports.model import ExportModel
+from kinform.exports.names import SDF
+from kinform.exports.robot import Robot, RobotLink, robot
+from kinform.exports.text import render
+
+__all__ = ["export"]
+
+Array = NDArray[np.float64]
+
+GRAIN = 1e-9
+"""kg and kg·m², of links that have no mass."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Axis:
+    direction: Array
+    limits: tuple[float, float] | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+    mimic: tuple[str, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Joint:
+    name: str
+    type: str
+    parent: str
+    child: str
+    axes: tuple[_Axis, ...] = ()
+    pitch: float | None = None
+    """Metres a turn."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Grain:
+    name: str
+    origin: Array
+
+
+def export(model: ExportModel) -> Exported:
+    """NAME.sdf and meshes/."""
+    made = robot(model, SDF, KINDS)
+    lost = [*model.lost, *tree_losses(made, "SDF", springs=True)]
+    taken = {link.name for link in made.links} | {"world"}
+    joints, grains = [], []
+    for link in made.links:
+        if link.link.joint is None:
+            continue
+        direct = _direct(made, link)
+        if direct is not None:
+            joints.append(direct)
+            continue
+        hinges = chain(made, link, taken)
+        joints += [_of_hinge(hinge) for hinge in hinges]
+        grains += [_Grain(hinge.child, link.link.origin) for hinge in hinges if hinge.between]
+    for gear, a, b in made.gears:
+        joints = _mimicking(made, joints, gear.subject, a.subject, b.subject, gear.ratio, lost)
+    weightless = [link.name for link in made.links[1:] if link.mass is None]
+    if grains or weightless:
+        grain = f"links without mass have {GRAIN:g} kg, because SDF takes 1 kg where nothing is stated"
+        lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
+    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    text = render(
+        "model.sdf.j2", robot=made, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
+        ground=_free(made, "world_fixed"),
+    )  # fmt: skip
+    return Exported({f"{made.stem}.sdf": text, **made.meshes}, tuple(lost), tuple(remarks))
+
+
+def _direct(made: Robot, link: RobotLink) -> _Joint | None:
+    """The joint, where SDF has its kind."""
+    joint = link.link.joint
+    assert joint is not None
+    parent, name = made.links[link.link.parent].name, made.joint_names[joint.subject]
+    kind = joint.kind.name
+    if kind == "fixed":
+        return _Joint(name, "fixed", parent, link.name)
+    if kind == "spherical":
+        return _Joint(name, "ball", parent, link.name)
+    screws = [m.primitive for m in link.link.motions if isinstance(m.primitive, OneFreedom)]
+    if kind == "universal":
+        if abs(float(screws[0].omega @ screws[1].omega)) > 1e-9:
+            return None
+        return _Joint(name, "universal", parent, link.name, tuple(_Axis(screw.omega) for screw in screws))
+    if len(screws) != 1:
+        return None
+    turning = bool(screws[0].omega.any())
+    limits = link.range if link.range is not None and any(map(math.isfinite, link.range)) else None
+    axis = _Axis(screws[0].omega if turning else screws[0].slide, limits, link.damping, link.stiffness, link.rest)
+    if kind == "screw":
+        return _Joint(name, "screw", parent, link.name, (axis,), joint.geometry.pitch)
+    return _Joint(name, kind, parent, link.name, (axis,))
+
+
+def _of_hinge(hinge: Hinge) -> _Joint:
+    return _Joint(hinge.name, hinge.type, hinge.parent, hinge.child, (_Axis(hinge.axis),))
+
+
+def _mimicking(
+    made: Robot, joints: list[_Joint], gear: str, a: str, b: str, ratio: float, lost: list[str]
+) -> list[_Joint]:
+    """The joints, with a following b."""
+    first, second = made.joint_names[a], made.joint_names[b]
+    out, done = [], False
+    for joint in joints:
+        if joint.name == first and len(joint.axes) == 1 and joint.axes[0].mimic is None:
+            axis = joint.axes[0]
+            followed = _Axis(axis.direction, axis.limits, axis.damping, axis.stiffness, axis.rest, (second, ratio))
+            joint, done = _Joint(joint.name, joint.type, joint.parent, joint.child, (followed,), joint.pitch), True
+        out.append(joint)
+    if not done:
+        lost.append(f"{gear}: SDF lets a joint follow one other only, and none that closes a loop")
+    return out
+
+
+def _free(made: Robot, name: str) -> str:
+    while name in made.joint_names.values():
+        name += "_"
+    return name

@@ -1,0 +1,64 @@
+"""Fills the templates: how numbers, vectors and other people's text are written in each language."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import cache
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import jinja2
+
+from kinform.exports.names import comment, one_line
+
+__all__ = ["number", "render", "vector"]
+
+
+def number(value: float) -> str:
+    """The shortest decimal that reads back as the same double, with a point, as all languages want it."""
+    value = float(value) + 0.0
+    if not math.isfinite(value):
+        raise ValueError("a number that is not finite cannot be written")
+    text = repr(value)
+    if "e" in text and "." not in text:
+        text = text.replace("e", ".0e")
+    return text
+
+
+def vector(values: Iterable[float], separator: str = " ") -> str:
+    """Numbers in a row."""
+    return separator.join(number(value) for value in values)
+
+
+def _attribute(text: object) -> str:
+    """A quoted value of an XML attribute."""
+    return quoteattr(str(text))
+
+
+def _quoted(text: object) -> str:
+    """A string in Modelica and in DOT."""
+    return '"' + one_line(str(text)).replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    made = jinja2.Environment(
+        loader=jinja2.PackageLoader("kinform.exports", "templates"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+    made.filters |= {"number": number, "vector": vector, "xml": _attribute, "quoted": _quoted, "comment": comment}
+    return made
+
+
+def render(template: str, **values: Any) -> bytes:
+    """The template filled in, as UTF-8; VHDL as ASCII, because its characters are those of Latin-1 at most.
+
+    A name that the template misses raises.
+    """
+    text = _environment().get_template(template).render(**values)
+    return text.encode("ascii", "backslashreplace") if template.endswith(".vhd.j2") else text.encode("utf-8")

@@ -1,0 +1,157 @@
+"""The structure of a VHDL-AMS system: entities of scopes, with what they declare, hold and pass on.
+
+Names are chosen here, and equations are counted: as many as unknowns, in every entity of the library.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from kinform.exports.model import ExportModel
+from kinform.exports.names import VHDL, identifiers
+from kinform.exports.scopes import Scope, scope_of
+from kinform.exports.text import vector
+
+__all__ = ["AXES", "COUNT", "Generic", "Part", "Structure", "Writer"]
+
+COUNT = {
+    "ground": 16, "rigid_body": 34, "massless_frame": 22, "fixed_joint": 36, "revolute_joint": 47,
+    "prismatic_joint": 41, "screw_joint": 47, "cylindrical_joint": 49, "planar_joint": 57, "universal_joint": 52,
+    "spherical_joint": 45, "closure": 60, "load": 21, "motion_constant": 1, "motion_ramp": 1, "motion_sine": 1,
+    "effort_constant": 1, "effort_ramp": 1, "effort_sine": 1, "spring": 1, "damper": 1, "gear": 2,
+}  # fmt: skip
+"""Equations of each entity, as many as its unknowns: through quantities, and quantities that are not inputs."""
+
+AXES = ("x", "y", "z", "rx", "ry", "rz")
+
+_FRAME = ("", "_i", "_q", "_q_start", *(f"_{axis}" for axis in AXES))
+_SHAFT = ("", "_effort", "_start", "_rate_start", "_given", "_held_effort", "_held_level", "_held_i")
+_PLACES = tuple(f"{what}{k}" for what in ("n", "place", "turn") for k in (1, 2, 3))
+_SUFFIXES = (
+    *_FRAME,
+    *(f"_end{suffix}" for suffix in _FRAME),
+    *(f"_{coordinate}{suffix}" for coordinate in ("angle", "angle2", "distance", "u", "v") for suffix in _SHAFT),
+    *(f"_closure{suffix}" for suffix in ("", "_s", *(f"_{place}" for place in _PLACES))),
+    *(
+        f"_{name}"
+        for name in (
+            "m c inertia n s n1 n2 n3 lead w_start given effort level offset slope amplitude speed phase stiffness "
+            "rest damping ratio a_effort b_effort force torque turning"
+        ).split()
+    ),
+)
+"""What is appended to the name of a component, so that no two names meet."""
+
+
+@dataclass
+class Generic:
+    """A generic with its default."""
+
+    name: str
+    type: str
+    value: str
+
+
+@dataclass
+class Part:
+    """An instance of an entity."""
+
+    label: str
+    entity: str
+    text: str
+    generics: dict[str, str] = field(default_factory=dict)
+    ports: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class Structure:
+    """The entity of a scope."""
+
+    entity: str
+    text: str
+    generics: list[Generic] = field(default_factory=list)
+    ports: list[str] = field(default_factory=list)
+    declarations: list[str] = field(default_factory=list)
+    parts: list[Part] = field(default_factory=list)
+    statements: list[str] = field(default_factory=list)
+
+
+class Writer:
+    """Collects the entities of the scopes as components are added."""
+
+    def __init__(self, model: ExportModel):
+        self.model = model
+        system = model.system
+        self.names = identifiers(
+            [component.name for component in system.components],
+            VHDL,
+            beside=("mechanics", "gravity", *COUNT),
+            suffixes=_SUFFIXES,
+        )
+        self.scopes = scope_of(model)
+        paths = self.scopes.paths
+        tables = (f"table_{name}" for name in self.names.values())
+        called = {path: f"/{path}" if path else model.name for path in paths}
+        entities = identifiers(called.values(), VHDL, beside=("mechanics", "components", *COUNT, *tables))
+        self.entity = {path: entities[called[path]] for path in paths}
+        self.of: dict[Scope, Structure] = {
+            path: Structure(self.entity[path], f"sub-assembly {path}" if path else f"the system {model.name}")
+            for path in paths
+        }
+        self.starts: dict[str, str] = {}
+        self.tables: list[dict[str, Any]] = []
+        self.equations = 0
+        self.nodes = 0
+        self.efforts: dict[str, tuple[Scope, list[str]]] = {}
+
+    def node(self, name: str, home: Scope, top: Scope) -> None:
+        """Declare a frame's terminals and orientation in `top`, and pass them down to `home`."""
+        self.nodes += 1
+        self.of[top].declarations += [
+            f"terminal {name}_x, {name}_y, {name}_z : translational",
+            f"terminal {name}_rx, {name}_ry, {name}_rz : rotational",
+            f"quantity {name}_q : quaternion",
+        ]
+        for scope in self.scopes.between(top, home):
+            self.of[scope].ports += [
+                f"terminal {name}_x, {name}_y, {name}_z : translational",
+                f"terminal {name}_rx, {name}_ry, {name}_rz : rotational",
+                f"quantity {name}_q : out quaternion",
+            ]
+            self.child(scope).ports.update({f"{name}_{axis}": f"{name}_{axis}" for axis in (*AXES, "q")})
+
+    def child(self, scope: Scope) -> Part:
+        """The instance of a scope in the one above."""
+        above = self.of[self.scopes.above(scope)]
+        label = f"sub_{self.entity[scope]}"
+        for part in above.parts:
+            if part.label == label:
+                return part
+        above.parts.append(Part(label, self.entity[scope], f"sub-assembly {scope}"))
+        return above.parts[-1]
+
+    def generic(self, scope: Scope, name: str, kind: str, value: str, start: str | None = None) -> str:
+        """A generic of a scope's entity; its name. `start`: what the bench gives it instead."""
+        self.of[scope].generics.append(Generic(name, kind, value))
+        if start is not None and start != value:
+            self._give(scope, name, start)
+        return name
+
+    def gravity(self, scope: Scope) -> str:
+        """The generic with the gravity of a scope."""
+        if not any(row.name == "gravity" for row in self.of[scope].generics):
+            self.generic(scope, "gravity", "vector3", "(" + vector(self.model.gravity, ", ") + ")")
+        return "gravity"
+
+    def _give(self, scope: Scope, name: str, start: str) -> None:
+        """Give a generic its start: in the bench, or in the instance of the sub-assembly."""
+        if scope == self.scopes.paths[0]:
+            self.starts[name] = start
+        else:
+            self.child(scope).generics[name] = start
+
+    def add(self, scope: Scope, part: Part) -> None:
+        """Add an instance of a library entity."""
+        self.of[scope].parts.append(part)
+        self.equations += COUNT.get(part.entity, 1)

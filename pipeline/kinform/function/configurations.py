@@ -1,0 +1,222 @@
+"""How bodies move relative to one of them: joint coordinates, their ranges, loops that stay closed.
+
+A chain holds the joints on all paths between its bodies and nothing else; poses are displacements from the pose of
+the meshes, relative to its root. Joints that are ambiguous, or known by their velocities only, have no poses: a
+chain through one is refused with the reason. Ranges are those of the function and those that were found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.function.resolve import resolve
+from kinform.kinematics.graph import blocks
+from kinform.kinematics.motion import LoopSystem, loop_system
+from kinform.kinematics.screws import Frame
+from kinform.model.assembly import Assembly
+from kinform.model.kinematics import Joint, Kinematics
+
+__all__ = ["Chain", "Coordinate", "chain_between", "close", "mechanism_of"]
+
+Array = NDArray[np.float64]
+
+CLOSED = 1e-9
+"""Residual (rad, share of the size) at which loops count as closed."""
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One coordinate of a chain. Values in rad, or m, of the joint as kinform signs it."""
+
+    joint: str
+    turns: bool
+    unit: float
+    """Coordinate of the system for a value of 1."""
+    lower: float
+    upper: float
+    """±inf where there is no bound, or none is known."""
+    known: bool
+    """Whether a range is stated or was found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Bodies, and the coordinates that decide where they are."""
+
+    system: LoopSystem
+    frame: Frame
+    bodies: tuple[str, ...]
+    """In the order of the system's bodies; the first is the root."""
+    coordinates: tuple[Coordinate, ...]
+
+    @property
+    def looped(self) -> bool:
+        """Whether there are loops to close."""
+        return len(self.system.chords[0]) > 0
+
+    @property
+    def freedoms(self) -> int:
+        """Freedoms of first order in the pose of the meshes."""
+        values = np.linalg.svd(self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0], compute_uv=False)
+        return len(self.coordinates) - int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+
+    @property
+    def lower(self) -> Array:
+        """(n,) least coordinates."""
+        return np.array([min(c.unit * c.lower, c.unit * c.upper) for c in self.coordinates])
+
+    @property
+    def upper(self) -> Array:
+        """(n,) greatest coordinates."""
+        return np.array([max(c.unit * c.lower, c.unit * c.upper) for c in self.coordinates])
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Joints of which no range is known."""
+        return tuple(dict.fromkeys(c.joint for c in self.coordinates if not c.known))
+
+    def undetermined(self, body: str) -> tuple[str, ...]:
+        """Joints without a known range that can move the body, in the pose of the meshes, while all joints with one
+        stand still."""
+        rows = self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0]
+        held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
+        _, values, right = np.linalg.svd(np.concatenate([rows, held]))
+        rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+        tip = self.system.reach[self.index(body)]
+        moved = [
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > 1e-6]
+            for loose in right[rank:]
+            if np.abs((tip * loose) @ self.system.screws).max() > 1e-9
+        ]
+        return tuple(dict.fromkeys(name for names in moved for name in names))
+
+    def local(self, points: Array) -> Array:
+        """World points (…, 3) m in the system's coordinates."""
+        return np.asarray((points - self.frame.centre) / self.frame.length)
+
+    def world(self, poses: Array) -> Array:
+        """Displacements (…, 4, 4) of the system as displacements in the world (m)."""
+        out = poses.copy()
+        turned = (poses[..., :3, :3] @ self.frame.centre[:, None])[..., 0]
+        out[..., :3, 3] = poses[..., :3, 3] * self.frame.length + self.frame.centre - turned
+        return np.asarray(out)
+
+    def index(self, body: str) -> int:
+        """Number of a body in the system."""
+        return self.bodies.index(body)
+
+
+def chain_between(
+    assembly: Assembly,
+    kinematics: Kinematics,
+    root: str,
+    tip: str,
+    prefer: Literal["both", "stated"] = "both",
+) -> Chain | str:
+    """The chain of all paths between two bodies, or why there is none.
+
+    `prefer`: the narrower of stated and found ranges ("both"), or the stated where there is one ("stated").
+    """
+    names: list[str] = [body.name for body in kinematics.bodies]
+    edges = [(names.index(j.bodies[0]), names.index(j.bodies[1])) for j in kinematics.joints]
+    extra = len(edges)
+    every = blocks(len(names), [*edges, (names.index(root), names.index(tip))])
+    used = [k for k in next(block for block in every if extra in block) if k != extra]
+    if not used:
+        return f"no joints connect '{root}' and '{tip}'"
+    return _chain(assembly, kinematics, [kinematics.joints[k] for k in used], root, prefer)
+
+
+def mechanism_of(assembly: Assembly, kinematics: Kinematics) -> Chain | str:
+    """Everything that joints connect with the ground."""
+    root = next((body.name for body in kinematics.bodies if body.ground), None)
+    if root is None:
+        return "there is no ground"
+    reached, joints = {root}, list(kinematics.joints)
+    grown = True
+    while grown:
+        more = {name for j in joints for name in j.bodies if reached & set(j.bodies)}
+        grown = not more <= reached
+        reached |= more
+    used = [j for j in joints if set(j.bodies) <= reached]
+    return _chain(assembly, kinematics, used, root, "both") if used else "nothing is joined to the ground"
+
+
+def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], root: str, prefer: str) -> Chain | str:
+    for joint in joints:
+        if joint.status == "ambiguous":
+            return f"joint '{joint.name}' is ambiguous: {joint.reason}"
+        if joint.type == "general" and joint.freedoms:
+            return f"joint '{joint.name}' is known by its velocities only"
+    bodies = [root, *sorted({name for j in joints for name in j.bodies} - {root})]
+    points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
+    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
+    if frame.length < 1e-9 or len(points) < 2:
+        frame = Frame(frame.centre, max(_size(assembly), 1e-9))
+    edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
+    system = loop_system(edges, [j.twists for j in joints], frame)
+    ranges = _ranges(assembly, kinematics, prefer)
+    coordinates = [c for joint in joints for c in _coordinates(joint, frame, ranges)]
+    return Chain(system, frame, tuple(bodies), tuple(coordinates))
+
+
+def _size(assembly: Assembly) -> float:
+    return max([0.05, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
+
+
+def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> list[Coordinate]:
+    out = []
+    for twist in joint.twists:
+        turns = float(np.linalg.norm(twist[:3])) > 1e-9 * float(np.linalg.norm(twist[3:]))
+        vector = twist[:3] if turns else twist[3:]
+        sign = -1.0 if joint.axis is not None and float(vector @ joint.axis) < 0.0 else 1.0
+        unit = sign if turns else sign / frame.length
+        single = joint.freedoms == 1 and joint.name in ranges
+        free = (-math.inf, math.inf)
+        low, high = ranges[joint.name] if single else free
+        out.append(Coordinate(joint.name, turns, unit, low, high, single))
+    return out
+
+
+def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str, tuple[float, float]]:
+    """Known ranges of joints, in kinform's sign."""
+    out: dict[str, tuple[float, float]] = {}
+    for joint in kinematics.joints:
+        if joint.range_status in ("found", "unbounded"):
+            low = -math.inf if joint.range_lower is None else joint.range_lower
+            high = math.inf if joint.range_upper is None else joint.range_upper
+            out[joint.name] = (low, high)
+    for intended in assembly.function.joints:
+        if intended.range is None:
+            continue
+        found = resolve(assembly, kinematics, intended.name)
+        if found.joint is None:
+            continue
+        low, high = intended.range if found.sign > 0 else (-intended.range[1], -intended.range[0])
+        name = found.joint.name
+        if prefer == "both" and name in out:
+            low, high = max(low, out[name][0]), min(high, out[name][1])
+        out[name] = (low, high)
+    return out
+
+
+def close(chain: Chain, q: Array, held: NDArray[np.bool_]) -> Array | None:
+    """The closed configuration (n,) near q that leaves the `held` coordinates as they are; None where Newton's
+    steps of least size find none."""
+    q = q.copy()
+    free = ~held
+    for _ in range(40):
+        state = chain.system.close(q[None])
+        residual = state.residual[0]
+        if float(np.abs(residual).max(initial=0.0)) < CLOSED:
+            return q
+        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=1e-9)[0]
+        size = float(np.abs(step).max(initial=0.0))
+        q[free] += step * min(1.0, 0.3 / max(size, 1e-300))
+    return None

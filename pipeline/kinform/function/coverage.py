@@ -1,0 +1,182 @@
+"""How near a point, or a direction, of a body comes to targets while joints stay within their ranges.
+
+Configurations are sampled (at random in the box of ranges; along closed loops by a walk from the pose of the meshes
+where there are loops), and from the best of them each target is approached by damped least squares with the loops
+and the ranges as constraints (Levenberg and Marquardt, projected). A target that is reached is proved by its
+configuration. One that is not was not found from that many starts: the nearest is given. Collisions play no part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.function.configurations import Chain, close
+
+__all__ = ["Coverage", "cover"]
+
+Array = NDArray[np.float64]
+
+SAMPLES = 4000
+WALK = 600
+"""Configurations in the box of ranges, and along closed loops."""
+STARTS = 6
+"""Samples from which each target is approached."""
+AGAIN, MORE = 40, 48
+"""How many of the farthest targets are approached again, and from how many samples."""
+TURNS = 60
+CLOSED = 1e-8
+FAR = 1.0
+"""Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not counted."""
+STIFF = 10.0
+"""Weight of a loop that is open beside a target that is missed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Coverage:
+    """Of each target the least distance that was found (m, or rad for directions), and what came there."""
+
+    distance: Array
+    """(k,)."""
+    nearest: Array
+    """(k, 3) the point (m, world) or the direction that came nearest."""
+    samples: int
+
+
+def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions: bool, near: float = 0.0) -> Coverage:
+    """`carried` (3,): the point (m) or unit direction of the body at the pose of the meshes; `targets` (k, 3).
+
+    Those of the farthest targets that stay beyond `near` (m or rad) are approached again from many more samples.
+    """
+    tip = chain.index(body)
+    own = carried if directions else chain.local(carried)
+    aims = targets if directions else chain.local(targets)
+    enough = near if directions else near / chain.frame.length
+    q = _sampled(chain)
+    images = _images(chain, tip, own, q, directions)
+    # a sample itself is an answer too
+    gaps = _distance(images[:, None], aims[None], directions)
+    first = gaps.argmin(axis=0)
+    best, where = gaps[first, np.arange(len(aims))], images[first]
+
+    def attempt(which: NDArray[np.intp], starts: int) -> None:
+        size = max(1, 400 // starts)
+        for chunk in (which[k : k + size] for k in range(0, len(which), size)):
+            seeds = _seeds(aims[chunk], images, starts)
+            repeated = np.repeat(aims[chunk], seeds.shape[1], axis=0)
+            solved, image, valid = _approach(chain, tip, own, q[seeds.ravel()], repeated, directions)
+            if chain.looped:
+                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < FAR
+            miss = np.where(valid, _distance(image, repeated, directions), np.inf).reshape(seeds.shape)
+            pick = miss.argmin(axis=1)
+            found = miss[np.arange(len(chunk)), pick]
+            better = found < best[chunk]
+            best[chunk[better]] = found[better]
+            where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
+
+    attempt(np.arange(len(aims)), STARTS)
+    missed = np.flatnonzero(best > enough)
+    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], MORE)
+    if not directions:
+        best, where = best * chain.frame.length, where * chain.frame.length + chain.frame.centre
+    return Coverage(best, where, len(q))
+
+
+def _sampled(chain: Chain) -> Array:
+    """(m, n) closed configurations within the ranges, the pose of the meshes first."""
+    rng = np.random.default_rng(0)
+    low, high = _box(chain)
+    start = np.zeros(len(low))
+    if not chain.looped:
+        return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
+    free = np.zeros(len(low), dtype=np.bool_)
+    found, queue = [start], 0
+    while len(found) < WALK and queue < 8 * WALK:
+        base = found[int(rng.integers(len(found)))]
+        queue += 1
+        state = chain.system.close(base[None])
+        _, values, right = np.linalg.svd(state.jacobian[0])
+        rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+        loose = right[rank:]
+        if not len(loose):
+            break
+        way = rng.normal(size=len(loose)) @ loose
+        stepped = close(chain, base + 0.25 * way / np.abs(way).max(), free)
+        if stepped is not None and np.all(stepped >= low - 1e-9) and np.all(stepped <= high + 1e-9):
+            found.append(stepped)
+    return np.array(found)
+
+
+def _box(chain: Chain) -> tuple[Array, Array]:
+    """Ranges of all coordinates: a full turn where no range of a turn is known, or it is free."""
+    low, high = chain.lower, chain.upper
+    turns = np.array([c.turns for c in chain.coordinates], dtype=np.bool_)
+    return np.where(turns, np.maximum(low, -np.pi), low), np.where(turns, np.minimum(high, np.pi), high)
+
+
+def _images(chain: Chain, tip: int, own: Array, q: Array, directions: bool) -> Array:
+    X = chain.system.bodies(q)[:, tip]
+    turned = X[:, :3, :3] @ own
+    return np.asarray(turned if directions else turned + X[:, :3, 3])
+
+
+def _distance(a: Array, b: Array, directions: bool) -> Array:
+    apart = np.linalg.norm(a - b, axis=-1)
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)) if directions else apart)
+
+
+def _seeds(aims: Array, images: Array, starts: int) -> NDArray[np.intp]:
+    """(k, starts) samples to start from: the nearest, and ever sparser ones after it, to the farthest."""
+    order = np.argsort(np.linalg.norm(aims[:, None] - images[None], axis=-1), axis=1, kind="stable")
+    last = len(images) - 1
+    picks = np.unique(np.round(np.geomspace(1, last + 1, starts)).astype(np.int64) - 1)
+    return order[:, np.minimum(picks, last)]
+
+
+def _approach(
+    chain: Chain, tip: int, own: Array, q: Array, aims: Array, directions: bool
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Configurations (d, n), their images (d, 3), and which of them are closed."""
+    system = chain.system
+    low, high = _box(chain)
+    damping = np.full(len(q), 1e-3)
+    image, miss, rows, residual = _linear(chain, tip, own, q, aims, directions)
+    for _ in range(TURNS):
+        gradient = (np.swapaxes(rows, 1, 2) @ residual[..., None])[..., 0]
+        stuck = ((q <= low + 1e-12) & (gradient > 0.0)) | ((q >= high - 1e-12) & (gradient < 0.0))
+        active = np.where(stuck[:, None, :], 0.0, rows)
+        normal = np.swapaxes(active, 1, 2) @ active
+        normal += damping[:, None, None] * np.eye(system.coordinates)
+        step = -np.linalg.solve(normal, (np.swapaxes(active, 1, 2) @ residual[..., None]))[..., 0]
+        longest = np.abs(step).max(axis=1, keepdims=True)
+        step *= np.minimum(1.0, 0.5 / np.maximum(longest, 1e-300))
+        trial = np.clip(q + step, low, high)
+        new_image, new_miss, new_rows, new_residual = _linear(chain, tip, own, trial, aims, directions)
+        better = new_miss < miss
+        q = np.where(better[:, None], trial, q)
+        image = np.where(better[:, None], new_image, image)
+        rows = np.where(better[:, None, None], new_rows, rows)
+        residual = np.where(better[:, None], new_residual, residual)
+        miss = np.where(better, new_miss, miss)
+        damping = np.clip(np.where(better, 0.2 * damping, 5.0 * damping), 1e-12, 1e6)
+        if not better.any() and damping.min() > 1e2:
+            break
+    opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / STIFF
+    return q, image, opened < CLOSED
+
+
+def _linear(
+    chain: Chain, tip: int, own: Array, q: Array, aims: Array, directions: bool
+) -> tuple[Array, Array, Array, Array]:
+    """Images (d, 3), squared misses (d,), derivatives (d, 3 + loops, n) and residuals (d, 3 + loops)."""
+    system = chain.system
+    image = _images(chain, tip, own, q, directions)
+    state = system.close(q)
+    columns = state.columns * system.reach[tip][None, :, None]
+    turn = np.cross(columns[..., :3], image[:, None, :])
+    moves = turn if directions else turn + columns[..., 3:]
+    rows = np.concatenate([np.swapaxes(moves, 1, 2), STIFF * state.jacobian], axis=1)
+    residual = np.concatenate([image - aims, STIFF * state.residual], axis=1)
+    return image, np.einsum("di,di->d", residual, residual), rows, residual

@@ -1,0 +1,64 @@
+"""The clearance by which two groups of parts fit, from the patches where they mate.
+
+Of coaxial and concentric surfaces it is the difference of radii. Planes that face each other, a key in its slot,
+are taken in pairs: what one side opens the other closes, and their sum is the clearance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.contacts import Contacts, Patch
+
+__all__ = ["Clearance", "clearances"]
+
+ROUND = ("cylinder", "sphere", "cone")
+OPPOSED = -np.cos(np.radians(1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """One fit: of round surfaces (radial), between planes (both sides), or of planes on one side (gap)."""
+
+    kind: str
+    value: float
+    """m; negative is press."""
+    error: float
+    """m: of the fitted surfaces, and of their chords where facets alone speak."""
+    place: NDArray[np.float64]
+
+
+def clearances(contacts: Contacts, first: Collection[str], second: Collection[str]) -> tuple[Clearance, ...]:
+    """All fits between parts of the two groups; of round surfaces where there are any, else of planes."""
+    mates = [p for p in contacts.patches if _between(p, first, second) and not p.one_sided and len(p.points)]
+    rounds = [p for p in mates if p.kind in ROUND]
+    if rounds:
+        return tuple(Clearance("radial", p.gap, p.uncertainty[1], p.points.mean(axis=0)) for p in rounds)
+    planes = [p for p in mates if p.kind == "plane"]
+    out, paired = [], set()
+    for i, a in enumerate(planes):
+        for j in range(i + 1, len(planes)):
+            b = planes[j]
+            if float(_out(a, first) @ _out(b, first)) < OPPOSED:
+                error = a.uncertainty[1] + b.uncertainty[1]
+                middle = 0.5 * (a.points.mean(axis=0) + b.points.mean(axis=0))
+                out.append(Clearance("both sides", a.gap + b.gap, error, middle))
+                paired |= {i, j}
+    for i, a in enumerate(planes):
+        if i not in paired:
+            out.append(Clearance("gap", a.gap, a.uncertainty[1], a.points.mean(axis=0)))
+    return tuple(out)
+
+
+def _between(patch: Patch, first: Collection[str], second: Collection[str]) -> bool:
+    a, b = patch.parts
+    return (a in first and b in second) or (b in first and a in second)
+
+
+def _out(patch: Patch, first: Collection[str]) -> NDArray[np.float64]:
+    """Normal out of the first group."""
+    return patch.axis if patch.parts[0] in first else -patch.axis

@@ -1,0 +1,72 @@
+"""Regions to be covered, as places or directions spread over them, with the size of the gaps between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.kinematics.screws import perpendicular
+
+__all__ = ["Targets", "targets_of"]
+
+Array = NDArray[np.float64]
+
+INSIDE, RIM = 240, 48
+"""Directions inside of a cone, and on its rim."""
+ALONG = 7
+"""Places along each edge of a box."""
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """`values` (k, 3): places (m, world) or unit directions. `gap`: every place or direction of the region is
+    within so much (m or rad) of one of them; 0 where they are the region."""
+
+    values: Array
+    directions: bool
+    gap: float
+
+
+def targets_of(region: Mapping[str, Any], *, direction: bool) -> Targets | str:
+    """The targets of a region for a point, or for a direction; a sentence where the region has none such."""
+    if region["type"] == "cone":
+        return _cone(region) if direction else "a cone is a region of directions: state a direction, not a point"
+    if region["type"] == "box":
+        return "a box is a region of places: state a point, not a direction" if direction else _box(region)
+    values = region.get("directions" if direction else "points")
+    if not values:
+        return f"the poses list no {'directions' if direction else 'points'}"
+    return Targets(np.array(values, dtype=np.float64), direction, 0.0)
+
+
+def _cone(region: Mapping[str, Any]) -> Targets:
+    """A spiral of equal areas over the cap, and its rim."""
+    axis, half = np.array(region["axis"]), float(region["half_angle"])
+    u, v = perpendicular(axis)
+    k = np.arange(INSIDE) + 0.5
+    height = 1.0 - (1.0 - math.cos(half)) * k / INSIDE
+    turn = k * math.pi * (3.0 - math.sqrt(5.0))
+    around = np.concatenate([turn, np.arange(RIM) * 2.0 * math.pi / RIM])
+    polar = np.concatenate([np.arccos(np.clip(height, -1.0, 1.0)), np.full(RIM, half)])
+    side = np.sin(polar)[:, None]
+    values = np.cos(polar)[:, None] * axis + side * (np.cos(around)[:, None] * u + np.sin(around)[:, None] * v)
+    # the spiral leaves no gap wider than this many spacings; the rim half of its own
+    spacing = math.sqrt(2.0 * math.pi * (1.0 - math.cos(half)) / INSIDE)
+    return Targets(values, True, max(spacing, math.pi * math.sin(half) / RIM))
+
+
+def _box(region: Mapping[str, Any]) -> Targets:
+    """A grid with the corners."""
+    lower, upper = np.array(region["lower"]), np.array(region["upper"])
+    X = np.array(region["X_WF"])
+    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
+    axes = [np.linspace(a, b, ALONG) if b > a else np.array([a]) for a, b in zip(low, high, strict=True)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    half = 0.5 * np.array([(b - a) / (ALONG - 1) for a, b in zip(low, high, strict=True)])
+    # lower and upper are in metres; only the pose is left to apply
+    return Targets(grid @ X[:3, :3].T + X[:3, 3], False, float(np.linalg.norm(half)))

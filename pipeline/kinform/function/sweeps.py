@@ -1,0 +1,181 @@
+"""The least distance of two moving groups of parts, along a motion or over ranges, with nothing passed over.
+
+Along a motion (conservative advancement): a pose in which the distance exceeds what is required by e certifies all
+poses up to which no point moves by more than e. Over ranges (branch and bound): the middle of a cell certifies it
+if no point moves by more than e from there; else the cell is halved. Both stop at the first pose that falls short.
+Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion
+the second group moves along the screw that leads from one to the other.
+"""
+
+from __future__ import annotations
+
+import heapq
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.function.clearances import Apart, Nearest
+from kinform.function.configurations import Chain
+
+__all__ = ["Swept", "along", "over"]
+
+Array = NDArray[np.float64]
+
+BUDGET = 4000
+"""Poses that are measured before giving up."""
+FLOOR = 1e-4
+"""Shortest step, of the size of the smaller group; ten times that where several joints move at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """What was found. `worst` falls short when its distance is less than required."""
+
+    worst: Nearest
+    """The nearest of the poses that were measured (a bound from below where it is far)."""
+    where: float
+    """Share of the way, in poses of the motion: 3.5 is half way between the fourth and the fifth."""
+    values: tuple[float, ...]
+    """Coordinates of the chain (rad or m, kinform's sign), over ranges."""
+    complete: bool
+    """False: the budget ended before everything was certified."""
+    floor: float
+    """m: between measured poses the distance may be so much less than required."""
+    poses: int
+
+
+def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
+    """Along displacements (T, 4, 4) of both groups from the pose of the meshes."""
+    relative = _inverse(first) @ second
+    twists = [_twist(X) for X in _inverse(relative[:-1]) @ relative[1:]]
+    moved = np.array([_speed(twist, groups) for twist in twists])
+    way = np.concatenate([[0.0], np.cumsum(moved)])
+    floor = FLOOR * groups.size
+
+    def pose(k: int, share: float) -> Array:
+        return np.asarray(relative[k] @ _displacement(share * twists[k]) if share > 0.0 else relative[k])
+
+    at, worst, where = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0
+    for count in range(1, BUDGET + 1):
+        k = int(np.clip(np.searchsorted(way, at, side="right") - 1, 0, max(len(moved) - 1, 0)))
+        share = (at - way[k]) / moved[k] if len(moved) and moved[k] > 0.0 else 0.0
+        near = groups.at(pose(k, min(share, 1.0)), enough=required + way[-1] - at)
+        if near.distance < worst.distance:
+            near = replace(near, place=first[k, :3, :3] @ near.place + first[k, :3, 3])
+            worst, where = near, k + share
+        if near.distance < required or near.distance <= 0.0:
+            return Swept(near, k + share, (), True, floor, count)
+        if at >= way[-1]:
+            return Swept(worst, where, (), True, floor, count)
+        at = min(at + max(near.distance - required, floor), way[-1])
+    return Swept(worst, where, (), False, floor, BUDGET)
+
+
+def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high: Array, required: float) -> Swept:
+    """Over all values of the coordinates (n,) of a chain without loops between `low` and `high`."""
+    a, b = chain.index(first), chain.index(second)
+    lever = _levers(chain, groups, b, low, high)
+    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else 10.0)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    cells: list[tuple[float, int, Array, Array]] = [(0.0, 0, middle, half)]
+    worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle
+    number = count = 0
+    while cells:
+        if count >= BUDGET:
+            return Swept(worst, 0.0, _named(chain, values), False, floor, count)
+        _, _, middle, half = heapq.heappop(cells)
+        poses = chain.world(chain.system.bodies(middle[None])[0])
+        X = np.linalg.inv(poses[a]) @ poses[b]
+        reach = float(lever @ half)
+        near = groups.at(X, enough=required + reach)
+        count += 1
+        if near.distance < worst.distance:
+            worst, values = near, middle
+        if near.distance < required or near.distance <= 0.0:
+            return Swept(near, 0.0, _named(chain, middle), True, floor, count)
+        if near.distance - required >= reach or reach <= floor:
+            continue
+        k = int(np.argmax(lever * half))
+        smaller = half.copy()
+        smaller[k] *= 0.5
+        for side in (-1.0, 1.0):
+            number += 1
+            shifted = middle.copy()
+            shifted[k] += side * smaller[k]
+            heapq.heappush(cells, (near.distance - reach, number, shifted, smaller))
+    return Swept(worst, 0.0, _named(chain, values), True, floor, count)
+
+
+def _inverse(X: Array) -> Array:
+    out = np.zeros_like(X)
+    turned = np.swapaxes(X[:, :3, :3], 1, 2)
+    out[:, :3, :3] = turned
+    out[:, :3, 3] = -(turned @ X[:, :3, 3, None])[..., 0]
+    out[:, 3, 3] = 1.0
+    return out
+
+
+def _twist(X: Array) -> Array:
+    """(6,) twist (ω; v at the origin) whose exponential is the displacement X (4, 4), by less than half a turn."""
+    from scipy.spatial.transform import Rotation
+
+    omega = Rotation.from_matrix(X[:3, :3]).as_rotvec()
+    return np.concatenate([omega, np.linalg.solve(_slide(omega), X[:3, 3])])
+
+
+def _displacement(twist: Array) -> Array:
+    """(4, 4) exponential of a twist."""
+    from scipy.spatial.transform import Rotation
+
+    X = np.eye(4)
+    X[:3, :3] = Rotation.from_rotvec(twist[:3]).as_matrix()
+    X[:3, 3] = _slide(twist[:3]) @ twist[3:]
+    return X
+
+
+def _slide(omega: Array) -> Array:
+    """(3, 3): what v becomes of a shift under the rotation vector ω (the left Jacobian of rotations)."""
+    angle = float(np.linalg.norm(omega))
+    x, y, z = omega
+    hat = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    if angle < 1e-6:
+        return np.eye(3) + 0.5 * hat
+    return np.asarray(
+        np.eye(3) + (1.0 - np.cos(angle)) / angle**2 * hat + (angle - np.sin(angle)) / angle**3 * hat @ hat
+    )
+
+
+def _speed(twist: Array, groups: Apart) -> float:
+    """How far a point of the second group moves at most."""
+    centre = twist[3:] + np.cross(twist[:3], groups.centre)
+    return float(np.linalg.norm(centre) + groups.radius * np.linalg.norm(twist[:3]))
+
+
+def _levers(chain: Chain, groups: Apart, tip: int, low: Array, high: Array) -> Array:
+    """(n,) m: how far a point of the second group moves at most when a coordinate of the chain changes by one."""
+    centre, length = chain.local(groups.centre), chain.frame.length
+    order = np.flatnonzero(np.abs(chain.system.reach[tip]) > 0.0)
+    # from the tip to the root: what moves fewer bodies comes first
+    path = sorted(order, key=lambda k: int(np.count_nonzero(chain.system.reach[:, k])))
+    out = np.zeros(len(chain.coordinates))
+    screws, most = chain.system.screws, np.maximum(np.abs(low), np.abs(high))
+    leads = np.array(
+        [abs(float(s[:3] @ s[3:])) if c.turns else 1.0 for s, c in zip(screws, chain.coordinates, strict=True)]
+    )
+    beyond, point = groups.radius / length + float(leads[path] @ most[path]), centre
+    for k in path:
+        if not chain.coordinates[k].turns:
+            out[k] = length
+            continue
+        omega, v = screws[k, :3], screws[k, 3:]
+        on_axis = np.cross(omega, v)
+        on_axis = on_axis + omega * float(omega @ (point - on_axis))
+        beyond += float(np.linalg.norm(point - on_axis))
+        point = on_axis
+        out[k] = length * (beyond + leads[k])
+    return out
+
+
+def _named(chain: Chain, q: Array) -> tuple[float, ...]:
+    return tuple(float(x) / c.unit for x, c in zip(q, chain.coordinates, strict=True))

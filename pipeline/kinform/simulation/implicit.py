@@ -1,0 +1,117 @@
+"""The implicit path, for stiff models: Radau IIA of order 5 on the kernel's derivative.
+
+Loops are closed again after every accepted step, as on the explicit path (Hairer and Wanner, Solving
+Ordinary Differential Equations II, sections IV.8 and VII.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.simulation.engine import Engine
+from kinform.simulation.kernel import explicit, layout
+from kinform.simulation.run import Run
+from kinform.simulation.stiffness import jacobian
+from kinform.simulation.stops import Contact
+
+__all__ = ["run_implicit"]
+
+Array = NDArray[np.float64]
+
+
+def run_implicit(run: Run, engine: Engine, contact: Contact, report: Callable[[], None]) -> str:
+    """Integrate from the present state to the end of the stretch; why it stopped, or ""."""
+    note = f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
+    if not any("implicit method" in known for known in run.notes):
+        run.notes.append(note)
+    while run.clock[layout.NOW] < run.clock[layout.END]:
+        why = _until_change(run, engine, contact, report)
+        if why:
+            return why
+    return ""
+
+
+def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[], None]) -> str:
+    """Integrate until the end of the stretch or an end stop."""
+    from scipy.integrate import Radau
+
+    settings, end = run.settings, float(run.clock[layout.END])
+
+    def rates(t: float, y: Array) -> Array:
+        dy = np.zeros_like(y)
+        # A trial state may be far from any motion; what is not finite makes the method shorten its step.
+        return dy if engine.derivative(run, t, y.copy(), dy) > 0.0 else np.full_like(y, np.nan)
+
+    start = float(run.clock[layout.NOW])
+    solver: Any = Radau(
+        rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
+        first_step=min(1e-6, end - start), jac=lambda t, y: jacobian(run, engine, t, y),
+    )  # fmt: skip
+    while solver.status == "running":
+        contact.remember()
+        before = float(solver.t)
+        try:
+            with np.errstate(all="ignore"):
+                solver.step()
+        except (ValueError, np.linalg.LinAlgError):
+            return f"after t = {before:.6g} s the motion grew beyond all numbers"
+        run.tally[layout.STEPS] += 1
+        if solver.status == "failed":
+            return f"at t = {solver.t:.6g} s the motion becomes too fast to follow, also by the implicit method"
+        hit, place = _passed(run, solver, before)
+        dense = solver.dense_output()
+        _sample(run, engine, dense, place)
+        run.y[:] = dense(place) if hit >= 0 else solver.y
+        run.clock[layout.NOW] = place
+        if hit >= 0:
+            run.tally[layout.HIT] = hit
+            return contact.strike(engine)
+        if contact.holding:
+            held = list(contact.holding)
+            contact.release_if_pulled(engine)
+            if contact.holding != held:
+                return ""
+        if run.dynamics.rank:
+            gap, kept = engine.project(run, place, run.y)
+            if not 0.0 <= gap < settings.open:
+                return f"at t = {place:.6g} s the loops cannot be closed any more: the pose is singular{run.loops()}"
+            if kept < settings.keep:
+                run.choose()
+            solver.y = run.y.copy()
+            solver.f = rates(place, solver.y)
+        report()
+        if run.tally[layout.STEPS] > settings.steps:
+            return f"at t = {place:.6g} s {settings.steps} steps were used up: the model is stiff"
+    return ""
+
+
+def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
+    """The stop that is passed first in the last step, and when; −1 and the end of the step."""
+    tables, dense = run.dynamics.tables, solver.dense_output()
+    found, end = -1, float(solver.t)
+    for k, (at, _, sense, held) in enumerate(tables.ints[layout.STOPS]):
+        limit = tables.nums[layout.STOPS][k, 0]
+        if held or not sense * (solver.y[at] - limit) > 1e-12:
+            continue
+        low, high = before, end
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if sense * (dense(middle)[at] - limit) > 0.0 else (middle, high)
+        found, end = k, high
+    return found, end
+
+
+def _sample(run: Run, engine: Engine, dense: Any, until: float) -> None:
+    """Outputs up to a time in the last step."""
+    tables = run.dynamics.tables
+    while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= until:
+        t = float(run.times[run.tally[layout.NEXT]])
+        explicit.sample(
+            engine._derivative, engine._project, tables.ints, tables.nums, tables.work, run.clock, t,
+            np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]],
+        )  # fmt: skip
+        run.tally[layout.NEXT] += 1

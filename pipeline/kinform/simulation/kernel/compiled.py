@@ -1,0 +1,109 @@
+"""The kernel's functions compiled by numba, from its cache where there is one.
+
+Every function is compiled for one signature: three tuples of two-dimensional arrays, and numbers. The
+names under which numba caches them carry a digest of all the kernel's source: a change of one function
+compiles afresh those that call it.
+"""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import inspect
+import types
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from kinform.simulation.kernel import equations, explicit, forces, layout, loops, masses, motion, signals, vectors
+
+__all__ = ["compiled", "is_cached"]
+
+_TABLES = "UniTuple(i8[:, ::1], 10), UniTuple(f8[:, ::1], 12), UniTuple(f8[:, ::1], 9)"
+_TYPES = {
+    "int": "i8", "float": "f8", "bool": "b1", "Row": "f8[::1]", "Counts": "i8[::1]",
+    "Table": "f8[:, ::1]", "Index": "i8[:, ::1]",
+    "Ints": "UniTuple(i8[:, ::1], 10)", "Nums": "UniTuple(f8[:, ::1], 12)", "Work": "UniTuple(f8[:, ::1], 9)",
+    "Derivative": f"FunctionType(f8({_TABLES}, f8, f8[::1], f8[::1]))",
+    "Project": f"FunctionType(UniTuple(f8, 2)({_TABLES}, f8, f8[::1], f8))",
+}  # fmt: skip
+"""What the annotations of the kernel are to numba."""
+
+_ORDER = (
+    vectors.three, vectors.put, vectors.add, vectors.cross, vectors.dot, vectors.turned, vectors.place,
+    signals.law, motion.place_screw, motion.place_ball, motion.place_links, motion.twist_links,
+    masses.momentum, masses.heavy, masses.inertias, masses.wrenches, masses.mass_matrix, masses.cholesky,
+    masses.solve_cholesky, forces.controlled, forces.drive, forces.push, forces.pace, forces.loads, forces.between,
+    loops.line_of, loops.row_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
+    equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
+    explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
+    explicit.stop_reached, explicit.advance,
+)  # fmt: skip
+"""Functions after those that they call."""
+
+_POINTERS = ("derivative", "project")
+"""Passed to the integrator as functions."""
+_ENTRIES = (*_POINTERS, "advance")
+"""What is called from Python; the rest gets no wrapper, which shortens compilation."""
+
+
+def _digest() -> str:
+    modules = (layout, vectors, signals, motion, masses, forces, loops, equations, explicit)
+    text = "".join(inspect.getsource(module) for module in modules) + repr(_TYPES)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def _renamed(function: Callable[..., Any], known: dict[str, Any], digest: str) -> Any:
+    """The function with compiled ones in place of those that it calls."""
+    scope = {**function.__globals__, **known}
+    made = types.FunctionType(function.__code__, scope, function.__name__)
+    made.__module__ = function.__module__
+    made.__qualname__ = f"{function.__name__}_{digest}"
+    return made
+
+
+def _signature(function: Callable[..., Any]) -> str:
+    """Types of the arguments, from their annotations."""
+    kinds = [_TYPES[argument.annotation] for argument in inspect.signature(function).parameters.values()]
+    return f"({', '.join(kinds)})"
+
+
+@cache
+def compiled() -> types.SimpleNamespace:
+    """The compiled entries `derivative`, `project` and `advance`."""
+    import numba
+
+    digest = _digest()
+    known: dict[str, Any] = {}
+    collecting = gc.isenabled()
+    # A compiler makes much and drops little: collecting between costs a tenth of its time.
+    gc.disable()
+    try:
+        for function in _ORDER:
+            name = function.__name__
+            known[name] = _jit(numba, _signature(function), _renamed(function, known, digest), name)
+    finally:
+        if collecting:
+            gc.enable()
+    return types.SimpleNamespace(**{name: known[name] for name in _ENTRIES})
+
+
+def is_cached() -> bool:
+    """Whether numba's cache beside the kernel holds it compiled; elsewhere it is not looked for."""
+    beside = Path(__file__).parent / "__pycache__"
+    return any(beside.glob(f"*.advance_{_digest()}-*.nbi"))
+
+
+def _jit(numba: Any, signature: str, function: Any, name: str) -> Any:
+    """Compile, with the cache where the machine allows one."""
+    options = {
+        "nopython": True, "error_model": "numpy",
+        "no_cpython_wrapper": name not in _ENTRIES, "no_cfunc_wrapper": name not in _POINTERS,
+    }  # fmt: skip
+    try:
+        return numba.jit(signature, cache=True, **options)(function)
+    except RuntimeError as error:
+        if "cache" not in str(error):
+            raise
+        return numba.jit(signature, **options)(function)

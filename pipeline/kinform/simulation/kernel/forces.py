@@ -1,0 +1,159 @@
+"""What acts: on shafts, on links, and between points of two links.
+
+Efforts of drives go to work[VECTORS][FORCE] and [GIVEN], wrenches to the links as less that they need.
+"""
+
+from __future__ import annotations
+
+import math
+
+from kinform.simulation.kernel.layout import (
+    AT_Q,
+    AT_V,
+    CONTROLLED,
+    DAMPER,
+    DOES,
+    EFFORT,
+    FIRST_STATE,
+    FORCE,
+    GIVEN,
+    LAW,
+    MOTOR,
+    SECOND_STATE,
+    SERVO,
+    SPRING,
+    TWIST,
+    WRENCH,
+)
+from kinform.simulation.kernel.signals import law
+from kinform.simulation.kernel.types import Index, Row, Table
+from kinform.simulation.kernel.vectors import add, cross, dot, place, three, turned
+
+__all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
+
+
+def controlled(
+    actors: Index,
+    numbers: Table,
+    values: Table,
+    pieces: Table,
+    k: int,
+    first: int,
+    at: int,
+    held: float,
+    t: float,
+    q: float,
+    v: float,
+    dy: Row,
+) -> float:
+    """Output of the controller whose kp, ki, kd, limit begin in column `first` of actor k."""
+    target, rate, _ = law(values, pieces, actors[k, LAW], t)
+    wanted = numbers[k, first] * (target - q) + numbers[k, first + 2] * (rate - v)
+    limit = numbers[k, first + 3]
+    if at >= 0:
+        wanted += numbers[k, first + 1] * held
+        # The integral rests while the output is at its limit and it would push further (anti-windup).
+        stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
+        dy[at] = 0.0 if stuck else target - q
+    return float(min(max(wanted, -limit), limit))
+
+
+def drive(
+    actors: Index,
+    numbers: Table,
+    values: Table,
+    pieces: Table,
+    force: Table,
+    t: float,
+    y: Row,
+    dy: Row,
+    first: int,
+    n: int,
+) -> float:
+    """Efforts on the shafts; rates of the actors' states go to dy. The power that they put in, springs
+    apart, which store."""
+    power = 0.0
+    for k in range(n):
+        force[FORCE, k] = 0.0
+        force[GIVEN, k] = 0.0
+    for k in range(len(actors)):
+        q, v = y[actors[k, AT_Q]], y[first + actors[k, AT_V]]
+        does, one, two = actors[k, DOES], actors[k, FIRST_STATE], actors[k, SECOND_STATE]
+        effort = 0.0
+        if does == EFFORT:
+            effort, _, _ = law(values, pieces, actors[k, LAW], t)
+        elif does == SPRING:
+            effort = numbers[k, 0] * (numbers[k, 1] - q)
+        elif does == DAMPER:
+            effort = -numbers[k, 0] * v
+        elif does == SERVO:
+            effort = controlled(actors, numbers, values, pieces, k, 0, one, y[one], t, q, v, dy)
+        elif does in (MOTOR, CONTROLLED):
+            if does == MOTOR:
+                voltage, _, _ = law(values, pieces, actors[k, LAW], t)
+            else:
+                voltage = controlled(actors, numbers, values, pieces, k, 4, two, y[two], t, q, v, dy)
+            constant = numbers[k, 2] * numbers[k, 3]
+            if one >= 0:
+                current = y[one]
+                dy[one] = (voltage - numbers[k, 0] * current - constant * v) / numbers[k, 1]
+            else:
+                current = (voltage - constant * v) / numbers[k, 0]
+            effort = constant * current
+        force[FORCE, actors[k, AT_V]] += effort
+        force[GIVEN, actors[k, AT_V]] += effort
+        if does != SPRING:
+            power += effort * v
+    return power
+
+
+def push(state: Table, i: int, x: float, y: float, z: float, f0: float, f1: float, f2: float) -> None:
+    """The force f on link i at the point (x, y, z) of the world."""
+    n0, n1, n2 = cross(x, y, z, f0, f1, f2)
+    add(state, i, WRENCH, -n0, -n1, -n2)
+    add(state, i, WRENCH + 3, -f0, -f1, -f2)
+
+
+def pace(state: Table, i: int, x: float, y: float, z: float, d0: float, d1: float, d2: float) -> float:
+    """Velocity of the point (x, y, z) of link i times d."""
+    v0, v1, v2 = cross(*three(state, i, TWIST), x, y, z)
+    l0, l1, l2 = three(state, i, TWIST + 3)
+    return dot(v0 + l0, v1 + l1, v2 + l2, d0, d1, d2)
+
+
+def loads(table: Index, numbers: Table, state: Table) -> float:
+    """Given forces and torques on links; the power that they put in."""
+    power = 0.0
+    for k in range(len(table)):
+        i = table[k, 0]
+        # Vectors that do not turn with the link are those of the ground, link 0.
+        frame = i if table[k, 1] == 1 else 0
+        f0, f1, f2 = turned(state, frame, *three(numbers, k, 0))
+        n0, n1, n2 = turned(state, frame, *three(numbers, k, 3))
+        x, y, z = place(state, i, *three(numbers, k, 6))
+        push(state, i, x, y, z, f0, f1, f2)
+        power += pace(state, i, x, y, z, f0, f1, f2)
+        add(state, i, WRENCH, -n0, -n1, -n2)
+        w0, w1, w2 = three(state, i, TWIST)
+        power += dot(w0, w1, w2, n0, n1, n2)
+    return power
+
+
+def between(table: Index, numbers: Table, state: Table) -> float:
+    """Springs and dampers between points of two links; the power of their dampers."""
+    power = 0.0
+    for k in range(len(table)):
+        a, b = table[k, 0], table[k, 1]
+        x, y, z = place(state, a, *three(numbers, k, 0))
+        u, v, w = place(state, b, *three(numbers, k, 3))
+        d0, d1, d2 = u - x, v - y, w - z
+        length = math.sqrt(dot(d0, d1, d2, d0, d1, d2))
+        if length == 0.0:
+            continue
+        d0, d1, d2 = d0 / length, d1 / length, d2 / length
+        speed = pace(state, b, u, v, w, d0, d1, d2) - pace(state, a, x, y, z, d0, d1, d2)
+        pull = numbers[k, 6] * (length - numbers[k, 8]) + numbers[k, 7] * speed
+        power -= numbers[k, 7] * speed * speed
+        push(state, a, x, y, z, pull * d0, pull * d1, pull * d2)
+        push(state, b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
+    return power

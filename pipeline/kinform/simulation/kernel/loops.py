@@ -1,0 +1,203 @@
+"""Closes loops: independent rows and dependent rates, factors, and what follows from both.
+
+Rows and rates are chosen once by complete pivoting at a known rank, and kept while their pivots stay
+good; every evaluation eliminates in that order, never by a tolerance of its own. With the rates in the
+order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (−B; 1) keep them closed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.simulation.kernel.layout import (
+    BEFORE,
+    CLOSURES,
+    COLUMNS,
+    CONSTANTS,
+    COUNTS,
+    GAIN,
+    GAP,
+    GEARS,
+    LENGTH,
+    LINKS,
+    MODE,
+    PIVOT,
+    RANK,
+    RATES,
+    REFERENCE,
+    ROWS,
+    SCALE,
+    SCREWS,
+    SIGNAL,
+    STATE,
+    TIP,
+    VECTORS,
+)
+from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
+
+__all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of", "row_of"]
+
+
+def line_of(
+    numbers: Table, state: Table, length: float, loop: int, axis: int, tip: int
+) -> tuple[float, float, float, float, float, float]:
+    """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop."""
+    e0, e1, e2 = turned(state, tip, *three(numbers, loop, 3 * (axis % 3)))
+    if axis < 3:
+        return e0, e1, e2, 0.0, 0.0, 0.0
+    e0, e1, e2 = e0 / length, e1 / length, e2 / length
+    x, y, z = place(state, tip, *three(numbers, loop, 9))
+    m0, m1, m2 = cross(x, y, z, e0, e1, e2)
+    return m0, m1, m2, e0, e1, e2
+
+
+def row_of(ints: Ints, nums: Nums, work: Work, row: int, out: int) -> None:
+    """Writes row `row` of the closures into work[ROWS][out], by rates in their own order.
+
+    Rows 6c to 6c + 5 are the turn and the displacement over the length of the target relative to the
+    tip of loop c, along the axes of a frame that the tip carries; then come the gears.
+    """
+    n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
+    links, before, screws, rows = ints[LINKS], ints[COLUMNS], work[SCREWS], work[ROWS]
+    loop, axis = row // 6, row % 6
+    if loop >= len(closures):
+        for k in range(n):
+            rows[out, k] = nums[GEARS][row - 6 * len(closures), k]
+        return
+    for k in range(n):
+        rows[out, k] = 0.0
+    m0, m1, m2, f0, f1, f2 = line_of(nums[CLOSURES], work[STATE], length, loop, axis, closures[loop, 0])
+    for side in range(2):
+        k = links[closures[loop, side], TIP]
+        sign = 2.0 * side - 1.0
+        while k >= 0:
+            w0, w1, w2 = three(screws, k, 0)
+            l0, l1, l2 = three(screws, k, 3)
+            rows[out, k] += sign * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
+            k = before[k, BEFORE]
+
+
+def gained(closures: Index, numbers: Table, state: Table, length: float, row: int) -> float:
+    """Acceleration of the gap in row `row` at constant rates."""
+    loop, axis = row // 6, row % 6
+    if loop >= len(closures):
+        return 0.0
+    m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
+    total = 0.0
+    for side in range(2):
+        w0, w1, w2 = three(state, closures[loop, side], GAIN)
+        l0, l1, l2 = three(state, closures[loop, side], GAIN + 3)
+        total += (2.0 * side - 1.0) * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
+    return total
+
+
+def gap_of(
+    closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, n: int, row: int
+) -> float:
+    """What row `row` has open in the positions."""
+    loop, axis = row // 6, row % 6
+    total = 0.0
+    if loop >= len(closures):
+        for k in range(gears.shape[1] - n):
+            total += gears[row - 6 * len(closures), n + k] * y[k]
+        return total
+    a, b = closures[loop, 0], closures[loop, 1]
+    e0, e1, e2 = turned(state, a, *three(numbers, loop, 3 * (axis % 3)))
+    if axis < 3:
+        # Half the sum of cross products of the axes: the sine of the turn along its axis.
+        for j in range(3):
+            c0, c1, c2 = cross(
+                state[a, j], state[a, 3 + j], state[a, 6 + j], state[b, j], state[b, 3 + j], state[b, 6 + j]
+            )
+            total += 0.5 * dot(e0, e1, e2, c0, c1, c2)
+        return total
+    x0, x1, x2 = place(state, a, *three(numbers, loop, 9))
+    z0, z1, z2 = place(state, b, *three(numbers, loop, 9))
+    return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
+
+
+def choose(ints: Ints, nums: Nums, work: Work) -> None:
+    """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
+    mode and its pivots. Never compiled: it is called a few times a run."""
+    n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
+    count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
+    led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
+    for row in range(count):
+        row_of(ints, nums, work, row, row)
+    rows = work[ROWS][:count] * scale
+    left = np.ones(count, dtype=bool)
+    chosen: list[int] = []
+    dependent: list[int] = []
+    for _ in range(rank):
+        size = np.abs(rows) * left[:, None]
+        size[:, led] = -1.0
+        size[:, dependent] = -1.0
+        preferred = np.where(closing, size, -1.0)
+        best = preferred if preferred.max() > 0.3 else size
+        row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
+        work[VECTORS][REFERENCE, len(chosen)] = max(float(best[row, column]), 1e-300)
+        left[row] = False
+        chosen.append(row)
+        dependent.append(column)
+        others = left & (rows[:, column] != 0.0)
+        rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
+    free = [k for k in range(n) if not led[k] and k not in dependent]
+    ints[MODE][0, :rank] = chosen
+    ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
+
+
+def gather(ints: Ints, nums: Nums, work: Work) -> None:
+    """Writes the independent rows into work[ROWS], rates in the order of the mode."""
+    n, rank = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK]
+    rows, mode = work[ROWS], ints[MODE]
+    spare = len(rows) - 1
+    for r in range(rank):
+        row_of(ints, nums, work, mode[0, r], spare)
+        for c in range(n):
+            rows[r, c] = rows[spare, mode[1, c]]
+
+
+def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> tuple[float, float]:
+    """Factors the gathered rows in place; the columns after the dependent ones become B.
+
+    Returns (smallest pivot over the largest, smallest pivot over that of its choice).
+    """
+    low, high, kept = 1e300, 0.0, 1.0
+    for k in range(rank):
+        pivot = rows[k, k]
+        size = abs(pivot) * scale[mode[1, k], 0]
+        low, high = min(low, size), max(high, size)
+        kept = min(kept, size / vectors[REFERENCE, k])
+        if pivot == 0.0:
+            return 0.0, 0.0
+        vectors[PIVOT, k] = 1.0 / pivot
+        for i in range(k + 1, rank):
+            if rows[i, k] != 0.0:
+                factor = rows[i, k] * vectors[PIVOT, k]
+                rows[i, k] = factor
+                for j in range(k + 1, n):
+                    rows[i, j] -= factor * rows[k, j]
+    for k in range(rank - 1, -1, -1):
+        for i in range(k + 1, rank):
+            factor = rows[k, i]
+            if factor != 0.0:
+                for j in range(rank, n):
+                    rows[k, j] -= factor * rows[i, j]
+        for j in range(rank, n):
+            rows[k, j] *= vectors[PIVOT, k]
+    return (low / high if rank > 0 else 1.0), kept
+
+
+def back_substitute(rows: Table, vectors: Table, rank: int) -> None:
+    """Turns work[VECTORS][GAP], by independent rows, into the dependent rates that make it up."""
+    for k in range(rank):
+        total = vectors[GAP, k]
+        for i in range(k):
+            total -= rows[k, i] * vectors[GAP, i]
+        vectors[GAP, k] = total
+    for k in range(rank - 1, -1, -1):
+        total = vectors[GAP, k]
+        for i in range(k + 1, rank):
+            total -= rows[k, i] * vectors[GAP, i]
+        vectors[GAP, k] = total * vectors[PIVOT, k]

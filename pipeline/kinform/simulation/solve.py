@@ -1,0 +1,199 @@
+"""Solves a port model through time: starts it, runs it at a level, and makes results of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.behaviour.components import System
+from kinform.model.simulation import Simulation
+from kinform.simulation.actuation import Actuation
+from kinform.simulation.assemble import assemble
+from kinform.simulation.balances import imbalance
+from kinform.simulation.closure import rank_of
+from kinform.simulation.drives import uses
+from kinform.simulation.dynamics import Dynamics
+from kinform.simulation.integrate import run_dynamic
+from kinform.simulation.kinematic import resting, run_kinematic
+from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.reactions import reactions
+from kinform.simulation.record import Record, blank, publish
+from kinform.simulation.settings import SolverSettings
+from kinform.simulation.start import Start, Stated, begin
+
+__all__ = ["Course", "refuse", "simulate_system", "solve"]
+
+Array = NDArray[np.float64]
+Failures = tuple[tuple[str, str], ...]
+TRUSTED = 1e-5
+"""Drift of the energy over the energy exchanged; runs at the default tolerances stay a hundred times below."""
+Progress = Callable[[int, int], None]
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How long, at which output times, under which gravity, at which level."""
+
+    duration: float
+    """s."""
+    step: float
+    """s, of the output."""
+    gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
+    """(3,) m/s²."""
+    level: str = "dynamic"
+    """kinematic (or functional), dynamic."""
+
+
+def simulate_system(
+    system: System,
+    course: Course,
+    *,
+    initial: Mapping[str, tuple[float, float]] | None = None,
+    settings: SolverSettings | None = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Simulation:
+    """Simulates a port model made by hand; SI and radians.
+
+    `initial`: (position, velocity) of joints with one freedom by what they are called; 0 is the pose in
+    which the model is written. Refusals are in `failures` of what is returned, with the component.
+    ValueError for initial values of joints that the system does not have.
+    """
+    mechanism, adrift = assemble(system)
+    slots = {slot.name: slot for slot in mechanism.slots}
+    stated = []
+    for name, (position, velocity) in (initial or {}).items():
+        if name not in slots or slots[name].kind.rates != 1:
+            raise ValueError(f'there is no joint "{name}" with one freedom: expected one of {", ".join(slots)}')
+        stated.append(Stated(name, slots[name].q.start, slots[name].v.start, position, velocity))
+    failures = tuple((name, "no joints connect this body with the ground") for name in adrift)
+    if course.level == "dynamic":
+        failures += unfit(system, mechanism)
+    if failures:
+        return refuse("the model is not complete", failures)
+    return solve(system, mechanism, course, tuple(stated), (), settings or SolverSettings(), progress, say)
+
+
+def unfit(system: System, mechanism: Mechanism) -> Failures:
+    """(component, why) of moving bodies whose mass or inertia cannot be."""
+    link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
+    out = []
+    for body in system.bodies:
+        if link_of[body.subject] == 0:
+            continue
+        mass = getattr(body, "mass", None)
+        if mass is None:
+            out.append((body.subject, "its mass is not known"))
+            continue
+        values = np.concatenate([[mass], *np.atleast_2d(body.inertia), body.centre_of_mass])  # type: ignore[union-attr]
+        if not np.all(np.isfinite(values)) or mass < 0.0:
+            out.append((body.subject, "its mass, centre of mass or inertia is not a number, or negative"))
+    return tuple(out)
+
+
+def solve(
+    system: System,
+    mechanism: Mechanism,
+    course: Course,
+    stated: tuple[Stated, ...],
+    notes: tuple[str, ...],
+    settings: SolverSettings,
+    progress: Progress | None,
+    say: Say | None,
+) -> Simulation:
+    """Start and run the system; `notes` are what is assumed already."""
+    dynamic = course.level == "dynamic"
+    actuation = Actuation(mechanism, system, with_mass=dynamic)
+    if actuation.conflicts:
+        return refuse("the drives or the initial values cannot be applied", tuple(actuation.conflicts))
+    start = begin(mechanism, actuation, stated, settings, coasting=dynamic)
+    if start.problem is not None:
+        return refuse("the mechanism cannot start", (start.problem,))
+    overdriven, rank = _ranks(mechanism, actuation, start, settings)
+    if overdriven:
+        return refuse("the drives cannot be followed", ((_driven(mechanism, actuation), overdriven),))
+    notes = (*notes, *actuation.notes, *start.notes)
+    times = _grid(course.duration, course.step)
+    if not dynamic:
+        notes = (*notes, *resting(mechanism, actuation, start, settings))
+        record = run_kinematic(mechanism, actuation, start, times, settings, progress)
+        return publish(mechanism, record, course.level, notes, settings.free)[0]
+    dynamics = Dynamics(mechanism, system, course.gravity, actuation, rank)
+    weightless = dynamics.weightless(start.q)
+    if weightless:
+        why = "its motion moves no mass: the acceleration is not determined"
+        return refuse("a free motion has no inertia", tuple((name, why) for name in weightless))
+    record = run_dynamic(dynamics, start, times, settings, progress, say)
+    return _with_forces(dynamics, record, course.level, notes, settings)
+
+
+def _with_forces(
+    dynamics: Dynamics, record: Record, level: str, notes: tuple[str, ...], settings: SolverSettings
+) -> Simulation:
+    """The results with energy, reactions, their balance, and what the drives did."""
+    run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
+    kinetic, potential = dynamics.energy(record.q, states)
+    found = reactions(dynamics, states, record.effort, settings.free)
+    energy = np.column_stack([kinetic, potential, record.work])
+    return replace(
+        run,
+        assumptions=(*run.assumptions, *_drift(run.time, energy)),
+        energy=energy,
+        F_A=-found.on_second,
+        F_B=found.on_second,
+        undetermined=found.undetermined,
+        balance=imbalance(dynamics, states, found, record.effort),
+        drives=uses(dynamics, record),
+    )
+
+
+def _drift(times: Array, energy: Array) -> tuple[str, ...]:
+    """What is to be said of an energy balance that is worse than every sound run's."""
+    total = energy @ np.array([1.0, 1.0, -1.0])
+    exchanged = float(np.ptp(energy, axis=0).max(initial=0.0)) if len(energy) else 0.0
+    wrong = np.flatnonzero(np.abs(total - total[:1]) > TRUSTED * exchanged + 1e-12)
+    if not len(wrong) or exchanged == 0.0:
+        return ()
+    share = float(np.abs(total - total[0]).max()) / exchanged
+    return (
+        f"from t = {times[wrong[0]]:.4g} s on the energy balance is off, at the end by {share:.2g} of the energy "
+        "exchanged: the trajectory is not to be trusted from there on",
+    )
+
+
+def _grid(duration: float, step: float) -> Array:
+    """Multiples of the step from zero, and the end itself."""
+    times = np.arange(int(np.floor(duration / step + 1e-9)) + 1, dtype=np.float64) * step
+    if duration - times[-1] > 1e-9 * step:
+        return np.append(times, duration)
+    times[-1] = duration
+    return times
+
+
+def _ranks(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> tuple[str, int]:
+    """Why the drives cannot be followed ("" when they can), and the rank of the loops without them."""
+    rows = mechanism.closure(mechanism.screws(mechanism.poses(start.q)))
+    free, scale = actuation.free, mechanism.scale
+    rank = rank_of(rows[:, free], scale[free], settings.free)
+    if rank == rank_of(rows, scale, settings.free):
+        return "", rank
+    return (
+        "the loops leave these drives no freedom at the start: there are too many of them, "
+        "or the mechanism starts in a singular pose",
+        rank,
+    )
+
+
+def _driven(mechanism: Mechanism, actuation: Actuation) -> str:
+    led = set(actuation.led.tolist())
+    return ", ".join(slot.name for slot in mechanism.slots if slot.v.start in led and slot.v.stop > slot.v.start)
+
+
+def refuse(reason: str, failures: Failures) -> Simulation:
+    """Nothing is simulated, and why."""
+    subject, why = failures[0]
+    return blank("refused", f"{reason}: {subject}: {why}", failures)

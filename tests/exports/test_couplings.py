@@ -1,0 +1,85 @@
+"""Couplings of a design without geometry: each format that has them carries them."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from devices import Z, device, drive, intended, sine
+from models import X, block, design, written
+from test_modelica import solved
+from test_urdf import forward, numbers
+from test_vhdl_ams import analysed
+
+from kinform.exports import export
+from kinform.model.function import Coupling
+
+
+@pytest.fixture(scope="module")
+def geared():
+    """A rack that a pinion moves: value of the rack = 0.02 times that of the pinion, the designer's order mixed."""
+    wanted = [
+        intended("pinion", "base", "wheel", "revolute", Z, (0, 0, 0)),
+        intended("rack", "slide", "base", "prismatic", X, (0, 0.1, 0)),
+    ]
+    parts = [block("wheel", (0.1, 0, 0)), block("slide", (0.3, 0.1, 0))]
+    made = device(
+        parts, [], intended=wanted, couplings=[Coupling(("rack", "pinion"), 0.02, "device.toml", 1)],
+        drives=[drive("pinion", "motion", sine(90, 1))], level="functional", duration=0.5, step=0.05,
+    )  # fmt: skip
+    found = design(made)
+    assert (found.simulation.status, found.simulation.level) == ("done", "functional")
+    assert {name.split("~")[0] for name in found.simulation.joint_names} == {"base"}
+    return found
+
+
+def ratio(found):
+    """Value of the rack over that of the pinion in our run."""
+    q = found.simulation.joint_position
+    columns = dict(zip(found.simulation.joint_names, q.T, strict=True))
+    k = int(np.abs(columns["base~wheel"]).argmax())
+    return columns["base~slide"][k] / columns["base~wheel"][k]
+
+
+def test_our_own_run_obeys_the_coupling(geared):
+    assert ratio(geared) == pytest.approx(-0.02, rel=1e-9)
+
+
+def test_urdf_mimics(geared):
+    text = export(geared, "urdf").files["device.urdf"].decode()
+    places = forward(text, {"base~wheel": 0.7})
+    np.testing.assert_allclose(
+        places["slide"][:3, 3] - forward(text, {})["slide"][:3, 3], 0.7 * ratio(geared) * np.array(X)
+    )
+
+
+def test_sdf_mimics(geared):
+    (mimic,) = ElementTree.fromstring(export(geared, "sdf").files["device.sdf"]).iter("mimic")
+    assert mimic.get("joint") == "base~wheel"
+    assert float(mimic.findtext("multiplier")) == pytest.approx(ratio(geared))
+
+
+def test_mjcf_couples(geared):
+    (row,) = ElementTree.fromstring(export(geared, "mjcf").files["device.xml"]).iterfind("equality/joint")
+    assert (row.get("joint1"), row.get("joint2")) == ("base~slide", "base~wheel")
+    np.testing.assert_allclose(numbers(row.get("polycoef")), [0, ratio(geared), 0, 0, 0])
+
+
+def test_mujoco_reads_the_coupling(geared, tmp_path):
+    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    path, _ = written(geared, "mjcf", tmp_path)
+    assert mujoco.MjModel.from_xml_path(str(path)).neq == 1
+
+
+def test_rumoca_moves_the_rack_as_we_do(geared, tmp_path):
+    p, _ = solved(geared, tmp_path)
+    np.testing.assert_allclose(p, geared.simulation.p_WB, atol=1e-6)
+    assert np.ptp(p, axis=0).max() > 0.01
+
+
+def test_ghdl_reads_the_gear(geared, tmp_path):
+    made = export(geared, "vhdl-ams")
+    assert b"entity work.gear" in made.files["3_device.vhd"]
+    ran = analysed(made, tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")

@@ -1,0 +1,113 @@
+"""`kinform export` as a user runs it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from known import FIXTURES
+
+from kinform import results
+from kinform.exports import FORMATS
+from kinform_cli.commands.export import Target
+from kinform_cli.main import main
+
+SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
+FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
+TABLE = FIXTURES / "pairs" / "general_ball_on_table" / "general_ball_on_table.toml"
+
+
+@pytest.fixture
+def stored(tmp_path, derive_design):
+    """A manifest as a results file."""
+
+    def store(manifest):
+        path = tmp_path / f"{manifest.stem}.h5"
+        results.write(derive_design(manifest), path)
+        return str(path)
+
+    return store
+
+
+def test_the_command_offers_the_formats_of_the_registry():
+    assert {target.value for target in Target} == set(FORMATS)
+
+
+@pytest.mark.parametrize("format", sorted(FORMATS))
+def test_every_format_is_written_and_written_again_alike(format, stored, tmp_path, capsys):
+    source, folder = stored(SEEKER), tmp_path / "out" / format
+    assert main(["export", source, "--to", format, "-o", str(folder)]) == 0
+    first = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+    assert first
+    assert not [p for p in first if p.suffix == ".tmp"]
+    assert main(["export", source, "--to", format, "-o", str(folder)]) == 0
+    assert {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()} == first
+    text, told = capsys.readouterr()
+    assert text == ""
+    assert f"{len(first)} file" in told
+
+
+def test_what_a_format_cannot_carry_is_named_and_strict_refuses_it(stored, tmp_path, capsys):
+    source, folder = stored(FOUR_BAR), tmp_path / "urdf"
+    assert main(["export", source, "--to", "urdf", "-o", str(folder)]) == 0
+    told = capsys.readouterr().err
+    assert "warning: urdf does not carry coupler~rocker_unit: the joint closes a loop" in told
+    assert "not carried: coupler~rocker_unit: the joint closes a loop" in (folder / "four_bar.urdf").read_text()
+    strict = tmp_path / "strict"
+    assert main(["export", source, "--to", "urdf", "-o", str(strict), "--strict"]) == 2
+    told = capsys.readouterr().err
+    assert "error: urdf cannot carry coupler~rocker_unit" in told
+    assert not strict.exists()
+
+
+def test_strict_writes_what_is_carried_in_full(stored, tmp_path):
+    for format in ("modelica", "vhdl-ams", "json", "glb", "csv", "dot"):
+        assert main(["export", stored(FOUR_BAR), "--to", format, "-o", str(tmp_path / format), "--strict"]) == 0
+
+
+@pytest.mark.parametrize("format", ["urdf", "sdf", "mjcf", "modelica", "vhdl-ams", "json"])
+def test_a_joint_that_is_no_lower_pair_is_named(format, stored, tmp_path, capsys):
+    folder = tmp_path / format
+    assert main(["export", stored(TABLE), "--to", format, "-o", str(folder)]) == 0
+    told = capsys.readouterr().err
+    assert "ball~table: the joint is general" in told
+    assert any(b"ball~table: the joint is general" in p.read_bytes() for p in folder.iterdir() if p.is_file())
+    assert main(["export", stored(TABLE), "--to", format, "-o", str(tmp_path / "no"), "--strict"]) == 2
+
+
+def test_csv_without_a_motion_is_refused(stored, tmp_path, capsys):
+    assert main(["export", stored(TABLE), "--to", "csv", "-o", str(tmp_path / "csv")]) == 2
+    assert "nothing was simulated" in capsys.readouterr().err
+
+
+def test_usage_and_places_are_checked(stored, tmp_path, capsys):
+    source = stored(SEEKER)
+    assert main(["export", source, "--to", "step", "-o", str(tmp_path / "x")]) == 2
+    assert "--to" in capsys.readouterr().err
+    (tmp_path / "file").write_text("precious")
+    assert main(["export", source, "--to", "dot", "-o", str(tmp_path / "file")]) == 2
+    assert "not a folder" in capsys.readouterr().err
+    assert (tmp_path / "file").read_text() == "precious"
+    assert main(["export", str(SEEKER), "--to", "dot", "-o", str(tmp_path / "x")]) == 2
+    assert "kinform import" in capsys.readouterr().err
+
+
+def test_before_joints_are_derived_it_says_what_to_run(tmp_path, capsys):
+    path = tmp_path / "a.h5"
+    assert main(["import", str(SEEKER), "-o", str(path)]) == 0
+    assert main(["export", str(path), "--to", "urdf", "-o", str(tmp_path / "x")]) == 2
+    assert "kinform joints" in capsys.readouterr().err
+
+
+def test_quiet_writes_and_says_nothing(stored, tmp_path, capsys):
+    assert main(["export", stored(FOUR_BAR), "--to", "urdf", "-o", str(tmp_path / "q"), "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+def test_templates_are_part_of_the_package():
+    """What a wheel holds is what the package folder holds: templates are found where the code is."""
+    code = "from importlib.resources import files; print(*sorted(p.name for p in (files('kinform.exports') / 'templates').iterdir()))"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=dict(os.environ))
+    assert {"robot.urdf.j2", "package.mo.j2", "system.vhd.j2"} <= set(ran.stdout.split())

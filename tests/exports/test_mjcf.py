@@ -1,0 +1,148 @@
+"""MJCF in MuJoCo, an independent simulator: the same masses, axes and trajectories."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from models import CHAINS, LOOPS, known, model_of, written
+
+from kinform.behaviour import RigidBody
+from kinform.exports import export
+from kinform.simulation.spatial import to_matrix
+
+
+def loaded(found, folder):
+    """MuJoCo's model and data at the start."""
+    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    path, _ = written(found, "mjcf", folder)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    return mujoco, model, data
+
+
+def origin(found, name):
+    """Where the body's frame in the file is at the pose of the meshes: on its joint."""
+    from kinform.exports.mjcf import CLOSABLE
+    from kinform.exports.tree import grow
+
+    links = grow(found.system, CLOSABLE).links
+    return next(link.origin for link in links if link.body.subject == name)
+
+
+def gap(found, model, data, mujoco, k):
+    """Greatest distance of a body's place and orientation from those of our output k."""
+    run, exported, worst = found.simulation, model_of(found), 0.0
+    for b, name in enumerate(run.body_names):
+        if name == "base":
+            continue
+        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
+        R = to_matrix(run.q_WB[k, b])
+        place = R @ origin(exported, name) + run.p_WB[k, b]
+        worst = max(worst, np.abs(data.xpos[body] - place).max(), np.abs(data.xmat[body].reshape(3, 3) - R).max())
+    return worst
+
+
+def followed(found, folder):
+    """Greatest distance from our run over all outputs; prescribed joints are led by our values."""
+    mujoco, model, data = loaded(found, folder)
+    run = found.simulation
+    steps = round((run.time[1] - run.time[0]) / model.opt.timestep)
+    worst = gap(found, model, data, mujoco, 0)
+    for k in range(1, len(run.time)):
+        mujoco.mj_step(model, data, steps)
+        mujoco.mj_forward(model, data)
+        worst = max(worst, gap(found, model, data, mujoco, k))
+    return worst
+
+
+@pytest.mark.parametrize("name", sorted(set(CHAINS) - {"seeker", "nested", "every_joint"}))
+def test_open_chains_move_alike(name, tmp_path):
+    assert followed(known(name), tmp_path) < 1e-5
+
+
+def test_a_screw_is_a_stiff_coupling(tmp_path):
+    """Its turn and its slide are two joints to MuJoCo, coupled like a loop."""
+    assert followed(known("every_joint"), tmp_path) < 1e-3
+
+
+@pytest.mark.parametrize("name", sorted(set(LOOPS) - {"driven_four_bar"}))
+def test_closed_loops_move_alike_as_far_as_soft_loops_can(name, tmp_path):
+    assert followed(known(name), tmp_path) < 1e-3
+
+
+def test_prescribed_motions_need_the_same_efforts(tmp_path):
+    """A law is no part of MJCF: our motion is put in, and MuJoCo says what effort it takes."""
+    found = known("seeker")
+    mujoco, model, data = loaded(found, tmp_path)
+    run = found.simulation
+    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, k) for k in range(model.njnt)]
+    order = [run.joint_names.index(name) for name in names]
+    # Joints that the tree runs through backwards have reversed axes and the same values.
+    for k in range(len(run.time)):
+        q, v = run.joint_position[k], run.joint_velocity[k]
+        data.qpos[:], data.qvel[:] = q[order], v[order]
+        data.qacc[:] = run.joint_acceleration[k][order]
+        data.ctrl[:] = 0.0
+        mujoco.mj_inverse(model, data)
+        driven = [n for n, name in enumerate(names) if name != "camera~inner"]
+        np.testing.assert_allclose(data.qfrc_inverse[driven], run.joint_effort[k][order][driven], atol=1e-7)
+        np.testing.assert_allclose(data.qfrc_inverse[names.index("camera~inner")], 0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["gimbal", "every_joint", "four_bar"])
+def test_masses_and_inertias_are_equal(name, tmp_path):
+    found = known(name)
+    mujoco, model, _ = loaded(found, tmp_path)
+    exported = model_of(found)
+    for body in exported.system.bodies:
+        if not isinstance(body, RigidBody):
+            continue
+        k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, body.subject)
+        assert model.body_mass[k] == pytest.approx(body.mass, abs=1e-9)
+        R = to_matrix(model.body_iquat[k])
+        np.testing.assert_allclose(R @ np.diag(model.body_inertia[k]) @ R.T, body.inertia, atol=1e-9)
+        np.testing.assert_allclose(model.body_ipos[k] + origin(exported, body.subject), body.centre_of_mass, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["gimbal", "passive_seeker", "four_bar"])
+def test_axes_stand_where_ours_do(name, tmp_path):
+    found = known(name)
+    mujoco, model, data = loaded(found, tmp_path)
+    mujoco.mj_resetData(model, data)
+    mujoco.mj_forward(model, data)
+    seen = 0
+    for joint in found.kinematics.joints:
+        k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint.name)
+        if k < 0:
+            continue
+        seen += 1
+        np.testing.assert_allclose(np.cross(data.xaxis[k], joint.axis), 0.0, atol=1e-9)
+        np.testing.assert_allclose(np.cross(data.xanchor[k] - joint.point, joint.axis), 0.0, atol=1e-9)
+    assert seen >= 2
+
+
+def test_a_loop_that_only_a_slider_can_close_cuts_a_body_in_halves(tmp_path):
+    """Driven hinges stay in the tree of no format; here every joint of the loop is a slider or a cylinder."""
+    from devices import Z, device, drive, joint
+    from models import SLANT, X, block, design
+
+    parts = [block("one", (0.1, 0, 0)), block("two", (0.1, 0.1, 0), 0.5)]
+    joints = [
+        joint("base", "one", "prismatic", X, (0, 0, 0)),
+        joint("base", "two", "prismatic", SLANT, (0, 0, 0)),
+        joint("one", "two", "planar", Z, (0.1, 0.1, 0)),
+    ]
+    found = design(device(parts, joints, drives=[drive("base~one", "spring", stiffness=300.0, rest=0.02)],
+                          gravity=np.array([3.0, -1.0, 0.0]), duration=0.4, step=0.02))  # fmt: skip
+    if found.simulation.status != "done":
+        pytest.fail(found.simulation.reason)
+    text = export(found, "mjcf").files["device.xml"].decode()
+    root = ElementTree.fromstring(text)
+    masses = [float(node.get("mass")) for node in root.iter("inertial")]
+    assert sum(masses) == pytest.approx(1.5, abs=1e-12)
+    assert root.find("equality/weld") is not None
+    assert followed(found, tmp_path) < 1e-3

@@ -1,0 +1,100 @@
+"""Modelica compiled and solved by rumoca, an independent compiler and solver: its trajectory is ours."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from known import FIXTURES
+from models import ALL, LOOPS, design, driven_four_bar, known, written
+
+from kinform.exports import export
+from kinform.exports.loops import loops
+from kinform.exports.model import export_model
+from kinform.exports.tree import grow
+
+
+def solved(found, folder):
+    """(T, B, 3) places and (T, B, 4) orientations of the bodies at our output times, by rumoca."""
+    rumoca = pytest.importorskip("rumoca", reason="rumoca is not installed")
+    path, _ = written(found, "modelica", folder)
+    run = found.simulation
+    model = rumoca.Session().load(str(path), model=f"{path.stem}.System")
+    config = rumoca.SimConfig(solver="rk-like", rtol=1e-10, atol=1e-11)
+    result = model.simulate((0, float(run.time[-1])), dt=float(run.time[1]), config=config)
+    values = result.to_dict()
+    values = values.get("data", values)
+    labels = [re.sub(r"\W+", "_", f"body_{name}") for name in run.body_names]
+    # At the knots of a table there are several outputs: the last is the one after it.
+    times = np.asarray(result.time)
+    picked = [np.flatnonzero(np.isclose(times, t, rtol=0.0, atol=1e-9))[-1] for t in run.time]
+
+    def vectors(what, size):
+        return np.array(
+            [[np.asarray(values[f"{b}.frame.{what}[{k}]"])[picked] for k in range(1, size + 1)] for b in labels]
+        ).transpose(2, 0, 1)
+
+    return vectors("at.p", 3), vectors("on.q", 4)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_rumoca_finds_our_trajectory(name, tmp_path):
+    found = known(name)
+    p, q = solved(found, tmp_path)
+    run = found.simulation
+    assert np.ptp(run.p_WB, axis=0).max() + np.ptp(run.q_WB, axis=0).max() > 0.05
+    np.testing.assert_allclose(p, run.p_WB, atol=1e-6)
+    sign = np.sign(np.einsum("tbi,tbi->tb", q, run.q_WB))
+    np.testing.assert_allclose(q * sign[..., None], run.q_WB, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["seeker_2dof", "four_bar", "slider_crank", "stick_four_bar"])
+def test_rumoca_finds_the_trajectory_of_a_fixture(name, tmp_path, derive_design):
+    (manifest,) = FIXTURES.glob(f"*/{name}/{name}.toml")
+    found = derive_design(manifest)
+    assert found.simulation.status == "done"
+    p, q = solved(found, tmp_path)
+    np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
+    sign = np.sign(np.einsum("tbi,tbi->tb", q, found.simulation.q_WB))
+    np.testing.assert_allclose(q * sign[..., None], found.simulation.q_WB, atol=1e-6)
+
+
+def test_a_run_without_forces_is_the_same_motion(tmp_path):
+    found = design(driven_four_bar(level="kinematic"))
+    assert found.simulation.level == "kinematic"
+    p, _ = solved(found, tmp_path)
+    np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
+
+
+def test_a_twin_with_another_mass_moves_otherwise(tmp_path):
+    """The comparison can fail: the same export with one number changed."""
+    found = known("passive_seeker")
+    other = found.simulation
+    bodies = tuple(replace(b, mass=1.1 * b.mass) if b.name == "inner" else b for b in found.mass.bodies)
+    p, q = solved(replace(found, mass=replace(found.mass, bodies=bodies)), tmp_path)
+    assert np.abs(p - other.p_WB).max() + np.abs(q - other.q_WB).max() > 1e-3
+
+
+@pytest.mark.parametrize(("name", "rows"), [("four_bar", 3), ("slider_crank", 3), ("spatial_loop", 6)])
+def test_as_many_rows_are_held_as_are_independent(name, rows):
+    """A planar loop of journals has six conditions, three of them independent; a spatial one is not redundant."""
+    model = export_model(known(name))
+    found = loops(model, grow(model.system))
+    (closure,) = found.closures
+    assert sum(closure.place) + sum(closure.turn) == rows
+    assert len(found.free) == 1
+
+
+@pytest.mark.parametrize("name", sorted(LOOPS))
+def test_redundant_rows_are_named_as_left_out(name):
+    text = next(iter(export(known(name), "modelica").files.values())).decode()
+    assert "redundant constraints of loops are left out" in text
+
+
+def test_the_text_states_each_start_once(tmp_path):
+    text = next(iter(export(known("gimbal"), "modelica").files.values())).decode()
+    assert len(re.findall(r"Revolute \w+\(.*value\(start=.*fixed=true\)", text)) == 3
+    start = re.search(r"joint_base_outer\(.*?value\(start=([^,]+),.*?rate\(start=([^,]+),", text)
+    np.testing.assert_allclose([float(x) for x in start.groups()], np.radians([10, 40]), rtol=1e-15)

@@ -1,0 +1,291 @@
+"""VHDL-AMS: read back statement by statement along our trajectory, and analysed by GHDL."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from known import manifests
+from models import ALL, design, driven_four_bar, known
+from vhdl_reader import SIZES, Flat, Jet, constant, read, residuals
+
+from kinform import stages
+from kinform.exports import export
+from kinform.exports.model import export_model
+from kinform.exports.vhdl_structure import COUNT
+from kinform.simulation.spatial import cross_motion, multiply, quaternions
+
+FREEDOMS = {
+    "pendulum": 1, "gimbal": 3, "seeker": 1, "passive_seeker": 2, "every_joint": 12, "reversed_joints": 8, "nested": 5,
+    "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1,
+}  # fmt: skip
+"""Freedoms of the devices, by hand: those that no drive prescribes."""
+
+
+def order(files):
+    """The names of the files as the system's header lists them."""
+    (listed,) = {
+        found[1] for data in files.values() if (found := re.search(r"in this order: (.*)", data.decode())) is not None
+    }
+    names = listed.split(", ")
+    assert names == sorted(files)
+    return names
+
+
+def opened(made):
+    """(entities, flat system, name of the top entity) of an export, with the starts of its bench."""
+    names = order(made.files)
+    entities, functions = read([made.files[name].decode() for name in names])
+    bench = entities[names[3].removeprefix("4_").removesuffix(".vhd")]
+    ((_, top, starts, _),) = bench.parts
+    return entities, Flat(entities, functions, top, starts), top
+
+
+def kinematics_at(model, k):
+    """Coordinates, rates and accelerations of our run at output k."""
+    run, mechanism = model.simulation, model.mechanism
+    q, v, acceleration = mechanism.start, np.zeros(mechanism.rates), np.zeros(mechanism.rates)
+    for n, slot in enumerate(mechanism.slots):
+        columns = slice(int(run.joint_offset[n]), int(run.joint_offset[n + 1]))
+        q[slot.q] = run.joint_position[k, columns]
+        v[slot.v] = run.joint_velocity[k, columns][1 if slot.has_ball else 0 :]
+        acceleration[slot.v] = run.joint_acceleration[k, columns][1 if slot.has_ball else 0 :]
+    return q, v, acceleration
+
+
+def jets(model, entities, flat, top, k):
+    """Potentials of nodes and quantities of our run at output k, by the names of the flat system."""
+    mechanism = model.mechanism
+    q, v, acceleration = kinematics_at(model, k)
+    X = mechanism.poses(q)
+    screws = mechanism.screws(X)
+    V = mechanism.twists(screws, v)
+    carried = cross_motion(V[mechanism.column_link], screws * v[:, None])
+    A = mechanism.moves @ (carried + screws * acceleration[:, None])
+    by_text = {}
+    for name, link in zip(mechanism.bodies, mechanism.link_of, strict=True):
+        R, w, z = X[link, :3, :3], V[link, :3], A[link, :3]
+        p = X[link, :3, 3] - R @ mechanism.centre
+        # Twists are about the centre: their linear part is the velocity of the body's point that is there.
+        dp = V[link, 3:] + np.cross(w, p)
+        ddp = A[link, 3:] + np.cross(z, p) + np.cross(w, dp)
+        turn = quaternions(R[None])[0]
+        dq = 0.5 * multiply(np.concatenate([[0.0], w]), turn)
+        ddq = 0.5 * (multiply(np.concatenate([[0.0], z]), turn) + multiply(np.concatenate([[0.0], w]), dq))
+        by_text[name] = (
+            np.stack([p + mechanism.centre, dp, ddp]), np.stack([w, z, np.full(3, np.nan)]), np.stack([turn, dq, ddq])
+        )  # fmt: skip
+    potentials, quantities = {}, {}
+
+    def place(node, body):
+        p, w, turn = by_text[body]
+        for n, axis in enumerate("xyz"):
+            potentials[f"{node}_{axis}"] = Jet(p[:, n])
+            potentials[f"{node}_r{axis}"] = Jet(w[:, n])
+        quantities[f"{node}_q"] = Jet(turn)
+
+    system = model.system
+    nodes = {}
+    for path, entity, _, ports in flat.leaves:
+        if entity.name in ("ground", "rigid_body"):
+            nodes[path.rstrip("/").rsplit("/", 1)[-1].removesuffix("_i")] = ports["x"].removesuffix("_x")
+    for body in system.bodies:
+        label = re.sub(r"_+", "_", re.sub(r"\W", "_", body.name))
+        place(nodes[label], body.subject)
+    for joint in system.joints:
+        (slot,) = (s for s in mechanism.slots if s.name == joint.subject)
+        label = re.sub(r"_+", "_", re.sub(r"\W", "_", joint.name))
+        paths = [(p, ports) for p, e, _, ports in flat.leaves if p.rstrip("/").rsplit("/", 1)[-1] == f"{label}_i"]
+        if not paths:
+            continue
+        ((_, ports),) = paths
+        end = ports["bx"].removesuffix("_x")
+        if end not in nodes.values():
+            place(end, system.body_at(joint.name, "b").subject)
+        if slot.has_ball:
+            continue
+        for n, (coordinate, _) in enumerate(joint.kind.coordinates):
+            values = q[slot.q][n], v[slot.v][n], acceleration[slot.v][n]
+            quantities[ports[coordinate]] = Jet(values)
+    return potentials, quantities
+
+
+def worst(found, made, samples=(1, -1)):
+    """The worst residual along our run, and the last solution."""
+    entities, flat, top = opened(made)
+    model = export_model(found)
+    run = model.simulation
+    out = []
+    for k in samples:
+        potentials, quantities = jets(model, entities, flat, top, k)
+        # Just after the time of the output: tables begin their next stretch there.
+        out.append(residuals(flat, potentials, quantities, float(run.time[k])))
+    return max(out, key=lambda r: r.worst), out
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_every_statement_holds_along_our_trajectory(name):
+    found = known(name)
+    made = export(found, "vhdl-ams")
+    largest, _ = worst(found, made)
+    assert largest.worst < 1e-6, largest.where
+    assert largest.equations == largest.unknowns
+    assert largest.freedoms == FREEDOMS[name]
+    stated = re.search(r"-- (\d+) equations for \1 unknowns: through", made.files[order(made.files)[2]].decode())
+    assert int(stated[1]) == largest.equations
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("m * v'dot == f + m * g", "m * v'dot == f - m * g"),
+        ("h'dot == t - cross(r, f)", "h'dot == t + cross(r, f)"),
+        ("pb + sb == pa + sa;", "pb + sb == pa + 1.001 * sa;"),
+        ("wb == wa + angle_rate * u", "wb == wa - angle_rate * u"),
+        ("0.5 * product(imaginary(w), q)", "0.5 * product(q, imaginary(w))"),
+        ("a(1) * b(2) - a(2) * b(1)", "a(1) * b(2) + a(2) * b(1)"),
+    ],
+)
+def test_a_wrong_statement_does_not_hold(old, new):
+    found = known("gimbal")
+    made = export(found, "vhdl-ams")
+    files = {name: data.decode().replace(old, new).encode() for name, data in made.files.items()}
+    assert files != made.files
+    largest, _ = worst(found, replace(made, files=files), samples=(7,))
+    assert largest.worst > 1e-5
+
+
+def test_efforts_of_drives_are_those_of_our_run():
+    found = known("seeker")
+    _, solved = worst(found, export(found, "vhdl-ams"), samples=(3, 10))
+    run = found.simulation
+    for k, result in zip((3, 10), solved, strict=True):
+        for number, name in ((1, "base~outer"), (2, "inner~outer")):
+            (effort,) = (v for n, v in result.through.items() if n.startswith(f"drive_{number}_"))
+            column = run.joint_offset[run.joint_names.index(name)]
+            assert effort[0] == pytest.approx(run.joint_effort[k, column], abs=1e-7)
+
+
+def test_each_component_states_as_many_equations_as_it_has_unknowns():
+    """That it has as many is counted along the trajectories, where every statement is evaluated."""
+    made = export(known("gimbal"), "vhdl-ams")
+    entities, _ = read([made.files[name].decode() for name in ("1_mechanics.vhd", "2_components.vhd")])
+    assert set(entities) == set(COUNT)
+    for name, entity in entities.items():
+        declared = [*entity.quantities.values(), *entity.outputs.values()]
+        unknowns = len(entity.branches) + sum(SIZES[kind] for kind in declared)
+        assert entity.stated == unknowns == COUNT[name], name
+
+
+def test_the_bench_starts_where_our_run_does():
+    found = known("gimbal")
+    made = export(found, "vhdl-ams")
+    entities, flat, top = opened(made)
+    ((_, _, starts, _),) = entities[f"{top}_bench"].parts
+    model = export_model(found)
+    assert constant(starts["joint_base_outer_angle_start"]) == pytest.approx(np.radians(10), rel=1e-15)
+    assert constant(starts["joint_base_outer_angle_rate_start"]) == pytest.approx(np.radians(40), rel=1e-15)
+    np.testing.assert_array_equal(constant(starts["body_inner_q_start"]), model.start["inner"].quaternion)
+    given = [c for _, e, c, _ in flat.leaves if e.name == "revolute_joint"]
+    assert [c["angle_given"] for c in given] == ["true"] * 3
+
+
+def test_a_driven_coordinate_is_not_given_a_start():
+    text = export(known("driven_four_bar"), "vhdl-ams").files["3_device.vhd"].decode()
+    assert not re.search(r"angle_given : boolean := true", text)
+
+
+def test_a_run_without_forces_holds_what_rests():
+    from models import four_bar
+
+    found = design(four_bar(level="kinematic", initial=()))
+    text = export(found, "vhdl-ams").files["3_device.vhd"].decode()
+    assert text.count("entity work.motion_constant") == 1
+    found = design(driven_four_bar(level="kinematic"))
+    assert "motion_constant" not in export(found, "vhdl-ams").files["3_device.vhd"].decode()
+
+
+def ghdl():
+    """GHDL 6, or skip."""
+    path = shutil.which("ghdl")
+    if path is None:
+        pytest.skip("ghdl is not installed")
+    version = subprocess.run([path, "--version"], capture_output=True, text=True, check=True).stdout
+    if not re.match(r"GHDL ([6-9]|\d\d)\.", version):
+        pytest.skip(f"needs GHDL 6: this is {version.splitlines()[0]}")
+    return path
+
+
+def analysed(made, folder):
+    """GHDL's verdict on the files of an export."""
+    for name, data in made.files.items():
+        (folder / name).write_bytes(data)
+    command = [ghdl(), "-s", "--std=93", "--ams", *order(made.files)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_ghdl_accepts_every_kind_of_component(name, tmp_path):
+    ran = analysed(export(known(name), "vhdl-ams"), tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("manifest", manifests(), ids=lambda path: path.stem)
+def test_ghdl_accepts_every_fixture(manifest, tmp_path, derive_design):
+    ghdl()
+    ran = analysed(export(derive_design(manifest), "vhdl-ams"), tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("rx => body_base_rx", "rx => body_base_x"),
+        ("h'dot == t", "h'dot == torque"),
+        ("quantity fx_through", "quantity"),
+        ("entity work.rigid_body", "entity work.soft_body"),
+        ("terminal x, y, z : translational", "terminal x, y, z : electrical"),
+    ],
+)
+def test_ghdl_rejects_a_broken_twin(old, new, tmp_path):
+    made = export(known("gimbal"), "vhdl-ams")
+    files = {name: data.decode().replace(old, new).encode() for name, data in made.files.items()}
+    if files == made.files:
+        files["2_components.vhd"] = files["2_components.vhd"].replace(b" through fx", b" trough fx")
+        files["2_components.vhd"] = files["2_components.vhd"].replace(b"fx through", b"fx thru")
+    assert files != made.files
+    assert analysed(replace(made, files=files), tmp_path).returncode == 1
+
+
+@pytest.mark.parametrize(
+    "manifest", [m for m in manifests() if m.stem in ("seeker_2dof", "four_bar")], ids=lambda m: m.stem
+)
+def test_every_statement_of_a_fixture_holds_along_its_trajectory(manifest, derive_design):
+    # below the dynamic level no accelerations are known
+    found = stages.simulate(derive_design(manifest), level="dynamic")
+    largest, _ = worst(found, export(found, "vhdl-ams"), samples=(7,))
+    assert largest.worst < 1e-6, largest.where
+    assert (largest.equations, largest.freedoms) == (largest.unknowns, 0)
+
+
+def test_sub_assemblies_keep_their_entities():
+    """Bodies and joints that are all of a sub-assembly are in its entity; what crosses its border is a port."""
+    made = export(known("nested"), "vhdl-ams")
+    entities, flat, top = opened(made)
+    assert {"arm", "arm_wrist"} <= set(entities)
+    assert {kind for _, kind, _, _ in entities[top].parts} == {
+        "ground",
+        "rigid_body",
+        "arm",
+        "revolute_joint",
+        "spherical_joint",
+    }
+    assert [kind for _, kind, _, _ in entities["arm_wrist"].parts].count("prismatic_joint") == 1
+    assert "spring" in {kind for _, kind, _, _ in entities["arm_wrist"].parts}
+    assert set(entities["arm"].terminals) >= {"body_arm_upper_x", "body_arm_wrist_finger_x"}
+    assert not any(name.startswith("body_arm_wrist_hand") for name in entities[top].inner)
+    assert {path.count("/") for path, _, _, _ in flat.leaves} == {1, 2, 3}
