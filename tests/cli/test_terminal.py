@@ -75,9 +75,16 @@ def test_series_have_extremes_and_a_line(on_a_terminal):
     rows = [line for line in on_a_terminal("simulation") if BLOCKS[-1] in line]
     assert [row.split()[0] for row in rows[:3]] == ["base~gimbal", "gimbal~payload", "base~gimbal"]
     yaw = re.search(r"base~gimbal +-30° +1.5 +30° +0.5 +(\S+)$", rows[0])[1]
-    assert len(yaw) == 24
+    assert len(yaw) == 20
     # a sine of one period: up, down, and back
-    assert yaw.index(BLOCKS[-1]) < 12 < yaw.index(BLOCKS[0])
+    assert yaw.index(BLOCKS[-1]) < 10 < yaw.index(BLOCKS[0])
+
+
+def test_what_the_bearings_carry_is_a_series(on_a_terminal):
+    lines = on_a_terminal("simulation")
+    for joint in ("base~gimbal", "gimbal~payload"):
+        assert any(line.startswith(f"{joint} |F| N ") for line in lines)
+        assert any(line.startswith(f"{joint} |τ| N·m ") for line in lines)
 
 
 def test_a_narrow_terminal_gets_blocks_and_no_cut_names(on_a_terminal):

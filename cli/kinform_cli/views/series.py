@@ -16,7 +16,7 @@ from kinform_cli.text import Lengths, degrees, number
 
 __all__ = ["render"]
 
-_WIDTH = 24
+_WIDTH = 20
 """Characters of a line: with the extremes it fits in 80 columns where names are short."""
 _REST = 1e-9
 """Share of the greatest effort, or energy, below which a series is nothing but rounding."""
@@ -75,12 +75,12 @@ def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
 
 def _reactions(run: Simulation) -> Iterator[Series]:
     """Sizes of the forces and torques that joints carry, where the run has them."""
-    wrenches = getattr(run, "F_B", None)
-    if wrenches is None or len(wrenches) != len(run.time) or not np.isfinite(wrenches).any():
+    wrenches = run.F_B
+    if len(wrenches) != len(run.time) or not np.isfinite(wrenches).all():
         return
     for k, name in enumerate(run.joint_names):
-        yield f"{name} |force| N", np.linalg.norm(wrenches[:, k, 3:], axis=1), False
-        yield f"{name} |torque| N·m", np.linalg.norm(wrenches[:, k, :3], axis=1), False
+        yield f"{name} |F| N", np.linalg.norm(wrenches[:, k, 3:], axis=1), False
+        yield f"{name} |τ| N·m", np.linalg.norm(wrenches[:, k, :3], axis=1), False
 
 
 def _alive(series: list[Series]) -> list[Series]:

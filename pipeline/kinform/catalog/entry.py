@@ -22,6 +22,8 @@ Triple = tuple[float, float, float]
 
 _UNDECIDED = "KF902"
 """The rule that lists the requirements that nobody could decide."""
+_KINDS = ("KF42", "KF43")
+"""How the codes of the rules of single kinds of requirements begin."""
 VERDICTS = ("verified", "findings", "not verified")
 """By exit code of the gate."""
 
@@ -163,13 +165,15 @@ def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequ
     """Met only where the gate decided it and found nothing, be it accepted; what it did not look at is not known."""
     if report is None or not any(rule.code == _UNDECIDED and rule.outcome != "skipped" for rule in report.rules):
         return CatalogRequirement(wanted.name, wanted.kind, None)
-    accepted = (item.finding for item in getattr(report, "ignored", ()))
+    accepted = (item.finding for item in report.ignored)
     own = {
         finding.code
         for finding in (*report.findings, *accepted)
         if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
     }
-    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in own else not own)
+    narrowed = any(rule.reason == "not selected by [check]" and rule.code.startswith(_KINDS) for rule in report.rules)
+    met = not own
+    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in own or (met and narrowed) else met)
 
 
 def _triple(values: object) -> Triple | None:

@@ -52,7 +52,7 @@ def check(context: Context) -> Outcome:
 def _finding(context: Context, item: Ranged, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
     joint = item.intended
     found, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
-    by = f"{' and '.join(quoted(part) for part in end.parts)} meet" if end.parts else end.reason
+    by = f"{quoted(end.parts)} meet" if end.parts else end.reason
     return RULE.finding(
         [joint.name, *end.parts],
         f"joint '{joint.name}' stops at {found} on the {side} side ({by}), intended is {intended}",
