@@ -121,7 +121,7 @@ def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seek
     assert not {"KF412", "KF505", "KF904"} & set(asked(38 * pi / 180)[1])
 
 
-FREE = ["revolute_collars", "revolute_cone", "revolute_fork", "prismatic_spline", "prismatic_dovetail", 
+FREE = ["revolute_collars", "revolute_cone", "revolute_fork", "prismatic_spline", "prismatic_dovetail",
         "prismatic_hexagon", "prismatic_drawer", "screw_right"]  # fmt: skip
 
 
