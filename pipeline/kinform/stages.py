@@ -128,26 +128,30 @@ def simulate(
     design: Design,
     *,
     level: str | None = None,
-    ranges: bool = True,
+    ranges: bool | None = None,
     progress: Progress | None = None,
     say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
 ) -> Design:
-    """Motion at the level that is known, or at `level`, with what the parts collide with in it; and, unless `ranges`
-    is False, how far each joint goes. Raises StageError without mass properties.
+    """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint goes:
+    where `ranges` says so, else where the function states ranges or requirements. Raises StageError without mass
+    properties.
 
     `say` is told what takes long besides the steps that `progress` counts.
     """
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
+    function = design.assembly.function
+    stated = bool(function.requirements) or any(joint.range is not None for joint in function.joints)
+    wanted = stated if ranges is None else ranges
 
     def run(view: Assembly) -> Any:
         from kinform import simulation
 
         run = simulation.simulate(view, kinematics, masses, level=level, progress=progress, say=say)
-        return _collided(view, design, kinematics, run, ranges)
+        return _collided(view, design, kinematics, run, wanted)
 
-    return _advance("simulation", design, run, ledger, level, ranges)
+    return _advance("simulation", design, run, ledger, level, None if wanted == stated else wanted)
 
 
 def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simulation, ranges: bool) -> Simulation:
@@ -221,7 +225,7 @@ def _advance(
     compute: Callable[[Assembly], Any],
     ledger: Ledger | None,
     level: str | None = None,
-    ranges: bool = True,
+    ranges: bool | None = None,
 ) -> Design:
     """The design with the result of the stage: the earlier one where nothing changed, else a new one."""
     from kinform.results import fingerprints, inputs
@@ -239,7 +243,11 @@ def _advance(
         ledger.compute(stage, fingerprints.changes(before, found))
         result = compute(inputs.assembly_for(stage, design.assembly))
     marks = replace(start.fingerprints, stages=start.fingerprints.stages | {stage: mark})
-    return replace(start, **{_FIELDS[stage]: result}, fingerprints=_descended(marks, stage, level))
+    return replace(
+        start,
+        **{_FIELDS[stage]: result},
+        fingerprints=_descended(marks, stage, level if ranges is None else f"{level}, ranges {ranges}"),
+    )
 
 
 def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> dict[str, MassProperties]:

@@ -41,9 +41,13 @@ def simulate(
         ),
     ] = None,
     ranges: Annotated[
-        bool,
-        typer.Option("--ranges/--no-ranges", help="Find how far each joint goes until parts meet."),
-    ] = True,
+        bool | None,
+        typer.Option(
+            "--ranges/--no-ranges",
+            show_default=False,
+            help="Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
+        ),
+    ] = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:

@@ -60,7 +60,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     while stack:
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
-        if search.state(left).distance + search.state(right).distance > way:
+        if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
             left = stack.pop()
             search.pass_(left)
             continue

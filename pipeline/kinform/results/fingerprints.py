@@ -113,7 +113,7 @@ def of_pair(tolerances: Tolerances, first: Inputs, second: Inputs) -> Inputs:
     return {"the tolerances": digest(tolerances), **first, **second}
 
 
-def of_stage(stage: str, design: Design, level: str | None = None, ranges: bool = True) -> Inputs:
+def of_stage(stage: str, design: Design, level: str | None = None, ranges: bool | None = None) -> Inputs:
     """Inputs of a whole stage: contacts, joints, mass, simulation or findings."""
     view = inputs.assembly_for(stage, design.assembly)
     found = {name.replace("_", " "): digest(getattr(view, name)) for name in _ASSEMBLY_FIELDS}
@@ -130,8 +130,8 @@ def of_stage(stage: str, design: Design, level: str | None = None, ranges: bool 
         found["the simulated motion"] = digest(design.simulation)
     if stage == "simulation":
         found |= {"surfaces": digest(design.surfaces), "contacts": digest(design.contacts)}
-        if not ranges:
-            found["whether ranges are asked for"] = "no"
+        if ranges is not None:
+            found["whether ranges are asked for"] = "yes" if ranges else "no"
     return found if level is None else found | {"level": level}
 
 
