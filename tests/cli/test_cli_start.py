@@ -65,7 +65,7 @@ def test_examples_use_options_that_exist() -> None:
     """Every line of every example is understood: no unknown command or option."""
     group = typer.main.get_command(app)
     options = {
-        name: {flag for parameter in command.params for flag in parameter.opts}
+        name: {flag for parameter in command.params for flag in (*parameter.opts, *parameter.secondary_opts)}
         for name, command in group.commands.items()
     }
     for name, _, text, _ in REGISTERED:
