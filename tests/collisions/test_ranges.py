@@ -10,7 +10,7 @@ import pytest
 from known import FIXTURES
 from solids import assembly, box, part, random_pose, rod
 
-from kinform import collisions, contacts, kinematics, surfaces
+from kinform import collisions, contacts, kinematics, stages, surfaces
 from kinform.consistency import check
 from kinform.model.function import Law
 
@@ -77,7 +77,7 @@ def test_a_slider_goes_from_stop_to_stop(stops, expected):
 
 @pytest.fixture
 def seeker(derive_design):
-    return derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+    return stages.simulate(derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"), ranges=True)
 
 
 REACH = acos(-40 / hypot(11, 50))
@@ -94,7 +94,6 @@ def test_the_gimbal_goes_until_its_motor_meets_the_back_of_the_housing(seeker):
 
 
 def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seeker):
-    from kinform import stages
 
     function = seeker.assembly.function
     yaw = next(joint for joint in function.joints if joint.name == "yaw")
@@ -127,12 +126,12 @@ FREE = ["revolute_collars", "revolute_cone", "revolute_fork", "prismatic_spline"
 
 @pytest.mark.parametrize("name", FREE)
 def test_mating_surfaces_stop_nothing(derive_design, name):
-    design = derive_design(FIXTURES / "pairs" / name / f"{name}.toml")
+    design = stages.simulate(derive_design(FIXTURES / "pairs" / name / f"{name}.toml"), ranges=True)
     assert [item.status for item in design.simulation.ranges] == ["unbounded"]
 
 
 def test_a_slider_crank_turns_freely_and_its_slider_goes_by_twice_the_crank(derive_design):
-    design = derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml")
+    design = stages.simulate(derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml"), ranges=True)
     known = {item.joint: item for item in design.simulation.ranges}
     slide = known["frame~slider_unit"]
     assert slide.upper.value - slide.lower.value == pytest.approx(0.050, abs=2e-6)

@@ -239,7 +239,21 @@ def test_a_rule_fires_on_a_wrong_design_and_not_on_one_like_it(derive_design, co
         assert outcome.outcome == "passed", outcome
 
 
+ELSEWHERE = {
+    "KF411": "tests/consistency/test_couplings.py",
+    "KF412": "tests/collisions/test_ranges.py",
+    "KF450": "tests/cli/test_change.py",
+    "KF505": "tests/collisions/test_ranges.py",
+}
+"""Rules with assemblies of their own in another file."""
+
+
+@pytest.mark.parametrize("code", ELSEWHERE)
+def test_a_rule_that_is_tried_elsewhere_is_named_there(code):
+    assert code in (FIXTURES.parent / ELSEWHERE[code]).read_text(encoding="utf-8")
+
+
 def test_every_rule_is_in_the_table():
     tables = (WRONG, UNDECIDED, OF_A_HINGE, OF_THEIR_OWN)
     listed = [code for table in tables for code in table]
-    assert sorted(listed) == [rule.code for rule in RULES]
+    assert sorted([*listed, *ELSEWHERE]) == [rule.code for rule in RULES]

@@ -13,7 +13,7 @@ from known import FIXTURES
 import kinform
 from kinform import results, stages
 from kinform.api import Outcome
-from kinform.kinematics.screws import cross_product
+from kinform.kinematics.screws import cross
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +154,6 @@ def test_a_mesh_that_changed_while_it_was_read_leaves_no_lineage(pair: Path, mon
 def test_cross_products_are_those_of_numpy_to_the_last_bit(shapes: tuple[tuple[int, ...], ...]) -> None:
     random = np.random.default_rng(3)
     a, b = (random.normal(size=shape) * 10.0 ** random.integers(-9, 9, shape) for shape in shapes)
-    mine, theirs = cross_product(a, b), np.cross(a, b)
+    mine, theirs = cross(a, b), np.cross(a, b)
     assert mine.tobytes() == theirs.tobytes()
     assert mine.shape == theirs.shape

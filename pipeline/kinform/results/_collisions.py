@@ -36,6 +36,7 @@ def write(group: h5py.Group, simulation: Simulation) -> None:
         write_rows(group, "ranges_left_out", _LEFT_OUT, left_out)
     if simulation.collisions is not None:
         write_records(group, "collisions", _COLLISIONS, simulation.collisions)
+    if simulation.uncollided:
         untested = [dict(zip(("part_a", "part_b", "reason"), row, strict=True)) for row in simulation.uncollided]
         write_rows(group, "collisions_unknown", _UNCOLLIDED, untested)
 
@@ -59,5 +60,6 @@ def read(group: h5py.Group) -> dict[str, Any]:
         out["ranges"] = tuple(found)
     if "collisions" in group:
         out["collisions"] = tuple(Collision(**row) for row in read_rows(group, "collisions", _COLLISIONS))
+    if "collisions_unknown" in group:
         out["uncollided"] = tuple(tuple(row.values()) for row in read_rows(group, "collisions_unknown", _UNCOLLIDED))
     return out

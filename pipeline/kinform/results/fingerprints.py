@@ -43,8 +43,27 @@ _CODE = {
     "contacts": ("contacts", "fastening"),
     "joints": ("kinematics",),
     "mass": ("mass", "kinematics"),
-    "simulation": ("simulation", "behaviour", "function", "kinematics", "collisions"),
-    "findings": ("consistency", "function", "kinematics"),
+    "simulation": (
+        "simulation",
+        "behaviour",
+        "function",
+        "kinematics",
+        "collisions",
+        "contacts",
+        "fastening",
+        "surfaces",
+    ),
+    "findings": (
+        "consistency",
+        "function",
+        "kinematics",
+        "simulation",
+        "behaviour",
+        "collisions",
+        "contacts",
+        "fastening",
+        "surfaces",
+    ),
 }
 """Packages whose code decides the result of each stage."""
 
