@@ -138,7 +138,7 @@ def test_meshes_need_a_unit(folder, kinform):
 def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, kinform):
     assert kinform("import", NAME, "-o", "r.h5").returncode == 0
     old = (folder / "r.h5").read_bytes()
-    seeker = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
+    seeker = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
     running = subprocess.Popen(
         [sys.executable, "-m", "kinform_cli", "run", str(seeker), "-o", "r.h5", "--jobs", "1"],
         cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
