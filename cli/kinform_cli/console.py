@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Settings",
-    "can_show",
     "emit",
     "flush",
     "give_up",
@@ -103,15 +102,6 @@ def out(item: RenderableType) -> None:
     with console.capture() as drawn:
         console.print(item)
     emit("\n".join(line.rstrip() for line in drawn.get().splitlines()))
-
-
-def can_show(text: str) -> bool:
-    """Whether the encoding of stdout has these characters."""
-    try:
-        text.encode(getattr(sys.stdout, "encoding", None) or "utf-8")
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def flush() -> None:

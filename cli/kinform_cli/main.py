@@ -19,14 +19,13 @@ _FAILED = 2
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command with these arguments; returns its exit code."""
-    from kinform_cli import console, errors, interrupts
+    from kinform_cli import console, errors
 
     # small matrices: threads of BLAS cost more than they give, and `--jobs` shares the work between processes
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     console.settings.quiet = False
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
-        interrupts.listen()
         import typer
 
         from kinform_cli.app import app

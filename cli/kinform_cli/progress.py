@@ -12,7 +12,7 @@ import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from kinform_cli import console, interrupts
+from kinform_cli import console
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -58,7 +58,6 @@ class Working:
     def __call__(self, done: int, total: int) -> None:
         """So many of so many steps of the present stage are done; total 0 when nobody knows."""
         self._done, self._total = done, total
-        interrupts.check()
 
     def stage(self, label: str) -> None:
         """This stage is under way now."""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
 
-__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "sparkline", "vector"]
+__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "vector"]
 
 NONE = "–"
 """What stands where there is no value."""
@@ -49,25 +49,6 @@ def vector(direction: Iterable[float] | None) -> str:
         if rounded == unit:
             return name
     return ", ".join(f"{component:g}" for component in rounded)
-
-
-_LEVELS = "▁▂▃▄▅▆▇█"
-
-
-def sparkline(values: Sequence[float], width: int = 40) -> str:
-    """The course of values as a line of blocks, the lowest ▁, the highest █; a blank where nothing is known."""
-    shares = [(k * (len(values) - 1)) / max(width - 1, 1) for k in range(min(width, len(values)))]
-    picked = values if len(values) <= width else [values[round(share)] for share in shares]
-    known = [value for value in picked if math.isfinite(value)]
-    low, high = (min(known), max(known)) if known else (0.0, 0.0)
-    flat = high - low <= 1e-9 * max(abs(low), abs(high), 1e-12)
-
-    def block(value: float) -> str:
-        if not math.isfinite(value):
-            return " "
-        return _LEVELS[3] if flat else _LEVELS[min(7, int(8 * (value - low) / (high - low)))]
-
-    return "".join(map(block, picked))
 
 
 def count(many: int, noun: str, plural: str | None = None) -> str:

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 
 Ran = subprocess.CompletedProcess[str]
+
+
+def listening() -> None:
+    """For `preexec_fn`: hear Ctrl-C, also where the tests run in the background of a shell, which ignores it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def environment(**extra: str) -> dict[str, str]:

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 import pytest
-from commands import environment
+from commands import environment, listening
 from known import FIXTURES
 
 from kinform_cli.main import main
@@ -135,7 +135,9 @@ def test_a_lock_holds_until_the_behaviour_changes(folder, capsys):
 
 def started(*arguments):
     command = [sys.executable, "-m", "kinform_cli", "watch", "m.toml", "-o", "r.h5", "--period", "0.05", *arguments]
-    return subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening
+    )
 
 
 def said(watching, word):

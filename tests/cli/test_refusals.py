@@ -11,7 +11,7 @@ import time
 
 import h5py
 import pytest
-from commands import environment
+from commands import environment, listening
 from known import FIXTURES
 
 PAIR = FIXTURES / "pairs" / "revolute_collars"
@@ -141,7 +141,7 @@ def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, kinform)
     seeker = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
     running = subprocess.Popen(
         [sys.executable, "-m", "kinform_cli", "run", str(seeker), "-o", "r.h5", "--jobs", "1"],
-        cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
     )  # fmt: skip
     time.sleep(1.5)
     assert running.poll() is None

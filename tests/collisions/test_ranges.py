@@ -137,10 +137,3 @@ def test_a_slider_crank_turns_freely_and_its_slider_goes_by_twice_the_crank(deri
     assert slide.upper.value - slide.lower.value == pytest.approx(0.050, abs=2e-6)
     assert slide.upper.parts == ()
     assert known["crank_unit~frame"].status == "unbounded"
-
-
-def test_the_clearance_of_two_parts_is_their_distance(seeker):
-    distance, places = collisions.clearance(seeker.assembly, [("camera", "housing")], {})
-    assert distance.shape == (1, 1)
-    assert np.linalg.norm(places[0, 0, 1] - places[0, 0, 0]) == pytest.approx(distance[0, 0], abs=1e-9)
-    assert distance[0, 0] == pytest.approx(0.015, abs=1e-6)

@@ -85,6 +85,17 @@ def passive_seeker(**request):
     return device(parts, joints, drives=drives, loads=loads, **({"duration": 1.0, "step": 0.05} | request))
 
 
+def motorised(**request):
+    """A servo on one turn, a DC motor on the other."""
+    parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
+    joints = [joint("base", "outer", "revolute", Z, (0, 0, 0)), joint("inner", "outer", "revolute", Y, (0, 0, 0.1))]
+    drives = [
+        drive("base~outer", "servo", Law("constant", value=20.0), kp=4.0, kd=0.5, ki=2.0, limit=50.0),
+        drive("inner~outer", "dc_motor", resistance=2.0, constant=0.05, gear=10.0, voltage=6.0),
+    ]
+    return device(parts, joints, drives=drives, **({"duration": 0.2, "step": 0.05} | request))
+
+
 def every_joint(**request):
     """A chain with all kinds of joints, some of them backwards."""
     parts = [block(f"b{k}", (0.1 * k, 0.05, 0.02 * k), 1.0 / k) for k in range(1, 8)]

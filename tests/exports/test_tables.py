@@ -14,11 +14,12 @@ import sys
 import numpy as np
 import pytest
 from known import ROOT
-from models import ALL, known, model_of
+from models import ALL, known, model_of, motorised
 
 from kinform.errors import InputError
 from kinform.exports import FORMATS, ExportError, export
-from kinform.exports.port_model import read, schema
+from kinform.exports.port_model import read
+from kinform.exports.port_schema import schema
 
 
 def table(data):
@@ -164,3 +165,17 @@ def test_bytes_depend_on_nothing_but_the_design(tmp_path):
     for format in FORMATS:
         for data in export(known("four_bar"), format).files.values():
             assert str(ROOT).encode() not in data and str(tmp_path).encode() not in data
+
+
+@pytest.mark.parametrize("format", ["mjcf", "modelica", "sdf", "urdf", "vhdl-ams"])
+def test_motors_and_servos_are_whole_in_json_and_named_as_lost_elsewhere(format):
+    found = motorised()
+    made = export(found, "json")
+    assert not made.lost
+    (data,) = made.files.values()
+    system = read(data)
+    assert system.components == model_of(found).system.components
+    assert {type(c).__name__ for c in system.components} >= {"Servo", "DcMotor", "VoltageSource"}
+    lost = " ".join(export(found, format).lost)
+    for what in ("a servo", "a DC motor", "the voltage of a motor"):
+        assert what in lost

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from kinform_cli import console, errors, files, interrupts
+from kinform_cli import console, errors, files
 from kinform_cli.gate import show
 from kinform_cli.options import AllowOutside, Debug, FailOn, FindingsFormat, Jobs, Quiet, Severity, cores, examples
 from kinform_cli.progress import Working
@@ -115,10 +115,8 @@ def _wait(seen: dict[Path, Stamp], period: float) -> None:
     """Return when a file is another than was seen, and has not changed for a period: programs save in several steps."""
     paths = list(seen)
     while (now := _stamps(paths)) == seen:
-        interrupts.check()
         time.sleep(period)
     while True:
-        interrupts.check()
         time.sleep(period)
         if (later := _stamps(paths)) == now:
             return

@@ -95,7 +95,20 @@ class Servo(OnShaft):
 
 
 @dataclass(frozen=True)
-class DcMotor(OnShaft):
+class OnShaftAndTerminals(OnShaft):
+    """Something between a shaft and electric terminals; two equations."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        return (Port("shaft", 1), Port("terminals", 1))
+
+    @property
+    def equations(self) -> int:
+        return 2
+
+
+@dataclass(frozen=True)
+class DcMotor(OnShaftAndTerminals):
     """Motor with a gear: electric terminals (voltage across, current through) and a shaft. Two equations.
 
     L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own.
@@ -109,14 +122,6 @@ class DcMotor(OnShaft):
     """k: N·m/A, which equals V·s/rad."""
     gear: float
     """g: motor turns a turn of the joint, or radians of the motor a metre."""
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("shaft", 1), Port("terminals", 1))
-
-    @property
-    def equations(self) -> int:
-        return 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,19 +140,11 @@ class VoltageSource(Component):
 
 
 @dataclass(frozen=True, eq=False)
-class VoltageController(OnShaft):
+class VoltageController(OnShaftAndTerminals):
     """A voltage across its terminals by a controller that reads the shaft without loading it. Two equations."""
 
     target: Signal
     controller: Controller
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("shaft", 1), Port("terminals", 1))
-
-    @property
-    def equations(self) -> int:
-        return 2
 
 
 Actor = MotionDrive | EffortDrive | Spring | Damper | EndStop | Servo | DcMotor

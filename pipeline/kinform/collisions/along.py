@@ -1,15 +1,14 @@
-"""Collisions along a run that was computed, and distances of parts at given poses."""
+"""Collisions along a run that was computed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
-import fcl
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
-from kinform.collisions.pairs import PairTest, Shapes
+from kinform.collisions.pairs import PairTest
 from kinform.collisions.ranges import shapes_of
 from kinform.collisions.recorded import Nodes, course, moving_pairs
 from kinform.collisions.scan import Course, first_crossing
@@ -20,7 +19,7 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["along", "clearance", "part_poses"]
+__all__ = ["along"]
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -70,45 +69,6 @@ def along(
     if progress is not None:
         progress(len(pairs), len(pairs))
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
-
-
-def clearance(assembly: Assembly, pairs: Sequence[tuple[str, str]], poses: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Distances (T, pairs) m between parts at displacements `poses` (T, 4, 4) of each part from the pose of the meshes
-    (`part_poses`), 0 where they touch or cross; and the places (T, pairs, 2, 3) m in the world that are nearest.
-
-    Mating surfaces count: parts that touch have no clearance. Parts that are not in `poses` rest. Raises KeyError.
-    """
-    shapes = Shapes(assembly, {}, None)
-    count = max((len(pose) for pose in poses.values()), default=1)
-    rest = np.broadcast_to(np.eye(4), (count, 4, 4))
-    distance, places = np.full((count, len(pairs)), np.inf), np.full((count, len(pairs), 2, 3), np.nan)
-    for n, names in enumerate(pairs):
-        if any(shapes.part(name).mesh is None for name in names):
-            continue
-        objects = [fcl.CollisionObject(shapes.model(name)) for name in names]
-        moves = [np.asarray(poses.get(name, rest)) for name in names]
-        starts = [shapes.part(name).X_WP for name in names]
-        for t in range(count):
-            for item, move, X in zip(objects, moves, starts, strict=True):
-                placed = move[t] @ X
-                item.setTransform(fcl.Transform(placed[:3, :3], placed[:3, 3]))
-            result = fcl.DistanceResult()
-            found = fcl.distance(*objects, fcl.DistanceRequest(enable_nearest_points=True), result)
-            distance[t, n] = max(float(found), 0.0)
-            places[t, n] = result.nearest_points
-    return distance, places
-
-
-def part_poses(kinematics: Kinematics, simulation: Simulation) -> dict[str, Array]:
-    """Displacement (T, 4, 4) of each part from the pose of the meshes at the output times of a run."""
-    displacements = _displacements(simulation)
-    number = {name: n for n, name in enumerate(simulation.body_names)}
-    return {
-        str(part): displacements[:, number[body.name]]
-        for body in kinematics.bodies
-        for part in body.parts
-        if body.name in number
-    }
 
 
 def _displacements(simulation: Simulation) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinform.collisions.pairs import Shapes
 from kinform.collisions.recorded import Nodes, course, moving_pairs
 from kinform.collisions.scan import first_crossing
-from kinform.collisions.single import exponential
+from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
 from kinform.kinematics.motion import LoopSystem, loop_system
 from kinform.kinematics.screws import Frame
@@ -74,7 +74,7 @@ class _Linkage:
         """(B, 4, 4) displacement of each body at coordinates q (n,); joints outside of the block rest."""
         across: dict[int, Array] = {}
         for n, k in enumerate(self.owner):
-            across[k] = across.get(k, np.eye(4)) @ exponential(self.twists[n], float(q[n]) * self.unit[n])
+            across[k] = across.get(k, np.eye(4)) @ displacement(float(q[n]) * self.unit[n] * self.twists[n])
         out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
         for node in self.tree.order:
             up, k = self.tree.parent[node], self.tree.edge[node]

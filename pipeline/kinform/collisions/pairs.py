@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
 from kinform.collisions.invariant import Allowed, Extent, extents, sliding_on_themselves
-from kinform.contacts.bvh import MeshIndex, MeshStore
+from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
@@ -56,16 +56,6 @@ class Crossing:
 
 
 NONE = Crossing(frozenset(), np.zeros((0, 2, 3)), 0.0)
-
-
-def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
-    used, corners = np.unique(faces, return_inverse=True)
-    corners = corners.reshape(-1, 3)
-    model = fcl.BVHModel()
-    model.beginModel(len(used), len(corners))
-    model.addSubModel(np.ascontiguousarray(vertices[used]), np.ascontiguousarray(corners))
-    model.endModel()
-    return model
 
 
 @dataclass
@@ -154,7 +144,7 @@ class Shapes:
         mesh = self.mesh(name)
         key = (mesh.digest, b"" if facets is None else facets.tobytes())
         if key not in self._models:
-            self._models[key] = _model(mesh.vertices, mesh.faces if facets is None else mesh.faces[facets])
+            self._models[key] = partial_model(mesh.vertices, mesh.faces if facets is None else mesh.faces[facets])
         return self._models[key]
 
     def patches(self, first: str, second: str) -> list[int]:

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from kinform.collisions.pairs import PRESERVED, PairTest, Shapes
 from kinform.collisions.scan import Course, first_crossing
 from kinform.collisions.sweeps import largest_radius, meeting
+from kinform.kinematics.displacements import displacement
 from kinform.kinematics.screws import cross
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
-__all__ = ["drive_alone", "exponential", "preserved"]
+__all__ = ["drive_alone", "preserved"]
 
 Array = NDArray[np.float64]
 Pair = tuple[PartName, PartName]
@@ -29,20 +30,6 @@ LENGTH = 1e-5
 """To which a stop of a slide is found, relative to the size of the smaller part."""
 TURNS = 20
 """Turns of a screw that are tried to each side."""
-
-
-def exponential(twist: Array, s: float) -> Array:
-    """(4, 4) displacement exp([twist]s) of a twist with |ω| 1 or 0."""
-    omega, v = twist[:3], twist[3:]
-    out = np.eye(4)
-    if float(omega @ omega) < 0.25:
-        out[:3, 3] = s * v
-        return out
-    spin = np.array([[0.0, -omega[2], omega[1]], [omega[2], 0.0, -omega[0]], [-omega[1], omega[0], 0.0]])
-    twice = spin @ spin
-    out[:3, :3] = np.eye(3) + math.sin(s) * spin + (1.0 - math.cos(s)) * twice
-    out[:3, 3] = s * v + (1.0 - math.cos(s)) * (spin @ v) + (s - math.sin(s)) * (twice @ v)
-    return out
 
 
 def preserved(patch: Patch, twists: Array) -> bool:
@@ -141,7 +128,7 @@ def _end(
     reach, left_out, exhausted = limit, [], None
     turning = float(twist[:3] @ twist[:3]) > 0.25
     for candidate in candidates:
-        course = Course(lambda s: exponential(twist, sign * s), lambda s, speed=candidate.speed: speed * s)  # type: ignore[misc]
+        course = Course(lambda s: displacement(sign * s * twist), lambda s, speed=candidate.speed: speed * s)  # type: ignore[misc]
         fine = ANGLE if turning else LENGTH * candidate.test.size
         if reach <= start:
             break

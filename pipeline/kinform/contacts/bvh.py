@@ -21,7 +21,7 @@ from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Hits", "MeshIndex", "MeshStore", "Region", "cross"]
+__all__ = ["Hits", "MeshIndex", "MeshStore", "Region", "cross", "fcl_model", "partial_model"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -56,7 +56,8 @@ class Hits:
     """(h,) cosine between the probe's direction and the facet's outward normal."""
 
 
-def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    """FCL's model of triangles: vertices (V, 3) and faces (F, 3)."""
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
     model.addSubModel(np.ascontiguousarray(vertices), np.ascontiguousarray(faces))
@@ -64,10 +65,10 @@ def _model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     return model
 
 
-def _partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     """FCL's model of some facets, with the vertices that they use."""
     used, corners = np.unique(faces, return_inverse=True)
-    return _model(vertices[used], corners.reshape(-1, 3))
+    return fcl_model(vertices[used], corners.reshape(-1, 3))
 
 
 class MeshIndex:
@@ -121,14 +122,14 @@ class MeshIndex:
     def bvh(self) -> fcl.BVHModel:
         """FCL's model of the mesh in the part frame (m)."""
         if self._bvh is None:
-            self._bvh = _model(self.mesh.vertices, self.mesh.faces)
+            self._bvh = fcl_model(self.mesh.vertices, self.mesh.faces)
         return self._bvh
 
     def region(self, facets: Ints) -> Region:
         """These facets (ascending) as something to cast probes against; all of them where they are most."""
         if 2 * len(facets) >= len(self.mesh.faces):
             return self.whole()
-        model = _partial_model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None
+        model = partial_model(self.mesh.vertices, self.mesh.faces[facets]) if len(facets) else None
         return Region(self, model, facets)
 
     def whole(self) -> Region:
@@ -238,7 +239,7 @@ class Region:
         across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
         tip = points + reach[:, None] * directions
         slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
-        probe_model = _model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
         # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
         request = fcl.CollisionRequest(num_max_contacts=256 * count + 4096, enable_contact=False)
         result = fcl.CollisionResult()
@@ -259,7 +260,7 @@ class Region:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
         speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
         corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        point = fcl.CollisionObject(_model(corners, np.array([[0, 1, 2]])))
+        point = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
         mesh, request = fcl.CollisionObject(self.bvh), fcl.DistanceRequest()
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
         for k, p in enumerate(points):

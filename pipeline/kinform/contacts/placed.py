@@ -131,40 +131,16 @@ _BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
 
 
 @dataclass(frozen=True, eq=False)
-class NearSurfaces:
-    """Surfaces of one part with facets near the other part, as arrays (s surfaces, frame of the pair)."""
+class NearSurfaces(SurfaceTable):
+    """Surfaces of one part with facets near the other part, in the frame of the pair."""
 
     ids: Ints
     """(s,) index of each surface in the part's MeshSurfaces."""
-    kinds: Ints
-    """(s,) index into KINDS."""
-    axes: Array
-    """(s, 3)."""
-    points: Array
-    """(s, 3)."""
-    radii: Array
-    half_angles: Array
-    sides: Array
-    axis_uncertainty: Array
-    point_uncertainty: Array
-    slacks: Array
-    """(s,) m that facets may stand off the surface: chord error and residual of the fit."""
-    chords: Array
-    rims: Array
-    """(s,) m: greatest chord error of the surfaces that share an edge with this one."""
-    extents: Array
-    """(s, 2) m along the axis from the point."""
-    areas: Array
-    """(s,) m² of the whole surface."""
-    pitches: Array
-    """(s,) m a turn, of helicoids."""
     lows: Array
     """(s, 3) box of the near facets."""
     highs: Array
     facets: tuple[Ints, ...]
     """Near facets of each surface."""
-    minor_radii: Array
-    """(s,) m: of the tube of a torus."""
 
     def of_kind(self, *kinds: str) -> Ints:
         """Positions of the surfaces of these kinds."""
@@ -187,26 +163,11 @@ def near_surfaces(placed: PlacedPart, low: Array, high: Array) -> NearSurfaces:
         keep = np.isin(labels, ids[largest])
         near, labels, low_f, high_f = near[keep], labels[keep], low_f[keep], high_f[keep]
         ids, starts = np.unique(labels, return_index=True)
-    R_FP, p_FP = placed.X_FP[:3, :3], placed.X_FP[:3, 3]
-    table, empty = placed.table, np.zeros((0, 3))
+    empty = np.zeros((0, 3))
     return NearSurfaces(
+        **placed.table.placed(ids, placed.X_FP),  # type: ignore[arg-type]
         ids=ids.astype(np.int64),
-        kinds=table.kinds[ids],
-        axes=table.axes[ids] @ R_FP.T,
-        points=table.points[ids] @ R_FP.T + p_FP,
-        radii=table.radii[ids],
-        half_angles=table.half_angles[ids],
-        sides=table.sides[ids],
-        axis_uncertainty=table.axis_uncertainty[ids],
-        point_uncertainty=table.point_uncertainty[ids],
-        slacks=table.slacks[ids],
-        chords=table.chords[ids],
-        rims=table.rims[ids],
-        extents=table.extents[ids],
-        areas=table.areas[ids],
-        pitches=table.pitches[ids],
         lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
         highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
         facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
-        minor_radii=table.minor_radii[ids],
     )

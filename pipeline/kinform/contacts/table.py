@@ -1,8 +1,8 @@
-"""The surfaces of one mesh as arrays, so that a pair picks the few that it needs."""
+"""Surfaces of one mesh as arrays, so that a pair picks the few that it needs."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class SurfaceTable:
-    """Columns over the s surfaces of a mesh, in its part frame (m, rad)."""
+    """Columns over s surfaces (m, rad), of a mesh in its part frame unless said otherwise."""
 
     kinds: Ints
     """(s,) index into KINDS."""
@@ -26,57 +26,63 @@ class SurfaceTable:
     points: Array
     """(s, 3)."""
     radii: Array
+    minor_radii: Array
+    """(s,) of the tubes of tori."""
     half_angles: Array
+    pitches: Array
+    """(s,) a turn of helicoids."""
     sides: Array
     axis_uncertainty: Array
     point_uncertainty: Array
     slacks: Array
-    """(s,) m that facets may stand off the surface: chord error and residual of the fit."""
+    """(s,) that facets may stand off the surface: chord error and residual of the fit."""
     chords: Array
     rims: Array
-    """(s,) m: greatest chord error of the surfaces that share an edge with this one."""
+    """(s,) greatest chord error of the surfaces that share an edge with this one."""
     extents: Array
-    """(s, 2) m along the axis from the point."""
+    """(s, 2) along the axis from the point."""
     areas: Array
     """(s,) m² of the whole surface."""
-    pitches: Array
-    """(s,) m a turn of helicoids."""
-    minor_radii: Array
-    """(s,) m, of tori."""
-    slack: float
-    """The greatest of `slacks`."""
-    radius: float
-    """The greatest of `radii`."""
 
     @staticmethod
     def of(surfaces: MeshSurfaces, rims: Array) -> SurfaceTable:
         """The table of the surfaces; `rims` (s,) as above."""
-        all_ = surfaces.surfaces
         number = {kind: k for k, kind in enumerate(KINDS)}
 
-        def column(name: str) -> Array:
-            return np.array([getattr(s, name) for s in all_], dtype=np.float64)
+        def column(name: str, *width: int) -> Array:
+            return np.array([getattr(s, name) for s in surfaces.surfaces], dtype=np.float64).reshape(-1, *width)
 
-        def stacked(name: str, width: int) -> Array:
-            return np.array([getattr(s, name) for s in all_], dtype=np.float64).reshape(-1, width)
-
-        radii, slacks = column("radius"), column("chord") + column("residual")
         return SurfaceTable(
-            kinds=np.array([number[s.kind] for s in all_], dtype=np.int64),
-            axes=stacked("axis", 3),
-            points=stacked("point", 3),
-            radii=radii,
+            kinds=np.array([number[s.kind] for s in surfaces.surfaces], dtype=np.int64),
+            axes=column("axis", 3),
+            points=column("point", 3),
+            radii=column("radius"),
+            minor_radii=column("minor_radius"),
             half_angles=column("half_angle"),
+            pitches=column("pitch"),
             sides=column("side"),
             axis_uncertainty=column("axis_uncertainty"),
             point_uncertainty=column("point_uncertainty"),
-            slacks=slacks,
+            slacks=column("chord") + column("residual"),
             chords=column("chord"),
             rims=rims,
-            extents=stacked("extent", 2),
+            extents=column("extent", 2),
             areas=column("area"),
-            pitches=column("pitch"),
-            minor_radii=column("minor_radius"),
-            slack=float(slacks.max(initial=0.0)),
-            radius=float(radii.max(initial=0.0)),
         )
+
+    def placed(self, ids: Ints, X_FP: Array) -> dict[str, Array]:
+        """The columns of some surfaces, by name, at the pose `X_FP` (4, 4)."""
+        columns = {field.name: getattr(self, field.name)[ids] for field in fields(SurfaceTable)}
+        columns["axes"] = columns["axes"] @ X_FP[:3, :3].T
+        columns["points"] = columns["points"] @ X_FP[:3, :3].T + X_FP[:3, 3]
+        return columns
+
+    @property
+    def slack(self) -> float:
+        """The greatest of `slacks`."""
+        return float(self.slacks.max(initial=0.0))
+
+    @property
+    def radius(self) -> float:
+        """The greatest of `radii`."""
+        return float(self.radii.max(initial=0.0))

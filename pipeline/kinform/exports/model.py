@@ -70,8 +70,15 @@ class ExportModel:
     """(lower, upper) rad or m of joints with one freedom, ±inf for a free side, by name of joint."""
     adrift: tuple[str, ...]
     """Bodies that no joints connect with the ground, sorted."""
-    lost: tuple[str, ...]
-    """What is missing in the port model itself."""
+    missing: tuple[str, ...]
+    """What the design has and the port model has not, in sentences."""
+    elsewhere: tuple[str, ...]
+    """Components of the port model that no other format has equations for, in sentences."""
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """What formats other than the port model itself do not carry, whatever they can say."""
+        return (*self.missing, *self.elsewhere)
 
     @property
     def name(self) -> str:
@@ -120,7 +127,8 @@ def export_model(design: Design) -> ExportModel:
         start=_starts(mechanism, q, v),
         ranges=_ranges(assembly, kinematics, behaviour.system.joints),
         adrift=tuple(sorted(adrift)),
-        lost=_lost(behaviour, adrift),
+        missing=_missing(behaviour, adrift),
+        elsewhere=_elsewhere(behaviour.system),
     )
 
 
@@ -178,14 +186,17 @@ _ELSEWHERE: dict[type[Component], str] = {
 """What the equations of the other formats are not written for."""
 
 
-def _lost(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:
+def _elsewhere(system: System) -> tuple[str, ...]:
+    return tuple(
+        f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
+        for component in system.components
+        if type(component) in _ELSEWHERE
+    )
+
+
+def _missing(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:
     out = [f"{subject}: {why}" for subject, why in (*behaviour.failures, *behaviour.forces_missing)]
     out += [f"{body.subject}: its mass is not known" for body in _weightless(behaviour.system)]
-    out += [
-        f"{component.subject}: {_ELSEWHERE[type(component)]}, which only json carries"
-        for component in behaviour.system.components
-        if type(component) in _ELSEWHERE
-    ]
     out += [f"{name}: no joints connect this body with the ground; it is free" for name in sorted(adrift)]
     return tuple(out)
 

@@ -15,6 +15,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.contacts.bvh import fcl_model
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -177,11 +178,11 @@ def _inside(triangles: Array, others: Array, tolerance: float) -> Flags:
 
 def _within(triangles: Array, others: Array, tolerance: float) -> Flags:
     """Which triangles (n, 3, 3) are within the tolerance of any of the others."""
-    model = _model(others.reshape(-1, 3), np.arange(3 * len(others)).reshape(-1, 3))
+    model = fcl_model(others.reshape(-1, 3), np.arange(3 * len(others)).reshape(-1, 3))
     whole, request = fcl.CollisionObject(model), fcl.DistanceRequest()
     out = np.zeros(len(triangles), dtype=np.bool_)
     for k, corners in enumerate(triangles):
-        one = fcl.CollisionObject(_model(corners, np.array([[0, 1, 2]])))
+        one = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
         out[k] = fcl.distance(one, whole, request, fcl.DistanceResult()) <= tolerance
     return out
 
@@ -198,17 +199,9 @@ def _side(mesh: Mesh, keep: Flags, shared: dict[tuple[str, bytes], _Side]) -> _S
     if key not in shared:
         corners = mesh.vertices[mesh.faces[keep]]
         points = corners.reshape(-1, 3)
-        model = _model(points, np.arange(len(points)).reshape(-1, 3))
+        model = fcl_model(points, np.arange(len(points)).reshape(-1, 3))
         shared[key] = _Side(model, _corners(points, np.eye(4)), corners)
     return shared[key]
-
-
-def _model(vertices: Array, faces: NDArray[np.int64]) -> fcl.BVHModel:
-    model = fcl.BVHModel()
-    model.beginModel(len(vertices), len(faces))
-    model.addSubModel(vertices, faces)
-    model.endModel()
-    return model
 
 
 def _corners(points: Array, X: Array) -> Array:

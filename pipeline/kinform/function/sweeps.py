@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from kinform.function.clearances import Apart, Nearest
 from kinform.function.configurations import Chain
+from kinform.kinematics.displacements import displacement, twist_of
 
 __all__ = ["Swept", "along", "over"]
 
@@ -48,13 +49,13 @@ class Swept:
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     """Along displacements (T, 4, 4) of both groups from the pose of the meshes."""
     relative = _inverse(first) @ second
-    twists = [_twist(X) for X in _inverse(relative[:-1]) @ relative[1:]]
+    twists = [twist_of(X) for X in _inverse(relative[:-1]) @ relative[1:]]
     moved = np.array([_speed(twist, groups) for twist in twists])
     way = np.concatenate([[0.0], np.cumsum(moved)])
     floor = FLOOR * groups.size
 
     def pose(k: int, share: float) -> Array:
-        return np.asarray(relative[k] @ _displacement(share * twists[k]) if share > 0.0 else relative[k])
+        return np.asarray(relative[k] @ displacement(share * twists[k]) if share > 0.0 else relative[k])
 
     at, worst, where = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0
     for count in range(1, BUDGET + 1):
@@ -114,36 +115,6 @@ def _inverse(X: Array) -> Array:
     out[:, :3, 3] = -(turned @ X[:, :3, 3, None])[..., 0]
     out[:, 3, 3] = 1.0
     return out
-
-
-def _twist(X: Array) -> Array:
-    """(6,) twist (ω; v at the origin) whose exponential is the displacement X (4, 4), by less than half a turn."""
-    from scipy.spatial.transform import Rotation
-
-    omega = Rotation.from_matrix(X[:3, :3]).as_rotvec()
-    return np.concatenate([omega, np.linalg.solve(_slide(omega), X[:3, 3])])
-
-
-def _displacement(twist: Array) -> Array:
-    """(4, 4) exponential of a twist."""
-    from scipy.spatial.transform import Rotation
-
-    X = np.eye(4)
-    X[:3, :3] = Rotation.from_rotvec(twist[:3]).as_matrix()
-    X[:3, 3] = _slide(twist[:3]) @ twist[3:]
-    return X
-
-
-def _slide(omega: Array) -> Array:
-    """(3, 3): what v becomes of a shift under the rotation vector ω (the left Jacobian of rotations)."""
-    angle = float(np.linalg.norm(omega))
-    x, y, z = omega
-    hat = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    if angle < 1e-6:
-        return np.eye(3) + 0.5 * hat
-    return np.asarray(
-        np.eye(3) + (1.0 - np.cos(angle)) / angle**2 * hat + (angle - np.sin(angle)) / angle**3 * hat @ hat
-    )
 
 
 def _speed(twist: Array, groups: Apart) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.cycles import Cycle
+from kinform.kinematics.displacements import cross_matrix
 from kinform.kinematics.loops import CLOSED, FEW, Block, axes_frame, loop_matrix
 from kinform.kinematics.mobility import Closure
 from kinform.kinematics.screws import Frame, cross, scaled, span
@@ -110,14 +111,10 @@ def _reason(space: Sequence[Locked], frame: Frame) -> str:
 
 def _concurrent(forces: Array) -> bool:
     """Do the three forces (3, 6) have one point in common?"""
-    matrix = np.vstack([-_cross(f) for f in forces[:, 3:]])
+    matrix = np.vstack([-cross_matrix(f) for f in forces[:, 3:]])
     right = forces[:, :3].ravel()
     point = np.linalg.lstsq(matrix, right, rcond=None)[0]
     return bool(np.abs(matrix @ point - right).max() < 10.0 * EXACT)
-
-
-def _cross(w: Array) -> Array:
-    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
 
 
 def _together(joints: Sequence[Joint], block: Block, count: int, rest: int) -> list[Redundancy]:

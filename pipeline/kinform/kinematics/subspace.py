@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.kinematics.displacements import cross_matrix
 from kinform.kinematics.screws import Frame, canonical, cross, perpendicular, rotation, translation
 
 __all__ = ["JointForm", "name_space", "nearest_pair"]
@@ -125,14 +126,10 @@ def _three_turns(basis: Array, frame: Frame) -> JointForm:
 
 def _centre(basis: Array, frame: Frame, tolerance: float) -> Array | None:
     """The point (m) that rests under all three turns, or None if they miss it by more than `tolerance`."""
-    matrix = np.vstack([_cross_matrix(basis[:3, k]) for k in range(3)])
+    matrix = np.vstack([cross_matrix(basis[:3, k]) for k in range(3)])
     right = np.concatenate([basis[3:, k] for k in range(3)])
     offset, *_ = np.linalg.lstsq(matrix, right, rcond=None)
     if float(np.abs(matrix @ offset - right).max()) > tolerance:
         return None
     centre: Array = frame.centre - frame.length * offset
     return centre
-
-
-def _cross_matrix(w: Array) -> Array:
-    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
+from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 
@@ -84,7 +85,7 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
     for mix in still:
         twists = np.einsum("m,mbi->bi", mix, freedoms)
         extent = max(float(np.abs(twists[:, 3:]).max()) / size, float(np.abs(twists[:, :3]).max()), 1e-300)
-        poses = np.array([[_exponential(t * SLIDE * s / extent) for t in twists] for s in np.linspace(-1, 1, FRAMES)])
+        poses = np.array([[displacement(t * SLIDE * s / extent) for t in twists] for s in np.linspace(-1, 1, FRAMES)])
         turns = bool(np.abs(twists[:, :3]).max() * size > np.abs(twists[:, 3:]).max())
         note = "no joint connects what moves to ground"
         shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, note))
@@ -94,22 +95,6 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
 def _moving(kinematics: Kinematics, poses: Array, size: float) -> tuple[str, ...]:
     far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > 1e-6 * max(size, 1e-300)
     return tuple(body.name for body, moves in zip(kinematics.bodies, far, strict=True) if moves)
-
-
-def _exponential(twist: Array) -> Array:
-    """(4, 4) motion of a twist (ω; v) over unit time, by Rodrigues' formula."""
-    x, y, z = twist[:3]
-    angle = float(np.sqrt(x * x + y * y + z * z))
-    spin = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    s, c, r = 1.0, 0.5, 1.0 / 6.0
-    if angle > 1e-6:
-        s, c = np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle**2
-        r = (angle - np.sin(angle)) / angle**3
-    twice = spin @ spin
-    out = np.eye(4)
-    out[:3, :3] += s * spin + c * twice
-    out[:3, 3] = twist[3:] + c * (spin @ twist[3:]) + r * (twice @ twist[3:])
-    return out
 
 
 class _Linkage:
@@ -201,7 +186,7 @@ class _Linkage:
         out = np.eye(4)
         for i in range(self.start[k], self.start[k + 1]):
             if q[i]:
-                out = out @ _exponential(self.screws[i] * q[i])
+                out = out @ displacement(self.screws[i] * q[i])
         return out
 
     def _missing(self, q: Array) -> Array:
