@@ -19,7 +19,7 @@ __all__ = ["render"]
 _WIDTH = 20
 """Characters of a line: with the extremes it fits in 80 columns where names are short."""
 _REST = 1e-9
-"""Share of the greatest effort, or energy, below which a series is nothing but rounding."""
+"""Share of the greatest position, effort or energy below which a series is nothing but rounding."""
 
 _SAME = 1e-6
 """Share of the span of a series within which two of its peaks are equally high: the first is named."""
@@ -58,11 +58,17 @@ def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
 def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
     """Positions, then what moves them, then energies; what is not known throughout is left out."""
     efforts: list[Series] = []
-    for name, _, unit, column in coordinates(run):
+    known = list(coordinates(run))
+    rest = {
+        unit: _REST * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in known if u == unit]]), initial=0.0)
+        for unit in sorted({unit for *_, unit, _ in known})
+    }
+    for name, _, unit, column in known:
         values = run.joint_position[:, column]
+        values = np.where(np.nanmax(np.abs(values), initial=0.0) > rest[unit], values, 0.0 * values)
         angles = unit == "rad"
-        known = f"{name} {lengths.unit}" if unit == "m" else name
-        yield known, values / lengths.metres if unit == "m" else values, angles
+        label = f"{name} {lengths.unit}" if unit == "m" else name
+        yield label, values / lengths.metres if unit == "m" else values, angles
         effort = run.joint_effort[:, column]
         if np.isfinite(effort).any():
             efforts.append((f"{name} {'N' if unit == 'm' else 'N·m'}", effort, False))

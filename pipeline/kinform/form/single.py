@@ -95,12 +95,14 @@ def init_manifest(
     lines += ["", "# Parts that are fastened by means that the geometry does not show:"]
     taken = {str(part.name) for part in assembly.parts}
     hints = [] if fastened is None else fastened(assembly)
-    for parts, evidence in hints or [([part.name for part in assembly.parts[:2]], "")]:
-        label = _free(f"{parts[0]}_body" if hints else "frame", taken)
+    for parts, evidence in hints:
+        label = _free(f"{parts[0]}_body", taken)
         lines += [f"## {_text(sentence)[1:-1]}" for sentence in evidence.split("; ") if sentence]
         lines += [
             "# [[group]]", f"# name = {_text(label)}", f"# parts = [{', '.join(_text(part) for part in parts)}]",
         ]  # fmt: skip
+    if not hints:
+        lines += ["# [[group]]", '# name = "…"', '# parts = ["…", "…"]']
     lines += [
         "", "# What the device is for:", "# [function]", "# mobility = 1", "",
     ]  # fmt: skip
