@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.simulation.kernel.crossings import follow, laid, locate, watch
 from kinform.simulation.kernel.layout import (
     ACC,
     ATOL,
@@ -18,6 +19,7 @@ from kinform.simulation.kernel.layout import (
     CLOSED,
     COEFFICIENTS,
     COUNTS,
+    CROSSING,
     D_ROW,
     DENSE,
     DONE,
@@ -64,6 +66,8 @@ from kinform.simulation.kernel.types import Counts, Derivative, Ints, Nums, Proj
 
 EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""
+LAYINGS = 4
+"""Times that a step is laid anew to avoid a singular pose."""
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
@@ -106,7 +110,7 @@ def try_step(
     h: float,
 ) -> float:
     """Slopes of one step and the new state; its error over the tolerance, −1 when a motion has no mass."""
-    slopes, table = work[STAGES], nums[COEFFICIENTS]
+    slopes, table, rank = work[STAGES], nums[COEFFICIENTS], ints[COUNTS][0, RANK]
     size = len(y)
     clock[LEAST] = 1.0
     for s in range(1, 12):
@@ -129,6 +133,11 @@ def try_step(
         )
         if margin < 0.0:
             return -1.0
+        if rank > 0:
+            if s == 1:
+                watch(ints, nums, work, clock, table[C_ROW, s])
+            else:
+                follow(work, clock, table[C_ROW, s])
     third, fifth = 0.0, 0.0
     for i in range(size):
         total, three, five = 0.0, 0.0, 0.0
@@ -255,7 +264,7 @@ def advance(
         if slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0]) < 0.0:
             return MASSLESS
         tally[FRESH] = 0
-    spent, growth = 0, GROWTH
+    spent, growth, layings = 0, GROWTH, 0
     while clock[NOW] < clock[END]:
         if tally[NEXT] >= tally[PAUSE]:
             return PAUSED
@@ -263,12 +272,23 @@ def advance(
             return SPENT
         spent += 1
         tally[STEPS] += 1
-        h = min(clock[STEP], clock[END] - clock[NOW])
+        wanted = clock[STEP]
+        h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
         if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:
             return STUCK
         error = try_step(derivative, project, ints, nums, work, clock, tally, y, h)
         if error == -1.0:
             return MASSLESS
+        if rank > 0 and layings < LAYINGS and locate(nums, clock, h):
+            if error > 1.0:
+                # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
+                wanted *= max(0.6, 0.9 * error**-0.125) if error < 1e30 else 0.6
+                clock[STEP] = wanted
+            again = laid(wanted, clock[CROSSING] - clock[NOW])
+            if abs(again - h) > 0.01 * h and clock[NOW] + again < clock[END]:
+                layings += 1
+                continue
+        layings = 0
         if not error < 1.0:
             clock[STEP] = h * (max(0.2, 0.9 * error**-0.125) if error < 1e30 else 0.2)
             growth = 1.0
@@ -316,6 +336,9 @@ def advance(
             slopes[0, i] = slopes[12, i]
         clock[NOW] = later
         clock[STEP] = h * (min(growth, 0.9 * error**-0.125) if error > 0.0 else growth)
+        if h < wanted and growth == GROWTH and clock[STEP] > h:
+            # Shorter than the error called for: the next need not be.
+            clock[STEP] = max(clock[STEP], wanted)
         if fastest * clock[STEP] > EDGE:
             # Within half the region of stability, for the dense output too.
             clock[STEP] = EDGE / fastest
