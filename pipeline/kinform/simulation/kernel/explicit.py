@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from kinform.simulation.kernel.crossings import follow, laid, locate, watch
+from kinform.simulation.kernel.crossings import laid, tip
 from kinform.simulation.kernel.layout import (
     ACC,
     ATOL,
@@ -32,6 +32,7 @@ from kinform.simulation.kernel.layout import (
     KEEP,
     LEAST,
     MARGIN,
+    MARGINS,
     MASSLESS,
     NEAR,
     NEED,
@@ -110,7 +111,7 @@ def try_step(
     h: float,
 ) -> float:
     """Slopes of one step and the new state; its error over the tolerance, −1 when a motion has no mass."""
-    slopes, table, rank = work[STAGES], nums[COEFFICIENTS], ints[COUNTS][0, RANK]
+    slopes, table = work[STAGES], nums[COEFFICIENTS]
     size = len(y)
     clock[LEAST] = 1.0
     for s in range(1, 12):
@@ -133,11 +134,7 @@ def try_step(
         )
         if margin < 0.0:
             return -1.0
-        if rank > 0:
-            if s == 1:
-                watch(ints, nums, work, clock, table[C_ROW, s])
-            else:
-                follow(work, clock, table[C_ROW, s])
+        clock[MARGINS + s] = margin
     third, fifth = 0.0, 0.0
     for i in range(size):
         total, three, five = 0.0, 0.0, 0.0
@@ -261,7 +258,8 @@ def advance(
     slopes, size = work[STAGES], len(y)
     rank = ints[COUNTS][0, RANK]
     if tally[FRESH] == 1:
-        if slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0]) < 0.0:
+        clock[MARGINS] = slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
+        if clock[MARGINS] < 0.0:
             return MASSLESS
         tally[FRESH] = 0
     spent, growth, layings = 0, GROWTH, 0
@@ -279,7 +277,7 @@ def advance(
         error = try_step(derivative, project, ints, nums, work, clock, tally, y, h)
         if error == -1.0:
             return MASSLESS
-        if rank > 0 and layings < LAYINGS and locate(nums, clock, h):
+        if rank > 0 and layings < LAYINGS and tip(nums, clock, h):
             if error > 1.0:
                 # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
                 wanted *= max(0.6, 0.9 * error**-0.125) if error < 1e30 else 0.6
@@ -303,12 +301,15 @@ def advance(
                 return MASSLESS if gap == -1.0 else OPENED
             continue
         rough, moved = 0.0, 0.0
-        if slope(derivative, project, ints, nums, work, clock, tally, later, slopes[NEW], slopes[12]) < 0.0:
+        margin = slope(derivative, project, ints, nums, work, clock, tally, later, slopes[NEW], slopes[12])
+        if margin < 0.0:
             return MASSLESS
         for i in range(size):
             rough += (slopes[12, i] - slopes[11, i]) ** 2
             moved += (slopes[NEW, i] - slopes[TRIED, i]) ** 2
-        fastest = math.sqrt(rough / moved) if moved > 0.0 else 0.0
+        # What rounding leaves near a singular pose is no decay.
+        real = rough > (10.0 * NOISE / max(clock[LEAST], 1e-6) ** 2) ** 2
+        fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
         tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
         hit, share = -1, 1.0
         due = tally[NEXT] < len(times) and times[tally[NEXT]] <= later
@@ -334,10 +335,11 @@ def advance(
         for i in range(size):
             y[i] = slopes[NEW, i]
             slopes[0, i] = slopes[12, i]
+        clock[MARGINS] = margin
         clock[NOW] = later
         clock[STEP] = h * (min(growth, 0.9 * error**-0.125) if error > 0.0 else growth)
-        if h < wanted and growth == GROWTH and clock[STEP] > h:
-            # Shorter than the error called for: the next need not be.
+        if h < wanted and error < 0.4:
+            # Laid shorter than the error called for: the next need not be.
             clock[STEP] = max(clock[STEP], wanted)
         if fastest * clock[STEP] > EDGE:
             # Within half the region of stability, for the dense output too.

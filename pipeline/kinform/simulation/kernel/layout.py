@@ -63,8 +63,8 @@ TRIED, NEW = 16, 17
 
 # clock: times (s) and tolerances; tally: counts; both are rows that the integrator changes.
 NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE = range(13)
-CROSSING, FOLLOWED, FORMER, HITHER, FAR, CLOCK = 13, 14, 15, 17, 19, 21
-"""Time of a singular pose ahead; which pivot is followed there, and three shares of a step with it."""
+CROSSING, MARGINS, CLOCK = 13, 14, 26
+"""Time of a singular pose ahead; margins at the twelve evaluations of a step; how many numbers."""
 STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT = range(8)
 
 NOISE = 1e-13
