@@ -27,7 +27,7 @@ class Run:
         self.y = dynamics.tables.pack(start.q, start.v)
         n = dynamics.mechanism.rates
         self.out = np.zeros((len(times), len(self.y) + 3 * n))
-        self.clock, self.tally = np.zeros(13), np.zeros(8, dtype=np.int64)
+        self.clock, self.tally = np.zeros(layout.CLOCK), np.zeros(8, dtype=np.int64)
         self.clock[layout.NOW] = times[0]
         self.clock[layout.RTOL], self.clock[layout.ATOL] = settings.rtol, settings.atol
         self.clock[layout.CLOSED], self.clock[layout.OPEN] = settings.closed, settings.open

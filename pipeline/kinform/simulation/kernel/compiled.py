@@ -16,7 +16,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from kinform.simulation.kernel import equations, explicit, forces, layout, loops, masses, motion, signals, vectors
+from kinform.simulation.kernel import (
+    crossings,
+    equations,
+    explicit,
+    forces,
+    layout,
+    loops,
+    masses,
+    motion,
+    signals,
+    vectors,
+)
 
 __all__ = ["compiled", "is_cached"]
 
@@ -37,6 +48,7 @@ _ORDER = (
     masses.solve_cholesky, forces.controlled, forces.drive, forces.push, forces.pace, forces.loads, forces.between,
     loops.line_of, loops.row_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
     equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
+    crossings.alike, crossings.tip, crossings.laid,
     explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
     explicit.stop_reached, explicit.advance,
 )  # fmt: skip
@@ -49,7 +61,7 @@ _ENTRIES = (*_POINTERS, "advance")
 
 
 def _digest() -> str:
-    modules = (layout, vectors, signals, motion, masses, forces, loops, equations, explicit)
+    modules = (layout, vectors, signals, motion, masses, forces, loops, equations, crossings, explicit)
     text = "".join(inspect.getsource(module) for module in modules) + repr(_TYPES)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.simulation.kernel.crossings import laid, tip
 from kinform.simulation.kernel.layout import (
     ACC,
     ATOL,
@@ -18,6 +19,7 @@ from kinform.simulation.kernel.layout import (
     CLOSED,
     COEFFICIENTS,
     COUNTS,
+    CROSSING,
     D_ROW,
     DENSE,
     DONE,
@@ -30,6 +32,7 @@ from kinform.simulation.kernel.layout import (
     KEEP,
     LEAST,
     MARGIN,
+    MARGINS,
     MASSLESS,
     NEAR,
     NEED,
@@ -64,6 +67,8 @@ from kinform.simulation.kernel.types import Counts, Derivative, Ints, Nums, Proj
 
 EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""
+LAYINGS = 4
+"""Times that a step is laid anew to avoid a singular pose."""
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
@@ -129,6 +134,7 @@ def try_step(
         )
         if margin < 0.0:
             return -1.0
+        clock[MARGINS + s] = margin
     third, fifth = 0.0, 0.0
     for i in range(size):
         total, three, five = 0.0, 0.0, 0.0
@@ -252,10 +258,11 @@ def advance(
     slopes, size = work[STAGES], len(y)
     rank = ints[COUNTS][0, RANK]
     if tally[FRESH] == 1:
-        if slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0]) < 0.0:
+        clock[MARGINS] = slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
+        if clock[MARGINS] < 0.0:
             return MASSLESS
         tally[FRESH] = 0
-    spent, growth = 0, GROWTH
+    spent, growth, layings = 0, GROWTH, 0
     while clock[NOW] < clock[END]:
         if tally[NEXT] >= tally[PAUSE]:
             return PAUSED
@@ -263,12 +270,23 @@ def advance(
             return SPENT
         spent += 1
         tally[STEPS] += 1
-        h = min(clock[STEP], clock[END] - clock[NOW])
+        wanted = clock[STEP]
+        h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
         if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:
             return STUCK
         error = try_step(derivative, project, ints, nums, work, clock, tally, y, h)
         if error == -1.0:
             return MASSLESS
+        if rank > 0 and layings < LAYINGS and tip(nums, clock, h):
+            if error > 1.0:
+                # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
+                wanted *= max(0.6, 0.9 * error**-0.125) if error < 1e30 else 0.6
+                clock[STEP] = wanted
+            again = laid(wanted, clock[CROSSING] - clock[NOW])
+            if abs(again - h) > 0.01 * h and clock[NOW] + again < clock[END]:
+                layings += 1
+                continue
+        layings = 0
         if not error < 1.0:
             clock[STEP] = h * (max(0.2, 0.9 * error**-0.125) if error < 1e30 else 0.2)
             growth = 1.0
@@ -283,12 +301,15 @@ def advance(
                 return MASSLESS if gap == -1.0 else OPENED
             continue
         rough, moved = 0.0, 0.0
-        if slope(derivative, project, ints, nums, work, clock, tally, later, slopes[NEW], slopes[12]) < 0.0:
+        margin = slope(derivative, project, ints, nums, work, clock, tally, later, slopes[NEW], slopes[12])
+        if margin < 0.0:
             return MASSLESS
         for i in range(size):
             rough += (slopes[12, i] - slopes[11, i]) ** 2
             moved += (slopes[NEW, i] - slopes[TRIED, i]) ** 2
-        fastest = math.sqrt(rough / moved) if moved > 0.0 else 0.0
+        # What rounding leaves near a singular pose is no decay.
+        real = rough > (10.0 * NOISE / max(clock[LEAST], 1e-6) ** 2) ** 2
+        fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
         tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
         hit, share = -1, 1.0
         due = tally[NEXT] < len(times) and times[tally[NEXT]] <= later
@@ -314,8 +335,12 @@ def advance(
         for i in range(size):
             y[i] = slopes[NEW, i]
             slopes[0, i] = slopes[12, i]
+        clock[MARGINS] = margin
         clock[NOW] = later
         clock[STEP] = h * (min(growth, 0.9 * error**-0.125) if error > 0.0 else growth)
+        if h < wanted and error < 0.4:
+            # Laid shorter than the error called for: the next need not be.
+            clock[STEP] = max(clock[STEP], wanted)
         if fastest * clock[STEP] > EDGE:
             # Within half the region of stability, for the dense output too.
             clock[STEP] = EDGE / fastest

@@ -63,6 +63,8 @@ TRIED, NEW = 16, 17
 
 # clock: times (s) and tolerances; tally: counts; both are rows that the integrator changes.
 NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE = range(13)
+CROSSING, MARGINS, CLOCK = 13, 14, 26
+"""Time of a singular pose ahead; margins at the twelve evaluations of a step; how many numbers."""
 STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT = range(8)
 
 NOISE = 1e-13

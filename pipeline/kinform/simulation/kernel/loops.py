@@ -36,6 +36,9 @@ from kinform.simulation.kernel.layout import (
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
 
+SWAP = 1.5
+"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
+
 __all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of", "row_of"]
 
 
@@ -159,12 +162,24 @@ def gather(ints: Ints, nums: Nums, work: Work) -> None:
 
 
 def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> tuple[float, float]:
-    """Factors the gathered rows in place; the columns after the dependent ones become B.
+    """Factors the gathered rows in place, and reorders them, in the mode too, for stable pivots; the
+    columns after the dependent ones become B. What [GAP] holds by rows is put in their order.
 
     Returns (smallest pivot over the largest, smallest pivot over that of its choice).
     """
     low, high, kept = 1e300, 0.0, 1.0
     for k in range(rank):
+        best = k
+        for i in range(k + 1, rank):
+            if abs(rows[i, k]) > SWAP * abs(rows[best, k]):
+                best = i
+        if best != k:
+            # The same rows in an order that suits the pose, kept for the next: else a chain of loops
+            # multiplies the roundings of each.
+            for j in range(n):
+                rows[k, j], rows[best, j] = rows[best, j], rows[k, j]
+            mode[0, k], mode[0, best] = mode[0, best], mode[0, k]
+            vectors[GAP, k], vectors[GAP, best] = vectors[GAP, best], vectors[GAP, k]
         pivot = rows[k, k]
         size = abs(pivot) * scale[mode[1, k], 0]
         low, high = min(low, size), max(high, size)
