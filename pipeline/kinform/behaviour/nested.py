@@ -7,7 +7,7 @@ variables that sum to zero, whatever the levels between. Bodies that meet in a n
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from kinform.behaviour.components import (
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.kinematics.graph import UnionFind
 
-__all__ = ["flat", "nest", "placed"]
+__all__ = ["arranged", "flat", "nest", "placed"]
 
 Array = NDArray[np.float64]
 Leaf = tuple[str, str]
@@ -105,6 +105,17 @@ def _welded(system: System) -> System:
             nodes.append(Node(((body.name, "frame"), (name, "b")), node.size))
         nodes.append(Node(tuple(ports), node.size))
     return System(tuple(components), tuple(nodes), system.name, system.subject, system.exposed)
+
+
+def arranged(system: System, names: Sequence[str]) -> System:
+    """The flat system with its components in the order of their names; nodes and ports as they are met in that order."""
+    components = tuple(system.component(name) for name in names)
+    nodes: dict[Node, list[Leaf]] = {}
+    for component in components:
+        for port in component.ports:
+            nodes.setdefault(system.node(component.name, port.name), []).append((component.name, port.name))
+    made = tuple(Node(tuple(ports), node.size) for node, ports in nodes.items())
+    return System(components, made, system.name, system.subject, system.exposed, system.prefixed)
 
 
 def nest(system: System, homes: Mapping[str, str]) -> System:

@@ -21,7 +21,7 @@ from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solve import Course, refuse, solve
 from kinform.simulation.start import stated_values
 
-__all__ = ["simulate"]
+__all__ = ["modelled", "simulate"]
 
 Progress = Callable[[int, int], None]
 Say = Callable[[str], None]
@@ -36,19 +36,21 @@ def simulate(
     progress: Progress | None = None,
     settings: SolverSettings | None = None,
     say: Say | None = None,
+    behaviour: Behaviour | None = None,
 ) -> Simulation:
     """Poses, joint values, efforts and energy over time, SI and radians.
 
     `level` goes before that of the manifest; with neither the highest that is known is taken. What
     cannot be simulated is refused with the reasons in `failures`, and a run that cannot go on keeps
-    what it has; neither raises. `say` is told what takes long besides. ValueError for a level that does not exist.
+    what it has; neither raises. `say` is told what takes long besides; `behaviour` is what `modelled` made of the
+    same values, where that is known already. ValueError for a level that does not exist.
     """
     asked = level or (assembly.simulation.level if assembly.simulation else None)
     if asked is not None and asked not in LEVELS:
         raise ValueError(f'level "{asked}": expected one of {", ".join(LEVELS)}')
     if assembly.simulation is None and level is None and not assembly.function.drives:
         return blank("not requested", "there is neither [simulation] nor a drive")
-    model = _model(assembly, kinematics, mass, asked)
+    model = _model(assembly, kinematics, mass, asked, behaviour)
     if isinstance(model, Simulation):
         return model
     chosen = settings or replace(SolverSettings(), free=assembly.tolerances.free)
@@ -66,26 +68,44 @@ class _Model:
     notes: tuple[str, ...]
 
 
+def modelled(
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, level: str | None = None
+) -> Behaviour:
+    """The port model that `simulate` solves at that level, whatever is wrong with it."""
+    asked = level or (assembly.simulation.level if assembly.simulation else None)
+    return build(assembly, _seen(assembly, kinematics, asked), mass, gears=_geared(assembly, asked))
+
+
+def _seen(assembly: Assembly, kinematics: Kinematics, asked: str | None) -> Kinematics:
+    """The joints that are simulated: those of geometry, or of the function where that is asked for."""
+    if asked != "functional":
+        return kinematics
+    from kinform.kinematics import functional
+
+    return functional(assembly)
+
+
+def _geared(assembly: Assembly, asked: str | None) -> bool:
+    return asked == "functional" or all(part.mesh is None for part in assembly.parts)
+
+
 def _model(
-    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, asked: str | None
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, asked: str | None, made: Behaviour | None
 ) -> _Model | Simulation:
     """The model at the level asked for or known, or the refusal."""
-    formless = all(part.mesh is None for part in assembly.parts)
-    gears = formless or asked == "functional"
-    if asked == "functional":
-        from kinform.kinematics import functional
-
-        kinematics = functional(assembly)
+    gears = _geared(assembly, asked)
+    kinematics = _seen(assembly, kinematics, asked)
     if gears and not kinematics.joints:
         return refuse(
             "nothing to simulate", (("[function]", "it states no joints, and there are no meshes to find them in"),)
         )
     if sum(body.ground for body in kinematics.bodies) != 1:
         return refuse("there is no ground", (("ground", "not exactly one body is the ground"),))
-    behaviour = build(assembly, kinematics, mass, gears=gears)
+    behaviour = build(assembly, kinematics, mass, gears=gears) if made is None else made
     if behaviour.failures:
         return refuse("the model is not complete", behaviour.failures)
     mechanism, adrift = assemble(behaviour.system)
+    formless = all(part.mesh is None for part in assembly.parts)
     choice: Choice = choose(asked, behaviour, mechanism, adrift, formless)
     if choice.failures:
         return refuse(f"the {asked} level needs more than is known", choice.failures)
