@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from designs import difference
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from designs import difference
 
 from kinform.behaviour import Component, Constant, Model, Sine, System, count, counts, flat, nest, placed
 from kinform.simulation import Course, simulate_system

@@ -194,8 +194,8 @@ def signals() -> st.SearchStrategy[Any]:
 def behaviours(draw: Any) -> Behaviour:
     """Port models with some of all kinds of components, under any names, in systems of any depth."""
     names = iter(draw(st.lists(texts, min_size=30, max_size=30, unique=True)))
-    number = lambda: draw(reals)  # noqa: E731
-    vector = lambda: draw(array(3))  # noqa: E731
+    number = lambda: draw(reals)
+    vector = lambda: draw(array(3))
     model, base, body, last = Model(), next(names), next(names), next(names)
     model.ground(base)
     model.body(body, draw(st.none() | reals), vector(), draw(array(3, 3)))

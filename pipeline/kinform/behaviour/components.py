@@ -200,7 +200,9 @@ class System(Component):
             raise ValueError(f"port {name} of {component} is in no node")
         for name, inner in self.exposed:
             if inner not in self._node_of:
-                raise ValueError(f"the exposed port {name} leads to port {inner[1]} of {inner[0]}, which does not exist")
+                raise ValueError(
+                    f"the exposed port {name} leads to port {inner[1]} of {inner[0]}, which does not exist"
+                )
 
     @property
     def ports(self) -> tuple[Port, ...]:

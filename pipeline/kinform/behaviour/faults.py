@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -141,5 +141,5 @@ def _supplied(system: System, motor: DcMotor) -> Iterator[str]:
         yield f'its controller "{supply.subject}" reads another shaft than its own, which is not simulated'
 
 
-def _listed(met: list[Component], what: str) -> str:
+def _listed(met: Sequence[Component], what: str) -> str:
     return f"no {what}" if not met else f"{len(met)} ({', '.join(c.subject for c in met)})"

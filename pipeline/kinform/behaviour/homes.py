@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from kinform.behaviour.components import Component, Gear, Ground, JointComponent, RigidBody, System
+from kinform.behaviour.components import Component, Ground, JointComponent, RigidBody, System
 
 __all__ = ["homes"]
 

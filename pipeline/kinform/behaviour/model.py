@@ -85,7 +85,9 @@ class Model:
         if port in fits and not isinstance(self.components[name], JointComponent):
             return name, port
         if len(fits) != 1:
-            raise ValueError(f'which port of "{name}" is meant for "{port}"? It has {", ".join(fits) or "none"} so wide')
+            raise ValueError(
+                f'which port of "{name}" is meant for "{port}"? It has {", ".join(fits) or "none"} so wide'
+            )
         return name, fits[0]
 
     def join(self, first: tuple[str, str], second: Where) -> None:
@@ -202,8 +204,8 @@ class Model:
         rest: float = 0.0,
     ) -> None:
         """A spring and damper between a point of body `a` and one of body `b`: N/m, N·s/m, m."""
-        ends = (np.asarray(point, dtype=np.float64) for point in points)
-        self.add(SpringDamper(name, name, *ends, stiffness, damping, rest), a=a, b=b)
+        point, other = (np.asarray(end, dtype=np.float64) for end in points)
+        self.add(SpringDamper(name, name, point, other, stiffness, damping, rest), a=a, b=b)
 
     def load(
         self,
@@ -216,8 +218,8 @@ class Model:
         turning: bool = False,
     ) -> None:
         """A force (N) and a torque (N·m) on a body at a point; `turning`: they turn with the body."""
-        values = (np.asarray(value, dtype=np.float64) for value in (force, torque, point))
-        self.add(LoadComponent(name, name, *values, turning), frame=body)
+        push, twist, at = (np.asarray(value, dtype=np.float64) for value in (force, torque, point))
+        self.add(LoadComponent(name, name, push, twist, at, turning), frame=body)
 
 
 def _vector(value: ArrayLike | None) -> Array | None:

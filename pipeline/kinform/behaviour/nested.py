@@ -44,9 +44,7 @@ def flat(system: System) -> System:
     return _welded(found)
 
 
-def _opened(
-    system: System, names: str, subjects: str
-) -> tuple[list[Component], list[Node], list[tuple[str, Leaf]]]:
+def _opened(system: System, names: str, subjects: str) -> tuple[list[Component], list[Node], list[tuple[str, Leaf]]]:
     """Components, nodes and exposed ports of a system with its levels taken out, called with these prefixes."""
     components: list[Component] = []
     groups: list[list[Leaf]] = []
@@ -174,11 +172,11 @@ def placed(system: System, X_WS: Array) -> System:
     """The system moved by X_WS (4, 4): a motor written once at the origin, put where the device has it."""
     turn, shift = np.asarray(X_WS, dtype=np.float64)[:3, :3], np.asarray(X_WS, dtype=np.float64)[:3, 3]
 
-    def direction(vector: Array | None) -> Array | None:
-        return None if vector is None else np.asarray(turn @ np.asarray(vector, dtype=np.float64))
+    def direction(vector: Array) -> Array:
+        return np.asarray(turn @ np.asarray(vector, dtype=np.float64))
 
-    def point(vector: Array | None) -> Array | None:
-        return None if vector is None else np.asarray(turn @ np.asarray(vector, dtype=np.float64) + shift)
+    def point(vector: Array) -> Array:
+        return direction(vector) + shift
 
     def moved(component: Component) -> Component:
         if isinstance(component, System):
@@ -188,7 +186,8 @@ def placed(system: System, X_WS: Array) -> System:
             return replace(component, centre_of_mass=point(component.centre_of_mass), inertia=inertia)
         if isinstance(component, JointComponent):
             g = component.geometry
-            geometry = JointGeometry(direction(g.axis), point(g.point), direction(g.axis2), g.pitch)
+            axes = [None if axis is None else direction(axis) for axis in (g.axis, g.axis2)]
+            geometry = JointGeometry(axes[0], None if g.point is None else point(g.point), axes[1], g.pitch)
             return replace(component, geometry=geometry)
         if isinstance(component, LoadComponent):
             force, torque = direction(component.force), direction(component.torque)

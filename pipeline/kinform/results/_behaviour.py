@@ -170,9 +170,11 @@ class _Rows:
 def _law(signal: Signal) -> dict[str, Any]:
     for name, (cls, fields) in _SIGNALS.items():
         if type(signal) is cls:
-            return {column.field: None for column in _LAWS} | {field: getattr(signal, field) for field in fields} | {
-                "law": name
-            }
+            return (
+                {column.field: None for column in _LAWS}
+                | {field: getattr(signal, field) for field in fields}
+                | {"law": name}
+            )
     raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
 
 
