@@ -316,6 +316,10 @@ def _simulation(design: Design) -> dict[str, Any]:
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
         "drives": [_fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
+        "undetermined": {
+            name: [label for label, flag in zip(_COMPONENTS, flags, strict=True) if flag]
+            for name, flags in zip(run.joint_names, run.undetermined, strict=False)
+        },
         "assumptions": run.assumptions,
         "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
         "ranges": None if run.ranges is None else [_range(item) for item in run.ranges],
@@ -324,6 +328,9 @@ def _simulation(design: Design) -> dict[str, Any]:
         else [_fields(item, "parts", "time", "place", "depth") for item in run.collisions],
         "collisions_unknown": [{"parts": [a, b], "reason": why} for a, b, why in run.uncollided],
     }
+
+
+_COMPONENTS = ("tau_x", "tau_y", "tau_z", "f_x", "f_y", "f_z")
 
 
 def _range(item: JointRange) -> dict[str, Any]:
