@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -63,6 +64,7 @@ def _values(component: Component) -> Iterator[str]:
             yield from _numbers(value, "its ")
         elif isinstance(value, _SIGNALS):
             yield from _numbers(value, "its law: ")
+            yield from _rows(value)
         elif isinstance(value, float | int | np.ndarray) and not isinstance(value, bool):
             yield from _number(field.name, value, "its ")
     if isinstance(component, EndStop) and component.lower > component.upper:
@@ -84,6 +86,15 @@ def _geometry(joint: JointComponent) -> Iterator[str]:
             yield f"its {name} is not of length 1"
 
 
+def _rows(signal: object) -> Iterator[str]:
+    if not isinstance(signal, Table):
+        return
+    if len(signal.knots) < 2 or len(signal.knots) != len(signal.levels):
+        yield f"its law: the table has {len(signal.knots)} times and {len(signal.levels)} levels, at least two each"
+    elif any(later <= earlier for earlier, later in pairwise(signal.knots)):
+        yield "its law: the times of its table do not increase"
+
+
 def _numbers(record: object, whose: str) -> Iterator[str]:
     for field in dataclasses.fields(record):  # type: ignore[arg-type]
         value = getattr(record, field.name)
@@ -103,6 +114,10 @@ def _meetings(system: System, component: Component) -> Iterator[str]:
     if isinstance(component, JointComponent | SpringDamper):
         for port in ("a", "b"):
             yield from _one_body(system, component, port)
+    if isinstance(component, JointComponent) and component.kind.rates:
+        others = [c for c, _ in system.at(component.name, "shaft") if isinstance(c, JointComponent)]
+        if others:
+            yield f"its shaft is joined with that of {_listed(others, 'joint')}: a gear of ratio 1 does that"
     if isinstance(component, LoadComponent):
         yield from _one_body(system, component, "frame")
     if isinstance(component, Gear):
@@ -121,14 +136,13 @@ def _meetings(system: System, component: Component) -> Iterator[str]:
 def _one_body(system: System, component: Component, port: str) -> Iterator[str]:
     met = [c for c, _ in system.at(component.name, port) if isinstance(c, Ground | RigidBody)]
     if len(met) != 1:
-        yield f"its port {port} meets {_listed(met, 'body')}: it needs one"
+        yield f"its port {port} meets {_listed(met, 'body')}: it needs one body"
 
 
 def _one_shaft(system: System, component: Component, port: str) -> Iterator[str]:
     met = [c for c, _ in system.at(component.name, port) if isinstance(c, JointComponent)]
     if len(met) != 1:
-        more = "" if not met else ", of which a gear of ratio 1 would make one"
-        yield f"its port {port} is on {_listed(met, 'joint')}: it needs one{more}"
+        yield f"its port {port} is on {_listed(met, 'joint')}: it needs one"
 
 
 def _supplied(system: System, motor: DcMotor) -> Iterator[str]:
@@ -142,4 +156,4 @@ def _supplied(system: System, motor: DcMotor) -> Iterator[str]:
 
 
 def _listed(met: Sequence[Component], what: str) -> str:
-    return f"no {what}" if not met else f"{len(met)} ({', '.join(c.subject for c in met)})"
+    return f"no {what}" if not met else f"{', '.join(c.subject for c in met)}"

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from kinform.kinematics.carrying import missing, wrenches_at
 from kinform.kinematics.releases import ContactRows, stated
 from kinform.kinematics.screws import Frame
-from kinform.model.contacts import Contacts
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
@@ -81,9 +80,7 @@ def lifts(design: Design) -> tuple[tuple[Lift, ...], tuple[str, ...], tuple[str,
     open_ = tuple(j.name for j in doubtful if run.undetermined[run.joint_names.index(j.name)].any())
     rows = ContactRows(kinematics.matrix, kinematics.bodies, contacts.patches)
     greatest = float(np.linalg.norm(run.F_B[..., 3:], axis=2).max(initial=0.0))
-    found = [
-        _first_lift(design, rows, joint, NOTHING * greatest) for joint in doubtful if joint.name not in open_
-    ]
+    found = [_first_lift(design, rows, joint, NOTHING * greatest) for joint in doubtful if joint.name not in open_]
     return tuple(lift for lift in found if lift is not None), open_, aside
 
 

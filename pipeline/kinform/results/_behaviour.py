@@ -205,8 +205,9 @@ def read(group: h5py.Group) -> Behaviour:
     order = sorted(range(len(rows)), key=lambda k: rows[k]["flat"])
     found = flat(made)
     names = _flat_names(systems, rows)
+    welds = [component.name for component in found.components if component.name not in set(names)]
     return Behaviour(
-        arranged(found, [names[k] for k in order]),
+        arranged(found, [*(names[k] for k in order), *welds]),
         made,
         tuple(_reasons(group, "failures")),
         tuple(_reasons(group, "forces_missing")),
