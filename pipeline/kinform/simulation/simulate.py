@@ -14,7 +14,7 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.simulation.assemble import assemble
-from kinform.simulation.levels import LEVELS, Choice, choose, notes_of_joints, notes_of_level
+from kinform.simulation.levels import LEVELS, Choice, choose, notes_of_drives, notes_of_joints, notes_of_level
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.record import blank
 from kinform.simulation.settings import SolverSettings
@@ -113,6 +113,7 @@ def _model(
         *_of_request(assembly),
         *choice.notes,
         *notes_of_joints(kinematics),
+        *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
         *notes_of_level(assembly, behaviour, choice.level, adrift, gears),
     )
     return _Model(kinematics, behaviour, mechanism, choice.level, notes)
@@ -133,12 +134,18 @@ def _run(
 
 
 def _of_request(assembly: Assembly) -> tuple[str, ...]:
-    """The values that hold where the manifest has no [simulation]."""
-    if assembly.simulation is not None:
-        return ()
-    default = SimulationRequest()
+    """The values that hold where the manifest states none."""
+    request, default = assembly.simulation, SimulationRequest()
     gravity = ", ".join(f"{x:g}" for x in default.gravity)
-    return (
-        f"there is no [simulation]: duration {default.duration:g} s, step {default.step:g} s, "
-        f"gravity ({gravity}) m/s², all joints at rest at the pose of the meshes",
-    )
+    values = {
+        "duration": f"duration {default.duration:g} s",
+        "step": f"step {default.step:g} s",
+        "gravity": f"gravity ({gravity}) m/s²",
+    }
+    if request is None:
+        return (
+            f"there is no [simulation]: {', '.join(values.values())}, all joints at rest at the pose of the meshes",
+        )
+    if not request.assumed:
+        return ()
+    return (f"[simulation] does not state: {', '.join(values[name] for name in values if name in request.assumed)}",)

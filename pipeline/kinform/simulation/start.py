@@ -125,7 +125,23 @@ def begin(
     if follower.open_rates(0.0) > settings.open * max(1.0, float(np.abs(v).max(initial=0.0))):
         why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
         return Start(q, v, notes, (_named(mechanism, pace.v), f"initial velocities: {why}"))
+    if coasting:
+        notes += _at_rest(mechanism, stated, led, q, v)
     return Start(q, v, notes)
+
+
+def _at_rest(mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q: Array, v: Array) -> tuple[str, ...]:
+    """What begins at rest at the pose of the meshes because nobody said otherwise."""
+    told = led | {value.v for value in stated}
+    still = [
+        slot.name
+        for slot in mechanism.slots
+        if slot.v.stop > slot.v.start
+        and slot.v.start not in told
+        and not v[slot.v].any()
+        and np.array_equal(q[slot.q], mechanism.start[slot.q])
+    ]
+    return (f"no initial value is stated, so at rest at the pose of the meshes: {', '.join(still)}",) if still else ()
 
 
 def _named(mechanism: Mechanism, rates: NDArray[np.int64]) -> str:
