@@ -22,7 +22,7 @@ from kinform.simulation.integrate import run_dynamic
 from kinform.simulation.kinematic import resting, run_kinematic
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.reactions import reactions
-from kinform.simulation.record import Record, blank, publish
+from kinform.simulation.record import Record, blank, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
 
@@ -156,6 +156,7 @@ def _with_forces(
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
     kinetic, potential = dynamics.energy(record.q, states)
     found = reactions(dynamics, states, record.effort, settings.free)
+    balance = imbalance(dynamics, states, found, record.effort)
     energy = np.column_stack([kinetic, potential, record.work])
     return replace(
         run,
@@ -164,7 +165,9 @@ def _with_forces(
         F_A=-found.on_second,
         F_B=found.on_second,
         undetermined=found.undetermined,
-        balance=imbalance(dynamics, states, found, record.effort),
+        balance=balance.greatest,
+        balance_bodies=balance.bodies,
+        balance_shafts=spread(dynamics.mechanism, balance.shafts),
         drives=uses(dynamics, record),
     )
 
