@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from kinform.errors import StageError
 from kinform.ledger import Ledger
@@ -20,6 +20,9 @@ from kinform.model.fingerprints import Fingerprints
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kinform.behaviour import Behaviour
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
@@ -145,13 +148,22 @@ def simulate(
     stated = bool(function.requirements) or any(joint.range is not None for joint in function.joints)
     wanted = stated if ranges is None else ranges
 
+    made: list[Behaviour] = []
+
     def run(view: Assembly) -> Any:
         from kinform import simulation
 
-        run = simulation.simulate(view, kinematics, masses, level=level, progress=progress, say=say)
+        made.append(simulation.modelled(view, kinematics, masses, level=level))
+        run = simulation.simulate(
+            view, kinematics, masses, level=level, progress=progress, say=say, behaviour=made[-1]
+        )  # fmt: skip
         return _collided(view, design, kinematics, run, wanted)
 
-    return _advance("simulation", design, run, ledger, level, None if wanted == stated else wanted)
+    done = _advance("simulation", design, run, ledger, level, None if wanted == stated else wanted)
+    if made:
+        return replace(done, behaviour=made[-1])
+    kept = ledger.previous.behaviour if ledger is not None and ledger.previous is not None else None
+    return replace(done, behaviour=kept)
 
 
 def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simulation, ranges: bool) -> Simulation:
@@ -205,6 +217,8 @@ def _without(design: Design, stage: str) -> Design:
     if stage == "contacts":
         stages.pop("surfaces", None)
         marks, design = replace(marks, meshes={}, pairs={}), replace(design, surfaces={})
+    if "simulation" in later:
+        design = replace(design, behaviour=None)
     lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}
     cleared: dict[str, Any] = {_FIELDS[name]: None for name in later}
     return replace(design, **cleared, fingerprints=replace(marks, stages=stages, lineage=lineage))

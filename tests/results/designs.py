@@ -13,6 +13,8 @@ import numpy as np
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from kinform.behaviour import Behaviour, Controller, Model, nest
+from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
@@ -54,7 +56,7 @@ def lists(item: st.SearchStrategy[Any], size: int = 3) -> st.SearchStrategy[Any]
 
 def of(cls: Any, **given: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Records of the class; fields that are not given are drawn by their annotation."""
-    hints = typing.get_type_hints(cls)
+    hints = typing.get_type_hints(cls, localns={"Behaviour": Behaviour})
     fields = [field.name for field in dataclasses.fields(cls)]
     return st.builds(cls, **{name: given[name] if name in given else by_type(hints[name]) for name in fields})
 
@@ -180,9 +182,53 @@ def simulations(draw: Any) -> Simulation:
     return draw(of(Simulation, **named, **arrays, **values, **monitors))
 
 
+def signals() -> st.SearchStrategy[Any]:
+    """Laws of time."""
+    tables = st.lists(st.tuples(reals, reals), min_size=1, max_size=3).map(
+        lambda rows: Table(tuple(t for t, _ in rows), tuple(x for _, x in rows))
+    )
+    return st.builds(Constant, reals) | st.builds(Ramp, reals, reals) | st.builds(Sine, *[reals] * 4) | tables
+
+
+@st.composite
+def behaviours(draw: Any) -> Behaviour:
+    """Port models with some of all kinds of components, under any names, in systems of any depth."""
+    names = iter(draw(st.lists(texts, min_size=30, max_size=30, unique=True)))
+    number = lambda: draw(reals)
+    vector = lambda: draw(array(3))
+    model, base, body, last = Model(), next(names), next(names), next(names)
+    model.ground(base)
+    model.body(body, draw(st.none() | reals), vector(), draw(array(3, 3)))
+    model.body(last, number(), vector(), draw(array(3, 3)))
+    axes = {"axis": draw(st.sampled_from([(0, 0, 1), (0, 1, 0)])), "axis2": (1, 0, 0)}
+    joint, other = next(names), next(names)
+    model.joint(joint, base, body, draw(st.sampled_from(["revolute", "prismatic"])), **axes, point=vector())
+    model.joint(other, body, last, "screw", **axes, point=vector(), pitch=number())
+    kinds = ["fixed", "cylindrical", "spherical", "planar", "universal"]
+    model.joint(next(names), base, last, draw(st.sampled_from(kinds)), **axes, point=vector(), pitch=None)
+    motor, gains = next(names), Controller(number(), number(), number(), number())
+    model.motor(motor, joint, number(), number(), number(), number())
+    extra = [
+        lambda n: model.motion(n, other, draw(signals())), lambda n: model.effort(n, other, draw(signals())),
+        lambda n: model.spring(n, other, number(), number()), lambda n: model.damper(n, other, number()),
+        lambda n: model.stop(n, other, number(), number()), lambda n: model.gear(n, joint, other, number()),
+        lambda n: model.servo(n, other, draw(signals()), gains), lambda n: model.voltage(n, motor, draw(signals())),
+        lambda n: model.controller(n, motor, joint, draw(signals()), gains),
+        lambda n: model.spring_between(n, base, last, (vector(), vector()), number(), number(), number()),
+        lambda n: model.load(n, body, vector(), vector(), vector(), turning=draw(st.booleans())),
+    ]  # fmt: skip
+    for k in draw(st.lists(st.sampled_from(range(len(extra))), max_size=12)):
+        extra[k](next(names))
+    system = model.system()
+    paths = st.sampled_from(["", "arm", "arm/motor", "leg", "leg/motor/core"])
+    homes = {component.name: draw(paths) for component in system.components}
+    reasons = lists(st.tuples(texts, texts))
+    return Behaviour(system, nest(system, homes), draw(reasons), draw(reasons))
+
+
 SPECIAL: dict[Any, Any] = {
     Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
-    Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
+    Behaviour: behaviours, Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from kinform import results
 from kinform.model.design import Design
 
 GROUPS = {
-    "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "simulation", "findings",
+    "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation", "findings",
 }  # fmt: skip
 
 

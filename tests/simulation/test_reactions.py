@@ -7,7 +7,7 @@ import pytest
 from devices import Z, body, device, drive, initial, joint, rod
 from portmodels import DOWN, Model, bricard, four_bars
 
-from kinform.behaviour import SpringDamper
+from kinform.behaviour import Gear, Spring, SpringDamper
 from kinform.model.function import Law, Load
 from kinform.simulation import Course, simulate, simulate_system
 
@@ -109,3 +109,19 @@ def test_loads_and_springs_between_bodies_are_carried_by_the_joints():
     assert run.balance.max() < 1e-12
     # The force across the plane is the hinge's to hold: on the base, the second body, as it is.
     assert wrench(run, "arm~base")[5] == pytest.approx(7.0 - 9.81, abs=1e-9)
+
+
+def test_the_balance_of_every_body_and_shaft_is_kept_gears_included():
+    model = Model()
+    model.rod("one", (0, 0, 0), (1, 0, 0))
+    model.rod("two", (2, 0, 0), (3, 0.5, 0))
+    model.joint("a", "base", "one")
+    model.joint("b", "base", "two", point=(2, 0, 0))
+    model.add(Gear("gear", "gear", 3.0), a="shaft a", b="shaft b")
+    model.on("a", Spring("spring", "spring", 5.0, 0.2))
+    run = simulate_system(model.system(), Course(1.0, 0.1, DOWN))
+    assert run.balance_bodies.shape == (11, 3)
+    assert run.balance_shafts.shape == run.joint_position.shape
+    errors = np.concatenate([run.balance_bodies, np.abs(run.balance_shafts)], axis=1)
+    np.testing.assert_array_equal(errors.max(axis=1), run.balance)
+    assert 0.0 < run.balance.max() < 1e-11

@@ -35,6 +35,7 @@ class Topic(StrEnum):
     joints = "joints"
     mobility = "mobility"
     mass = "mass"
+    behaviour = "behaviour"
     simulation = "simulation"
     findings = "findings"
 

@@ -39,6 +39,7 @@ def render(design: Design) -> RenderableType:
         drawn = series.render(run, lengths)
         if drawn is not None:
             items += ["", drawn]
+    items += _drives(run) + _open(run)
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += _ranges(run, lengths) + _collisions(run, lengths)
@@ -58,6 +59,35 @@ def headline(run: Simulation) -> str:
     level = f", {run.level} level" if run.level else ""
     extent = f"{number(float(run.time[-1]))} s in {count(len(run.time), 'sample')}"
     return f"Simulation {run.status}{level}, {extent}{why}"
+
+
+def _drives(run: Simulation) -> list[RenderableType]:
+    """What each drive gave; for a prescribed motion that is what a motor must be able to do."""
+    if not run.drives:
+        return []
+    slides = dict(zip(run.joint_names, run.joint_types, strict=True))
+    columns = ("peak", "RMS", "peak power W", "work J")
+    rows = Rows("drive on", "kind", *columns, title="drives", right=columns)
+    for use in run.drives:
+        unit = "N" if slides.get(use.joint) == "prismatic" else "N·m"
+        efforts = (f"{number(value)} {unit}" for value in (use.peak, use.rms))
+        rows.add(use.joint, use.kind.replace("_", " "), *efforts, number(use.peak_power), number(use.work))
+    return [rows]
+
+
+def _open(run: Simulation) -> list[RenderableType]:
+    """Which components of the reactions redundancy leaves open."""
+    if len(run.undetermined) != len(run.joint_names):
+        return []
+    out: list[RenderableType] = []
+    for name, flags in zip(run.joint_names, run.undetermined, strict=True):
+        loose = [label for label, flag in zip(_COMPONENTS, flags, strict=True) if flag]
+        if loose:
+            out.append(f"not determined, redundancy leaves it open: {', '.join(loose)} of {name}")
+    return out
+
+
+_COMPONENTS = ("τx", "τy", "τz", "Fx", "Fy", "Fz")
 
 
 def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:

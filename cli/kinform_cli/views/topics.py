@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import ModuleType
 
 from kinform.model.design import Design
-from kinform_cli.views import assembly, contacts, findings, joints, mass, mobility, simulation
+from kinform_cli.views import assembly, behaviour, contacts, findings, joints, mass, mobility, simulation
 
 __all__ = ["TOPICS", "Topic"]
 
@@ -30,6 +30,7 @@ TOPICS = {
     "joints": Topic(joints, "joints", "kinematics"),
     "mobility": Topic(mobility, "joints", "kinematics"),
     "mass": Topic(mass, "mass", "mass"),
+    "behaviour": Topic(behaviour, "simulate", "behaviour"),
     "simulation": Topic(simulation, "simulate", "simulation"),
     "findings": Topic(findings, "check", "report"),
 }

@@ -33,8 +33,11 @@ from kinform.behaviour.components import (
     VoltageController,
     VoltageSource,
 )
-from kinform.behaviour.count import Count, count
-from kinform.behaviour.signals import Constant, Signal, signal, smooth
+from kinform.behaviour.count import Count, count, counts
+from kinform.behaviour.faults import faults
+from kinform.behaviour.model import Model
+from kinform.behaviour.nested import flat, nest, placed
+from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Table, signal, smooth
 
 __all__ = [
     "CODE_VERSION",
@@ -52,22 +55,31 @@ __all__ = [
     "Ground",
     "JointComponent",
     "LoadComponent",
+    "Model",
     "MotionDrive",
     "Node",
     "Port",
+    "Ramp",
     "RigidBody",
     "Servo",
     "Signal",
+    "Sine",
     "Spring",
     "SpringDamper",
     "System",
+    "Table",
     "VoltageController",
     "VoltageSource",
     "build",
     "count",
+    "counts",
+    "faults",
+    "flat",
+    "nest",
     "one_freedom",
+    "placed",
     "signal",
     "smooth",
 ]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3

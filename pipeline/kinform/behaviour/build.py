@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from kinform.behaviour.acting import make_drive, make_gear, make_load
 from kinform.behaviour.components import Component, Ground, JointComponent, Node, RigidBody, System
+from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.nested import nest
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
@@ -25,6 +27,9 @@ class Behaviour:
     """The port model of a design, and what could not be made part of it."""
 
     system: System
+    """Without levels, as the solver reads it."""
+    nested: System
+    """The same with a system for each sub-assembly; without its levels it is `system` in another order."""
     failures: tuple[tuple[str, str], ...]
     """(subject, why) of joints and drives without which the model is not that of the design."""
     forces_missing: tuple[tuple[str, str], ...]
@@ -103,7 +108,10 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
             builder.add(component_load, frame=f"body {body_name}")
         else:
             forces_missing.append((load.part, why))
-    return Behaviour(builder.system(), tuple(failures), tuple(forces_missing))
+    system = builder.system()
+    parts = {str(body.name): body.parts for body in kinematics.bodies}
+    nested = nest(system, homes(system, parts))
+    return Behaviour(system, nested, tuple(failures), tuple(forces_missing))
 
 
 def _joint(joint: Joint) -> tuple[JointComponent | None, str]:

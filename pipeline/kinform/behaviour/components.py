@@ -146,19 +146,46 @@ class SpringDamper(Component):
         return 2 * FRAME
 
 
-@dataclass(frozen=True, eq=False)
-class System:
-    """Components and the nodes between them; every port is in exactly one node."""
+@dataclass(frozen=True, eq=False, init=False)
+class System(Component):
+    """Components and the nodes between them; every port is in exactly one node.
+
+    A component may be a system itself, to any depth: from outside it is a component with the ports that it
+    exposes. `flat` (module `nested`) is the same network without levels, which the solver and the exports read.
+    """
 
     components: tuple[Component, ...]
     nodes: tuple[Node, ...]
+    exposed: tuple[tuple[str, tuple[str, str]], ...]
+    """(name of a port of the system, (component, port) inside whose node it is)."""
+    prefixed: bool
+    """Whether names inside get the system's own in front where levels are left out; False where names are unique
+    in the whole model already, as those of sub-assemblies are."""
     _by_name: dict[str, Component] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        by_name = {component.name: component for component in self.components}
-        if len(by_name) != len(self.components):
-            raise ValueError("two components of a system have the same name")
-        object.__setattr__(self, "_by_name", by_name)
+    def __init__(
+        self,
+        components: tuple[Component, ...],
+        nodes: tuple[Node, ...],
+        name: str = "",
+        subject: str = "",
+        exposed: tuple[tuple[str, tuple[str, str]], ...] = (),
+        prefixed: bool = True,
+    ) -> None:
+        """Raises ValueError for names that are taken twice, and for ports in no node or in two."""
+        by_name = {component.name: component for component in components}
+        given = {
+            "name": name, "subject": subject or name, "components": components, "nodes": nodes, "exposed": exposed,
+            "prefixed": prefixed, "_by_name": by_name,
+        }  # fmt: skip
+        for key, value in given.items():
+            object.__setattr__(self, key, value)
+        if len(by_name) != len(components):
+            names = [component.name for component in components]
+            twice = min(name for name in by_name if names.count(name) > 1)
+            raise ValueError(f'two components of a system have the same name: "{twice}"')
+        if len({port for port, _ in exposed}) != len(exposed):
+            raise ValueError(f'the system "{name}" exposes two ports of the same name')
         self._check_ports()
 
     def _check_ports(self) -> None:
@@ -167,10 +194,32 @@ class System:
         for node in self.nodes:
             for port in node.ports:
                 if sizes.pop(port, None) != node.size:
-                    raise ValueError(f"port {port[1]} of {port[0]} is joined twice, or does not fit")
+                    raise ValueError(f"port {port[1]} of {port[0]} is joined twice, does not exist, or does not fit")
         if sizes:
             component, name = min(sizes)
             raise ValueError(f"port {name} of {component} is in no node")
+        for name, inner in self.exposed:
+            if inner not in self._node_of:
+                raise ValueError(
+                    f"the exposed port {name} leads to port {inner[1]} of {inner[0]}, which does not exist"
+                )
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """What it exposes."""
+        return tuple(Port(name, self._node_of[inner].size) for name, inner in self.exposed)
+
+    @property
+    def equations(self) -> int:
+        """What is left between its ports of its equations, once those found the unknowns inside."""
+        inside = sum(port.size for c in self.components for port in c.ports)
+        outside = sum(port.size for port in self.ports)
+        return sum(c.equations for c in self.components) + inside + outside - 2 * inside
+
+    @property
+    def systems(self) -> tuple[System, ...]:
+        """Systems inside, in order."""
+        return tuple(c for c in self.components if isinstance(c, System))
 
     @cached_property
     def _node_of(self) -> dict[tuple[str, str], Node]:

@@ -19,7 +19,7 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
-__all__ = ["drive_alone", "preserved"]
+__all__ = ["drive_alone", "guide", "joint_twist", "preserved"]
 
 Array = NDArray[np.float64]
 Pair = tuple[PartName, PartName]
@@ -55,7 +55,7 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     """The range of a joint with the parts that rest and those that move (the side of its second body)."""
     twist = joint_twist(joint)
     candidates = list(_candidates(shapes, twist, still, moving))
-    below, above = _guide(shapes, joint, twist)
+    below, above = guide(shapes, joint, twist)
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
     elif joint.type == "screw":
@@ -149,7 +149,7 @@ def _end(
     return RangeEnd("unbounded"), left_out
 
 
-def _guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
+def guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
     """Values (rad or m) at which the last of the patches along which a joint slides is left; ±inf without patches."""
     if shapes.contacts is None or joint.axis is None:
         return -math.inf, math.inf

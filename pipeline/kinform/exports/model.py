@@ -53,6 +53,9 @@ class ExportModel:
     simulation: Simulation | None
     """Our own run, where there is one: done or stopped."""
     system: System
+    """Without levels."""
+    nested: System
+    """With a system for each sub-assembly."""
     masses: tuple[MassProperties, ...]
     """Of bodies, the ground included; empty where they are not computed."""
     mechanism: Mechanism
@@ -108,7 +111,9 @@ def export_model(design: Design) -> ExportModel:
         from kinform.kinematics import functional
 
         kinematics, gears = functional(assembly), True
-    behaviour = build(assembly, kinematics, design.mass, gears=gears)
+    behaviour = design.behaviour
+    if behaviour is None or run is None:
+        behaviour = build(assembly, kinematics, design.mass, gears=gears)
     mechanism, adrift = assemble(behaviour.system)
     q, v = _initial(mechanism, run)
     request = assembly.simulation or SimulationRequest()
@@ -117,6 +122,7 @@ def export_model(design: Design) -> ExportModel:
         kinematics=kinematics,
         simulation=run,
         system=behaviour.system,
+        nested=behaviour.nested,
         masses=() if design.mass is None else design.mass.bodies,
         mechanism=mechanism,
         gravity=np.asarray(request.gravity, dtype=np.float64),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from kinform.behaviour import (
     Spring,
     System,
     count,
+    flat,
 )
 from kinform.behaviour.components import (
     Controller,
@@ -41,6 +42,7 @@ from kinform.behaviour.components import (
     VoltageSource,
 )
 from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.kinds import kind_of
 from kinform.behaviour.signals import Ramp, Sine, Table
 from kinform.errors import InputError, Problem
 from kinform.exports.exported import Exported
@@ -65,47 +67,58 @@ from kinform.exports.port_schema import (
     SineLaw,
     SpringDamperData,
     SpringData,
+    SystemData,
     TableLaw,
     VoltageControllerData,
     VoltageData,
 )
 
-__all__ = ["export", "read"]
+__all__ = ["data", "export", "network", "read", "write"]
 
 Array = NDArray[np.float64]
 
 
 def export(model: ExportModel) -> Exported:
     """One file with the port model."""
-    system, counted = model.system, count(model.system)
     starts = []
-    for joint in system.joints:
+    for joint in model.system.joints:
         position, velocity = model.coordinates(joint.subject)
         starts.append({"joint": joint.name, "position": position.tolist(), "velocity": velocity.tolist()})
-    data = {
-        "schema": SCHEMA,
-        "name": model.name,
-        "gravity": model.gravity.tolist(),
-        "components": [_component(component) for component in system.components],
-        "nodes": [
-            {"size": node.size, "ports": [{"component": c, "port": p} for c, p in node.ports]} for node in system.nodes
-        ],
-        "start": starts,
-        "count": {"unknowns": counted.unknowns, "equations": counted.equations},
-        "missing": list(model.missing),
-    }
-    text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = write(model.nested, model.name, gravity=model.gravity, start=starts, missing=model.missing)
     name = identifiers([model.name], FILES)[model.name]
     return Exported({f"{name}.json": text.encode("utf-8", "replace")}, model.missing)
 
 
+def write(
+    system: System,
+    name: str,
+    *,
+    gravity: Sequence[float] | Array = (0.0, 0.0, -9.81),
+    start: Sequence[Mapping[str, Any]] = (),
+    missing: Sequence[str] = (),
+) -> str:
+    """The text of the file with a system of any depth, called `name`, under gravity (3,) m/s².
+
+    `start` and `missing` as in the schema. Raises ValueError for signals and components that are none of kinform's,
+    and for laws that contain a value that is not finite.
+    """
+    counted = count(flat(system))
+    data = {
+        "schema": SCHEMA,
+        "name": name,
+        "gravity": [float(value) for value in gravity],
+        **network(system),
+        "start": list(start),
+        "count": {"unknowns": counted.unknowns, "equations": counted.equations},
+        "missing": list(missing),
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def read(text: str | bytes) -> System:
-    """The components and nodes in a file that `export` wrote. Raises InputError for anything else."""
+    """The components and nodes in a file that `export` or `write` wrote. Raises InputError for anything else."""
     try:
-        data = PortModel.model_validate_json(text)
-        components = tuple(_read(component) for component in data.components)
-        nodes = tuple(Node(tuple((p.component, p.port) for p in node.ports), node.size) for node in data.nodes)
-        return System(components, nodes)
+        return _read_network(PortModel.model_validate_json(text))
     except ValidationError as error:
         raise InputError(
             Problem(f"{'.'.join(map(str, one['loc']))}: {one['msg']}", remedy="see the schema of the port model")
@@ -113,6 +126,25 @@ def read(text: str | bytes) -> System:
         ) from error
     except ValueError as error:
         raise InputError([Problem(str(error), remedy="export the model again")]) from error
+
+
+def network(system: System) -> dict[str, Any]:
+    """Components, nodes, and the ports that the system exposes where it does."""
+    ports = [{"name": port, "component": c, "port": p} for port, (c, p) in system.exposed]
+    return {
+        "components": [data(component) for component in system.components],
+        "nodes": [
+            {"size": node.size, "ports": [{"component": c, "port": p} for c, p in node.ports]} for node in system.nodes
+        ],
+        **({"ports": ports} if ports else {}),
+    }
+
+
+def _read_network(found: PortModel | SystemData, name: str = "", subject: str = "", prefixed: bool = True) -> System:
+    components = tuple(_read(component) for component in found.components)
+    nodes = tuple(Node(tuple((p.component, p.port) for p in node.ports), node.size) for node in found.nodes)
+    exposed = tuple((port.name, (port.component, port.port)) for port in found.ports)
+    return System(components, nodes, name, subject, exposed, prefixed)
 
 
 def _list(array: Array | None) -> Any:
@@ -127,41 +159,46 @@ def _law(signal: Signal) -> dict[str, Any]:
     if isinstance(signal, Sine):
         values = {"offset": signal.offset, "amplitude": signal.amplitude, "speed": signal.speed, "phase": signal.phase}
         return {"law": "sine", **values}
-    assert isinstance(signal, Table)
+    if not isinstance(signal, Table):
+        raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
     return {"law": "table", "times": list(signal.knots), "levels": list(signal.levels)}
 
 
 _WRITERS: dict[type[Component], Callable[[Any], dict[str, Any]]] = {
-    Ground: lambda c: {"kind": "ground"},
+    Ground: lambda c: {},
     RigidBody: lambda c: {
-        "kind": "rigid_body", "mass": c.mass, "centre_of_mass": _list(c.centre_of_mass), "inertia": _list(c.inertia),
+        "mass": c.mass, "centre_of_mass": _list(c.centre_of_mass), "inertia": _list(c.inertia),
     },
     JointComponent: lambda c: {
-        "kind": "joint", "type": c.kind.name, "axis": _list(c.geometry.axis), "point": _list(c.geometry.point),
+        "type": c.kind.name, "axis": _list(c.geometry.axis), "point": _list(c.geometry.point),
         "axis2": _list(c.geometry.axis2), "pitch": c.geometry.pitch,
     },
-    MotionDrive: lambda c: {"kind": "motion", "law": _law(c.signal)},
-    EffortDrive: lambda c: {"kind": "effort", "law": _law(c.signal)},
-    Spring: lambda c: {"kind": "spring", "stiffness": c.stiffness, "rest": c.rest},
-    Damper: lambda c: {"kind": "damper", "damping": c.damping},
-    Gear: lambda c: {"kind": "gear", "ratio": c.ratio},
-    EndStop: lambda c: {"kind": "end_stop", "lower": _finite(c.lower), "upper": _finite(c.upper)},
-    Servo: lambda c: {"kind": "servo", "target": _law(c.target), "controller": _controller(c.controller)},
+    MotionDrive: lambda c: {"law": _law(c.signal)},
+    EffortDrive: lambda c: {"law": _law(c.signal)},
+    Spring: lambda c: {"stiffness": c.stiffness, "rest": c.rest},
+    Damper: lambda c: {"damping": c.damping},
+    Gear: lambda c: {"ratio": c.ratio},
+    EndStop: lambda c: {"lower": _finite(c.lower), "upper": _finite(c.upper)},
+    Servo: lambda c: {"target": _law(c.target), "controller": _controller(c.controller)},
     DcMotor: lambda c: {
-        "kind": "dc_motor", "resistance": c.resistance, "inductance": c.inductance, "constant": c.constant,
+        "resistance": c.resistance, "inductance": c.inductance, "constant": c.constant,
         "gear": c.gear,
     },
-    VoltageSource: lambda c: {"kind": "voltage_source", "law": _law(c.signal)},
+    VoltageSource: lambda c: {"law": _law(c.signal)},
     VoltageController: lambda c: {
-        "kind": "voltage_controller", "target": _law(c.target), "controller": _controller(c.controller),
+        "target": _law(c.target), "controller": _controller(c.controller),
     },
     SpringDamper: lambda c: {
-        "kind": "spring_damper", "point": _list(c.point), "other": _list(c.other), "stiffness": c.stiffness,
+        "point": _list(c.point), "other": _list(c.other), "stiffness": c.stiffness,
         "damping": c.damping, "rest": c.rest,
     },
     LoadComponent: lambda c: {
-        "kind": "load", "force": _list(c.force), "torque": _list(c.torque), "point": _list(c.point),
+        "force": _list(c.force), "torque": _list(c.torque), "point": _list(c.point),
         "turning": c.turning,
+    },
+    System: lambda c: {
+        "prefixed": c.prefixed, **network(c),
+        "count": {"unknowns": count(c).unknowns, "equations": count(c).equations},
     },
 }  # fmt: skip
 
@@ -178,8 +215,12 @@ def _control(data: ControllerData) -> Controller:
     return Controller(data.kp, data.ki, data.kd, math.inf if data.limit is None else data.limit)
 
 
-def _component(component: Component) -> dict[str, Any]:
-    return {"name": component.name, "subject": component.subject, **_WRITERS[type(component)](component)}
+def data(component: Component) -> dict[str, Any]:
+    """A component as JSON has it. Raises ValueError for a kind that is none of kinform's."""
+    return {
+        "name": component.name, "subject": component.subject, "kind": kind_of(component),
+        **_WRITERS[type(component)](component),
+    }  # fmt: skip
 
 
 def _array(values: Any, shape: tuple[int, ...] = (3,)) -> Array:
@@ -204,6 +245,8 @@ def _signal(law: ConstantLaw | RampLaw | SineLaw | TableLaw) -> Signal:
 
 def _read(data: Any) -> Component:
     named = data.name, data.subject
+    if isinstance(data, SystemData):
+        return _read_network(data, *named, data.prefixed)
     if isinstance(data, GroundData):
         return Ground(*named)
     if isinstance(data, BodyData):

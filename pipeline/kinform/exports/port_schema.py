@@ -17,6 +17,7 @@ __all__ = [
     "DcMotorData",
     "EffortData",
     "EndStopData",
+    "ExposedData",
     "GearData",
     "GroundData",
     "JointData",
@@ -32,6 +33,7 @@ __all__ = [
     "SpringDamperData",
     "SpringData",
     "StartData",
+    "SystemData",
     "TableLaw",
     "VoltageControllerData",
     "VoltageData",
@@ -224,26 +226,6 @@ class LoadData(_Named):
     turning: bool
 
 
-ComponentData = Annotated[
-    GroundData
-    | BodyData
-    | JointData
-    | MotionData
-    | EffortData
-    | SpringData
-    | DamperData
-    | GearData
-    | LoadData
-    | EndStopData
-    | ServoData
-    | DcMotorData
-    | VoltageData
-    | VoltageControllerData
-    | SpringDamperData,
-    Field(discriminator="kind"),
-]
-
-
 class PortData(_Strict):
     """A port of a component."""
 
@@ -259,13 +241,12 @@ class NodeData(_Strict):
     ports: list[PortData]
 
 
-class StartData(_Strict):
-    """Coordinates and rates of a joint at time zero; 0 is the pose of the meshes."""
+class ExposedData(_Strict):
+    """A port of a system: the node inside in which a port of a component is."""
 
-    joint: str
-    """Name of the component."""
-    position: list[float]
-    velocity: list[float]
+    name: str
+    component: str
+    port: str
 
 
 class CountData(_Strict):
@@ -273,6 +254,49 @@ class CountData(_Strict):
 
     unknowns: int
     equations: int
+
+
+class SystemData(_Named):
+    """Components and nodes, to any depth; from outside a component with the ports that it exposes."""
+
+    kind: Literal["system"] = "system"
+    prefixed: bool
+    """Whether names inside get the system's in front where levels are left out; else they are unique already."""
+    components: list[ComponentData]
+    nodes: list[NodeData]
+    ports: list[ExposedData] = []
+    count: CountData
+    """Of this level: a system inside counts as one component."""
+
+
+ComponentData = Annotated[
+    GroundData
+    | BodyData
+    | JointData
+    | MotionData
+    | EffortData
+    | SpringData
+    | DamperData
+    | GearData
+    | LoadData
+    | EndStopData
+    | ServoData
+    | DcMotorData
+    | VoltageData
+    | VoltageControllerData
+    | SpringDamperData
+    | SystemData,
+    Field(discriminator="kind"),
+]
+
+
+class StartData(_Strict):
+    """Coordinates and rates of a joint at time zero; 0 is the pose of the meshes."""
+
+    joint: str
+    """Name of the component."""
+    position: list[float]
+    velocity: list[float]
 
 
 class PortModel(_Strict):
@@ -285,8 +309,11 @@ class PortModel(_Strict):
     gravity: Vector
     components: list[ComponentData]
     nodes: list[NodeData]
+    ports: list[ExposedData] = []
+    """Where the whole is a system to be put into others."""
     start: list[StartData]
     count: CountData
+    """Of the network without levels."""
     missing: list[str]
     """What the design has and the model has not, in sentences."""
 

@@ -10,7 +10,7 @@ from kinform.model.assembly import Assembly
 
 __all__ = ["CODE_VERSION", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3
 
 
 def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:

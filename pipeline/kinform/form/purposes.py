@@ -360,4 +360,5 @@ class Purposes:
         return SimulationRequest(
             table.level, table.duration, table.step, np.array(table.gravity, dtype=float), initial,
             self.scope.file, self.scope.line("simulation"),
+            tuple(sorted({"duration", "step", "gravity"} - table.model_fields_set)),
         )  # fmt: skip

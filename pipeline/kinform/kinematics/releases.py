@@ -94,7 +94,7 @@ class ContactRows:
         return self._cones[key]
 
     def _cone(self, members: Sequence[tuple[int, bool]]) -> Cone | None:
-        points = np.concatenate([np.zeros((0, 3)), *(self._of(k, turned=turned)[0] for k, turned in members)])
+        points = np.concatenate([np.zeros((0, 3)), *(self.samples(k, turned=turned)[0] for k, turned in members)])
         if not len(points):
             return None
         frame = Frame.of(points)
@@ -107,7 +107,7 @@ class ContactRows:
 
     def rows(self, k: int, frame: Frame, *, turned: bool) -> Array:
         """Rows (n, 6) of the extreme samples of one patch, against twists scaled in `frame`."""
-        _, normals, moments = self._of(k, turned=turned)
+        _, normals, moments = self.samples(k, turned=turned)
         return np.hstack([(moments + cross(self._matrix.centre - frame.centre, normals)) / frame.length, normals])
 
     def _two_way(self, k: int) -> bool:
@@ -124,7 +124,7 @@ class ContactRows:
             )
         return k in self._held
 
-    def _of(self, k: int, *, turned: bool) -> tuple[Array, Array, Array]:
+    def samples(self, k: int, *, turned: bool) -> tuple[Array, Array, Array]:
         """Points, normals and moments (m) about the centre of J, of the extreme samples of one patch."""
         patch, sign = self._patches[k], -1.0 if turned else 1.0
         chosen = self._order[self._bounds[k] : self._bounds[k + 1]]

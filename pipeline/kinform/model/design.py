@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
@@ -12,6 +13,9 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
+
+if TYPE_CHECKING:
+    from kinform.behaviour.build import Behaviour
 
 __all__ = ["Design"]
 
@@ -26,6 +30,8 @@ class Design:
     contacts: Contacts | None = None
     kinematics: Kinematics | None = None
     mass: MassReport | None = None
+    behaviour: Behaviour | None = None
+    """The port model, which is made with the simulation."""
     simulation: Simulation | None = None
     report: CheckReport | None = None
     fingerprints: Fingerprints = field(default_factory=Fingerprints)

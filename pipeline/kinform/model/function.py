@@ -165,3 +165,5 @@ class SimulationRequest:
     initial: tuple[InitialValue, ...] = ()
     file: str | None = None
     line: int | None = None
+    assumed: tuple[str, ...] = ()
+    """Which of duration, step and gravity the manifest does not state, sorted."""

@@ -81,6 +81,10 @@ class Simulation:
     """What acts on the shafts of joints, in order."""
     balance: Array = field(default_factory=lambda: np.zeros(0))
     """(T,) greatest error of the balance of a body or a node over the greatest wrench then."""
+    balance_bodies: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, B) of that the error at the node of each body's frame; no times below dynamic."""
+    balance_shafts: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, n) the error at the node on the shaft of each joint coordinate."""
     ranges: tuple[JointRange, ...] | None = None
     """How far joints go until something stops them; None: not computed."""
     collisions: tuple[Collision, ...] | None = None

@@ -43,7 +43,7 @@ __all__ = [
 def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
     """The values of one topic, or of all of them, as JSON has them: dicts, lists, text, numbers, None.
 
-    Topics: assembly, contacts, joints, mobility, mass, simulation, findings. Raises StageError when the
+    Topics: assembly, contacts, joints, mobility, mass, behaviour, simulation, findings. Raises StageError when the
     stage of the topic has not run, and ValueError for another topic.
     """
     if topic is None:
@@ -283,6 +283,24 @@ def _properties(item: MassProperties) -> dict[str, Any]:
     return _fields(item, *names, "mass_bound", "origin") | {"reason": item.reason or None}
 
 
+def _behaviour(design: Design) -> dict[str, Any]:
+    from kinform.behaviour import counts
+    from kinform.exports.port_model import network
+
+    model = design.behaviour
+    assert model is not None
+    levels = [
+        {"system": path, "unknowns": found.unknowns, "equations": found.equations, "balanced": found.balanced}
+        for path, found in counts(model.nested)
+    ]
+    return {
+        "counts": levels,
+        **network(model.nested),
+        "failures": [{"subject": subject, "message": why} for subject, why in model.failures],
+        "forces_missing": [{"subject": subject, "message": why} for subject, why in model.forces_missing],
+    }
+
+
 def _simulation(design: Design) -> dict[str, Any]:
     run = design.simulation
     assert run is not None
@@ -298,6 +316,10 @@ def _simulation(design: Design) -> dict[str, Any]:
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
         "drives": [_fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
+        "undetermined": {
+            name: [label for label, flag in zip(_COMPONENTS, flags, strict=True) if flag]
+            for name, flags in zip(run.joint_names, run.undetermined, strict=False)
+        },
         "assumptions": run.assumptions,
         "failures": [{"subject": subject, "message": message} for subject, message in run.failures],
         "ranges": None if run.ranges is None else [_range(item) for item in run.ranges],
@@ -306,6 +328,9 @@ def _simulation(design: Design) -> dict[str, Any]:
         else [_fields(item, "parts", "time", "place", "depth") for item in run.collisions],
         "collisions_unknown": [{"parts": [a, b], "reason": why} for a, b, why in run.uncollided],
     }
+
+
+_COMPONENTS = ("tau_x", "tau_y", "tau_z", "f_x", "f_y", "f_z")
 
 
 def _range(item: JointRange) -> dict[str, Any]:
@@ -353,6 +378,7 @@ TOPICS: dict[str, tuple[str, str, Callable[[Design], dict[str, Any]]]] = {
     "joints": ("joints", "kinematics", _joints),
     "mobility": ("joints", "kinematics", _mobility),
     "mass": ("mass", "mass", _mass),
+    "behaviour": ("simulate", "behaviour", _behaviour),
     "simulation": ("simulate", "simulation", _simulation),
     "findings": ("check", "report", _findings),
 }

@@ -47,7 +47,7 @@ _DAMAGE = (
 _COMPUTE = "compute it from the manifest: kinform run MANIFEST -o FILE"
 _RECOMPUTE = f"delete it, and {_COMPUTE}"
 _NAME_ONE = "name a results file of kinform"
-_STAGE_OF = {"constraints": "joints", "mobility": "joints"}
+_STAGE_OF = {"constraints": "joints", "mobility": "joints", "behaviour": "simulation"}
 
 
 def write(design: Design, path: str | Path) -> None:
@@ -135,6 +135,10 @@ def _write_groups(file: h5py.File, design: Design) -> None:
         _mobility.write(_group(file, "mobility", marks), kinematics.mobility)
     if design.mass is not None:
         _mass.write(_group(file, "mass", marks), design.mass)
+    if design.behaviour is not None:
+        from kinform.results import _behaviour
+
+        _behaviour.write(_group(file, "behaviour", marks), design.behaviour)
     if design.simulation is not None:
         _simulation.write(_group(file, "simulation", marks), design.simulation)
     if design.report is not None:
@@ -158,6 +162,10 @@ def _read_groups(file: h5py.File) -> Design:
         )
     if "mass" in file:
         parts["mass"] = _mass.read(file["mass"])
+    if "behaviour" in file:
+        from kinform.results import _behaviour
+
+        parts["behaviour"] = _behaviour.read(file["behaviour"])
     if "simulation" in file:
         parts["simulation"] = _simulation.read(file["simulation"])
     if "findings" in file:

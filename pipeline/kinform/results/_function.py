@@ -25,6 +25,7 @@ from kinform.results._table import (
     read_rows,
     real,
     text,
+    texts,
     values,
     vector,
     write_ragged,
@@ -59,7 +60,7 @@ _LOADS = (
 )  # fmt: skip
 _REQUIREMENTS = (text("name"), text("kind"), values("values"), *_PLACE)
 _REQUEST = (
-    text("level"), real("duration", "s"), real("step", "s"), vector("gravity", "m/s²"), *_PLACE,
+    text("level"), real("duration", "s"), real("step", "s"), vector("gravity", "m/s²"), *_PLACE, texts("assumed"),
 )  # fmt: skip
 _INITIAL = (
     text("joint"), real("position", _AS_STATED), real("velocity", f"{_AS_STATED} a second"),
@@ -101,7 +102,7 @@ def write_request(group: h5py.Group, request: SimulationRequest) -> None:
 
 def read_request(group: h5py.Group) -> SimulationRequest:
     """The request that `write_request` wrote."""
-    (row,) = read_rows(group, "request", _REQUEST)
+    (row,) = read_rows(group, "request", _REQUEST, added=("assumed",))
     return SimulationRequest(**row, initial=read_records(group, "initial", _INITIAL, InitialValue))
 
 

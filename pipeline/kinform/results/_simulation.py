@@ -34,7 +34,9 @@ _ARRAYS = {
     "time": "s", "p_WB": "m", "q_WB": "1", "joint_position": "rad or m", "joint_velocity": "rad/s or m/s",
     "joint_effort": "N·m or N", "energy": "J",
 }  # fmt: skip
-_LATER = {"joint_acceleration": "rad/s² or m/s²", "F_A": "N·m, N", "F_B": "N·m, N"}
+_LATER = {
+    "joint_acceleration": "rad/s² or m/s²", "F_A": "N·m, N", "F_B": "N·m, N", "balance_bodies": "1", "balance_shafts": "1",
+}  # fmt: skip
 """Arrays that files of the same schema may lack."""
 _DRIVES = (
     text("joint"), text("kind"), real("peak", "N·m or N"), real("rms", "N·m or N"), real("peak_power", "W"),

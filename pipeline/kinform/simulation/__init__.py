@@ -6,9 +6,9 @@ Reads the port model of `kinform.behaviour`; importing it brings in neither scip
 from __future__ import annotations
 
 from kinform.simulation.settings import SolverSettings
-from kinform.simulation.simulate import simulate
+from kinform.simulation.simulate import modelled, simulate
 from kinform.simulation.solve import Course, simulate_system
 
-__all__ = ["CODE_VERSION", "Course", "SolverSettings", "simulate", "simulate_system"]
+__all__ = ["CODE_VERSION", "Course", "SolverSettings", "modelled", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3

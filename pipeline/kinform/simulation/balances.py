@@ -1,10 +1,13 @@
-"""Checks the reactions: Newton and Euler of every body about its own centre of mass, and every shaft.
+"""Checks the reactions: at the frame of every body what joints, loads and springs give is Newton's and Euler's rate of
+its momentum, and on every shaft what the joint transmits along it is what acts there.
 
-Written apart from what found the reactions, in the bodies' own terms: mass times acceleration, rate of
-change of the spin in the body's axes.
+Written apart from what found the reactions, in the bodies' own terms: mass times acceleration about the centre of mass,
+rate of change of the spin in the body's axes. What gears pass on among shafts is whatever their ratios allow.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +16,29 @@ from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.reactions import Network, Reactions, applied
 from kinform.simulation.states import States
 
-__all__ = ["imbalance"]
+__all__ = ["Balance", "imbalance"]
 
 Array = NDArray[np.float64]
 
 
-def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Array) -> Array:
-    """(T,) greatest error of a force, or of a torque over the length, over the greatest wrench then."""
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Errors of forces, and of torques over the length, as shares of the greatest wrench then."""
+
+    bodies: Array
+    """(T, B) of the node at the frame of each body; zero for those that rest."""
+    shafts: Array
+    """(T, n) of the node on the shaft of each rate."""
+
+    @property
+    def greatest(self) -> Array:
+        """(T,) of all."""
+        both = np.concatenate([self.bodies, np.abs(self.shafts)], axis=1)
+        return np.asarray(both.max(axis=1, initial=0.0))
+
+
+def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Array) -> Balance:
+    """How far the nodes are from balance at the efforts (T, n) on their shafts."""
     mechanism, system, length = dynamics.mechanism, dynamics.system, dynamics.mechanism.length
     bodies = [mechanism.bodies[k] for k in dynamics.body_index]
     wrench, points = found.on_second, found.points
@@ -28,7 +47,7 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
     weights = np.abs(dynamics.mass * np.linalg.norm(dynamics.gravity)).max(initial=0.0)
     scale = np.maximum(sizes.max(axis=1, initial=0.0), weights)
     scale = np.maximum(scale, np.abs(external[..., 3:]).max(axis=(1, 2), initial=0.0))
-    error = np.zeros(len(effort))
+    errors = np.zeros((len(effort), len(mechanism.bodies)))
     for k, (body, link) in enumerate(zip(bodies, dynamics.body_links, strict=True)):
         X, V, A = states.poses[:, link], states.twists[:, link], states.accelerations[:, link]
         R, spin, turn = X[:, :3, :3], V[:, :3], A[:, :3]
@@ -46,15 +65,23 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
                 if system.body_at(joint.name, port).subject == body:
                     force = force + sign * wrench[:, j, 3:]
                     torque = torque + sign * (wrench[:, j, :3] + np.cross(points[:, j] - com, wrench[:, j, 3:]))
-        error = np.maximum(error, np.maximum(np.abs(force).max(axis=1), np.abs(torque).max(axis=1) / length))
-    if not len(mechanism.gear_v):
-        network = Network(dynamics)
-        about = wrench[:, network.owner].copy()
-        about[..., :3] += np.cross(points[:, network.owner], about[..., 3:])
-        along = np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about)
-        shafts = (along - effort) / np.where(mechanism.scale == length, 1.0, length)
-        # A slide's effort is a force, a turn's a torque: its own screw has the unit.
-        slides = ~states.screws[..., :3].any(axis=(0, 2)) if len(effort) else np.zeros(0, dtype=bool)
-        shafts = np.where(slides, along - effort, shafts)
-        error = np.maximum(error, np.abs(shafts).max(axis=1, initial=0.0))
-    return np.asarray(error / np.where(scale > 0.0, scale, 1.0))
+        errors[:, dynamics.body_index[k]] = np.maximum(np.abs(force).max(axis=1), np.abs(torque).max(axis=1) / length)
+    least = np.where(scale > 0.0, scale, 1.0)[:, None]
+    return Balance(errors / least, _shafts(dynamics, states, found, effort) / least)
+
+
+def _shafts(dynamics: Dynamics, states: States, found: Reactions, effort: Array) -> Array:
+    """(T, n) N, torques over the length: what the joints transmit along their rates less what acts on their shafts."""
+    mechanism, length = dynamics.mechanism, dynamics.mechanism.length
+    network = Network(dynamics)
+    about = found.on_second[:, network.owner].copy()
+    about[..., :3] += np.cross(found.points[:, network.owner], about[..., 3:])
+    along = np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about)
+    rest = along - effort
+    if len(mechanism.gear_v):
+        _, values, rows = np.linalg.svd(mechanism.gear_v)
+        passed = rows[: int(np.count_nonzero(values > 1e-12 * values[0]))]
+        rest = rest - (rest @ passed.T) @ passed
+    # A slide's effort is a force, a turn's a torque: its own screw has the unit.
+    slides = ~states.screws[..., :3].any(axis=(0, 2)) if len(effort) else np.zeros(mechanism.rates, dtype=bool)
+    return np.asarray(np.where(slides, rest, rest / length))

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from kinform.simulation.closure import factor, rank_of, settle
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.settings import SolverSettings
+from kinform.simulation.states import states_at
 
 __all__ = ["Follower", "Led", "Stop"]
 
@@ -62,6 +63,7 @@ class Follower:
         still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < 1e-8
         touched = np.abs(rows[:, self.unknown]).max(axis=0, initial=0.0) > 0.0
         self._determined: Index = self.unknown[still & touched]
+        self._open: Index = self.unknown[~still & touched]
 
     def rates(self, place: float) -> Array:
         """(n,) rates at the present pose for the led rates at `place`; least rates where loose."""
@@ -72,6 +74,19 @@ class Follower:
             gap = -rows @ v
             v[self.unknown] = factor(rows[:, self.unknown], self._scale, self.rank).solve(gap)
         return v
+
+    def accelerations(self, v: Array, led: Array) -> Array:
+        """(n,) rates of change of the rates `v` at the present pose for those of the led joints (k,); nan where the
+        led joints do not determine them."""
+        a = np.zeros(self.mechanism.rates)
+        a[self.led.v] = led
+        if self.mechanism.closed and self.rank:
+            rows = self._rows(self.q)
+            carried = states_at(self.mechanism, self.q[None], v[None], np.zeros((1, len(v)))).accelerations[0]
+            gap = -self.mechanism.closure_bias(carried) - rows @ a
+            a[self.unknown] = factor(rows[:, self.unknown], self._scale, self.rank).solve(gap)
+            a[self._open] = np.nan
+        return a
 
     def open_rates(self, place: float) -> float:
         """Greatest speed at which the loops would open at the rates of `place`."""

@@ -33,9 +33,10 @@ def run_kinematic(
     settings: SolverSettings,
     progress: Progress | None,
 ) -> Record:
-    """Positions and rates at `times` (s), until the end or until a loop stops."""
+    """Positions, rates and accelerations at `times` (s), until the end or until a loop stops."""
     follower = _follower(mechanism, actuation, start, settings)
-    q, v = np.zeros((len(times), len(start.q))), np.zeros((len(times), mechanism.rates))
+    q = np.zeros((len(times), len(start.q)))
+    v, a = (np.zeros((len(times), mechanism.rates)) for _ in range(2))
 
     def record(done: int, stopped: str) -> Record:
         unknown = np.full((done, mechanism.rates), np.nan)
@@ -43,7 +44,7 @@ def run_kinematic(
             times[:done],
             q[:done],
             v[:done],
-            unknown,
+            a[:done],
             unknown,
             unknown,
             np.zeros((done, 0)),
@@ -57,6 +58,7 @@ def run_kinematic(
             if stop is not None:
                 return record(k, f"at t = {stop.place:.6g} s {stop.reason}")
         q[k], v[k] = follower.q, follower.rates(float(t))
+        a[k] = follower.accelerations(v[k], actuation.led_accelerations(float(t)))
         if progress is not None:
             progress(k + 1, len(times))
     return record(len(times), "")

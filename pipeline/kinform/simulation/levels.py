@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, RigidBody
 from kinform.model.assembly import Assembly
+from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics
 from kinform.simulation.mechanism import Mechanism
 
-__all__ = ["LEVELS", "Choice", "choose", "notes_of_joints", "notes_of_level"]
+__all__ = ["LEVELS", "Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level"]
 
 LEVELS = ("functional", "kinematic", "dynamic")
 
@@ -65,6 +67,24 @@ def notes_of_joints(kinematics: Kinematics) -> tuple[str, ...]:
         elif joint.status == "inferred":
             notes.append(f"{joint.name} is taken to be {joint.type}: {', '.join(joint.evidence)}")
     return tuple(notes)
+
+
+_DEFAULTS = {
+    "spring": {"rest": "rest 0"},
+    "servo": {"ki": "ki 0", "kd": "kd 0", "limit": "no limit"},
+    "dc_motor": {"inductance": "inductance 0", "gear": "gear 1"},
+}
+"""What drives are taken to have where the manifest does not say, by kind."""
+
+
+def notes_of_drives(drives: Iterable[Drive]) -> tuple[str, ...]:
+    """What is taken for granted of drives."""
+    out = []
+    for drive in drives:
+        taken = [said for key, said in _DEFAULTS.get(drive.kind, {}).items() if key not in drive.parameters]
+        if taken:
+            out.append(f"the {drive.kind.replace('_', ' ')} on {drive.joint} does not state: {', '.join(taken)}")
+    return tuple(out)
 
 
 def notes_of_level(

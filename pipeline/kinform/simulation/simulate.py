@@ -14,14 +14,14 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.simulation.assemble import assemble
-from kinform.simulation.levels import LEVELS, Choice, choose, notes_of_joints, notes_of_level
+from kinform.simulation.levels import LEVELS, Choice, choose, notes_of_drives, notes_of_joints, notes_of_level
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.record import blank
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solve import Course, refuse, solve
 from kinform.simulation.start import stated_values
 
-__all__ = ["simulate"]
+__all__ = ["modelled", "simulate"]
 
 Progress = Callable[[int, int], None]
 Say = Callable[[str], None]
@@ -36,19 +36,21 @@ def simulate(
     progress: Progress | None = None,
     settings: SolverSettings | None = None,
     say: Say | None = None,
+    behaviour: Behaviour | None = None,
 ) -> Simulation:
     """Poses, joint values, efforts and energy over time, SI and radians.
 
     `level` goes before that of the manifest; with neither the highest that is known is taken. What
     cannot be simulated is refused with the reasons in `failures`, and a run that cannot go on keeps
-    what it has; neither raises. `say` is told what takes long besides. ValueError for a level that does not exist.
+    what it has; neither raises. `say` is told what takes long besides; `behaviour` is what `modelled` made of the
+    same values, where that is known already. ValueError for a level that does not exist.
     """
     asked = level or (assembly.simulation.level if assembly.simulation else None)
     if asked is not None and asked not in LEVELS:
         raise ValueError(f'level "{asked}": expected one of {", ".join(LEVELS)}')
     if assembly.simulation is None and level is None and not assembly.function.drives:
         return blank("not requested", "there is neither [simulation] nor a drive")
-    model = _model(assembly, kinematics, mass, asked)
+    model = _model(assembly, kinematics, mass, asked, behaviour)
     if isinstance(model, Simulation):
         return model
     chosen = settings or replace(SolverSettings(), free=assembly.tolerances.free)
@@ -66,26 +68,44 @@ class _Model:
     notes: tuple[str, ...]
 
 
+def modelled(
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, level: str | None = None
+) -> Behaviour:
+    """The port model that `simulate` solves at that level, whatever is wrong with it."""
+    asked = level or (assembly.simulation.level if assembly.simulation else None)
+    return build(assembly, _seen(assembly, kinematics, asked), mass, gears=_geared(assembly, asked))
+
+
+def _seen(assembly: Assembly, kinematics: Kinematics, asked: str | None) -> Kinematics:
+    """The joints that are simulated: those of geometry, or of the function where that is asked for."""
+    if asked != "functional":
+        return kinematics
+    from kinform.kinematics import functional
+
+    return functional(assembly)
+
+
+def _geared(assembly: Assembly, asked: str | None) -> bool:
+    return asked == "functional" or all(part.mesh is None for part in assembly.parts)
+
+
 def _model(
-    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, asked: str | None
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, asked: str | None, made: Behaviour | None
 ) -> _Model | Simulation:
     """The model at the level asked for or known, or the refusal."""
-    formless = all(part.mesh is None for part in assembly.parts)
-    gears = formless or asked == "functional"
-    if asked == "functional":
-        from kinform.kinematics import functional
-
-        kinematics = functional(assembly)
+    gears = _geared(assembly, asked)
+    kinematics = _seen(assembly, kinematics, asked)
     if gears and not kinematics.joints:
         return refuse(
             "nothing to simulate", (("[function]", "it states no joints, and there are no meshes to find them in"),)
         )
     if sum(body.ground for body in kinematics.bodies) != 1:
         return refuse("there is no ground", (("ground", "not exactly one body is the ground"),))
-    behaviour = build(assembly, kinematics, mass, gears=gears)
+    behaviour = build(assembly, kinematics, mass, gears=gears) if made is None else made
     if behaviour.failures:
         return refuse("the model is not complete", behaviour.failures)
     mechanism, adrift = assemble(behaviour.system)
+    formless = all(part.mesh is None for part in assembly.parts)
     choice: Choice = choose(asked, behaviour, mechanism, adrift, formless)
     if choice.failures:
         return refuse(f"the {asked} level needs more than is known", choice.failures)
@@ -93,6 +113,7 @@ def _model(
         *_of_request(assembly),
         *choice.notes,
         *notes_of_joints(kinematics),
+        *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
         *notes_of_level(assembly, behaviour, choice.level, adrift, gears),
     )
     return _Model(kinematics, behaviour, mechanism, choice.level, notes)
@@ -113,12 +134,18 @@ def _run(
 
 
 def _of_request(assembly: Assembly) -> tuple[str, ...]:
-    """The values that hold where the manifest has no [simulation]."""
-    if assembly.simulation is not None:
-        return ()
-    default = SimulationRequest()
+    """The values that hold where the manifest states none."""
+    request, default = assembly.simulation, SimulationRequest()
     gravity = ", ".join(f"{x:g}" for x in default.gravity)
-    return (
-        f"there is no [simulation]: duration {default.duration:g} s, step {default.step:g} s, "
-        f"gravity ({gravity}) m/s², all joints at rest at the pose of the meshes",
-    )
+    values = {
+        "duration": f"duration {default.duration:g} s",
+        "step": f"step {default.step:g} s",
+        "gravity": f"gravity ({gravity}) m/s²",
+    }
+    if request is None:
+        return (
+            f"there is no [simulation]: {', '.join(values.values())}, all joints at rest at the pose of the meshes",
+        )
+    if not request.assumed:
+        return ()
+    return (f"[simulation] does not state: {', '.join(values[name] for name in values if name in request.assumed)}",)

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour.components import System
+from kinform.behaviour.faults import faults
+from kinform.behaviour.nested import flat
 from kinform.model.simulation import Simulation
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.assemble import assemble
@@ -20,7 +22,7 @@ from kinform.simulation.integrate import run_dynamic
 from kinform.simulation.kinematic import resting, run_kinematic
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.reactions import reactions
-from kinform.simulation.record import Record, blank, publish
+from kinform.simulation.record import Record, blank, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
 
@@ -57,18 +59,25 @@ def simulate_system(
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Simulation:
-    """Simulates a port model made by hand; SI and radians.
+    """Simulates a port model made by hand, of any depth; SI and radians.
 
     `initial`: (position, velocity) of joints with one freedom by what they are called; 0 is the pose in
     which the model is written. Refusals are in `failures` of what is returned, with the component.
-    ValueError for initial values of joints that the system does not have.
+    ValueError for initial values of joints that the system does not have, or that are no numbers.
     """
+    system = flat(system)
+    wrong = faults(system)
+    if wrong:
+        return refuse("the model is not complete", wrong)
     mechanism, adrift = assemble(system)
     slots = {slot.name: slot for slot in mechanism.slots}
     stated = []
     for name, (position, velocity) in (initial or {}).items():
         if name not in slots or slots[name].kind.rates != 1:
-            raise ValueError(f'there is no joint "{name}" with one freedom: expected one of {", ".join(slots)}')
+            single = [slot.name for slot in mechanism.slots if slot.kind.rates == 1]
+            raise ValueError(f'there is no joint "{name}" with one freedom: there are {", ".join(single) or "none"}')
+        if not np.all(np.isfinite([position, velocity])):
+            raise ValueError(f'the initial value of "{name}" is not a finite number')
         stated.append(Stated(name, slots[name].q.start, slots[name].v.start, position, velocity))
     failures = tuple((name, "no joints connect this body with the ground") for name in adrift)
     if course.level == "dynamic":
@@ -92,7 +101,16 @@ def unfit(system: System, mechanism: Mechanism) -> Failures:
         values = np.concatenate([[mass], *np.atleast_2d(body.inertia), body.centre_of_mass])  # type: ignore[union-attr]
         if not np.all(np.isfinite(values)) or mass < 0.0:
             out.append((body.subject, "its mass, centre of mass or inertia is not a number, or negative"))
+        elif not _inertial(np.asarray(body.inertia)):  # type: ignore[union-attr]
+            out.append((body.subject, "its inertia is not symmetric, or turns it the wrong way: a moment is negative"))
     return tuple(out)
+
+
+def _inertial(inertia: Array) -> bool:
+    """Whether a tensor (3, 3) is symmetric without a negative moment, but for rounding."""
+    size = float(np.abs(inertia).max())
+    symmetric = float(np.abs(inertia - inertia.T).max()) <= 1e-9 * size
+    return symmetric and float(np.linalg.eigvalsh(inertia).min()) >= -1e-9 * size
 
 
 def solve(
@@ -138,6 +156,7 @@ def _with_forces(
     run, states = publish(dynamics.mechanism, record, level, notes, settings.free)
     kinetic, potential = dynamics.energy(record.q, states)
     found = reactions(dynamics, states, record.effort, settings.free)
+    balance = imbalance(dynamics, states, found, record.effort)
     energy = np.column_stack([kinetic, potential, record.work])
     return replace(
         run,
@@ -146,7 +165,9 @@ def _with_forces(
         F_A=-found.on_second,
         F_B=found.on_second,
         undetermined=found.undetermined,
-        balance=imbalance(dynamics, states, found, record.effort),
+        balance=balance.greatest,
+        balance_bodies=balance.bodies,
+        balance_shafts=spread(dynamics.mechanism, balance.shafts),
         drives=uses(dynamics, record),
     )
 

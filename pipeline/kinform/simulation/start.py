@@ -106,7 +106,7 @@ def begin(
         stop = follower.go(0.0, 1.0)
         if stop is not None:
             why = OVERDRIVEN if follower.overdriven else f"the loops cannot be brought there: {stop.reason}"
-            return Start(q, np.zeros(mechanism.rates), notes, ("initial positions", why))
+            return Start(q, np.zeros(mechanism.rates), notes, (_named(mechanism, v_index), f"initial positions: {why}"))
         q = follower.q
     moving = [value for value in own if value.velocity != 0.0]
     if moving and not coasting:
@@ -124,8 +124,30 @@ def begin(
     v = follower.rates(0.0)
     if follower.open_rates(0.0) > settings.open * max(1.0, float(np.abs(v).max(initial=0.0))):
         why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
-        return Start(q, v, notes, ("initial velocities", why))
+        return Start(q, v, notes, (_named(mechanism, pace.v), f"initial velocities: {why}"))
+    if coasting:
+        notes += _at_rest(mechanism, stated, led, q, v)
     return Start(q, v, notes)
+
+
+def _at_rest(mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q: Array, v: Array) -> tuple[str, ...]:
+    """What begins at rest at the pose of the meshes because nobody said otherwise."""
+    told = led | {value.v for value in stated}
+    still = [
+        slot.name
+        for slot in mechanism.slots
+        if slot.v.stop > slot.v.start
+        and slot.v.start not in told
+        and not v[slot.v].any()
+        and np.array_equal(q[slot.q], mechanism.start[slot.q])
+    ]
+    return (f"no initial value is stated, so at rest at the pose of the meshes: {', '.join(still)}",) if still else ()
+
+
+def _named(mechanism: Mechanism, rates: NDArray[np.int64]) -> str:
+    """The joints whose values are given, as a list."""
+    wanted = set(rates.tolist())
+    return ", ".join(slot.name for slot in mechanism.slots if slot.v.start in wanted and slot.v.stop > slot.v.start)
 
 
 def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[str, ...]:

@@ -1,0 +1,162 @@
+"""The port model: levels with their counts, components with their parameters, and what their ports meet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kinform.behaviour import (
+    Component,
+    Controller,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    EndStop,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    RigidBody,
+    Servo,
+    Signal,
+    Spring,
+    SpringDamper,
+    System,
+    VoltageController,
+    VoltageSource,
+    count,
+    counts,
+)
+from kinform.behaviour.kinds import kind_of
+from kinform.behaviour.signals import Constant, Ramp, Sine, Table
+from kinform.model.design import Design
+from kinform_cli import text
+from kinform_cli.tables import Rows
+from kinform_cli.text import NONE, Lengths, number, vector
+
+__all__ = ["render"]
+
+
+def render(design: Design) -> RenderableType:
+    """One sentence, the levels where there are any, one row a component, then what could not be made part of it."""
+    model = design.behaviour
+    assert model is not None
+    lengths, found = Lengths.of(design.assembly), count(model.system)
+    balance = f"{found.unknowns} unknowns, {found.equations} equations"
+    parts = text.count(len(model.system.components), "component"), text.count(len(model.system.nodes), "node")
+    items: list[RenderableType] = [Text(f"Port model: {parts[0]}, {parts[1]}, {balance}", style="bold")]
+    levels = counts(model.nested)
+    if len(levels) > 1:
+        rows = Rows("system", "unknowns", "equations", title="\nLevels", right=("unknowns", "equations"))
+        for path, level in levels:
+            rows.add(path or "the whole", str(level.unknowns), str(level.equations))
+        items.append(rows)
+    rows = Rows("component", "kind", "parameters", "meets", title="\nComponents")
+    _add(rows, model.nested, "", lengths)
+    items.append(rows)
+    items += [f"not in the model: {subject}: {why}" for subject, why in model.failures]
+    items += [f"not in the model, which dynamics needs: {subject}: {why}" for subject, why in model.forces_missing]
+    return Group(*items)
+
+
+def _add(rows: Rows, system: System, path: str, lengths: Lengths) -> None:
+    for component in system.components:
+        if isinstance(component, System):
+            ports = ", ".join(port.name for port in component.ports)
+            rows.add(f"{path}{component.subject}/", "system", f"ports {ports}" if ports else "no ports", "")
+            _add(rows, component, f"{path}{component.subject}/", lengths)
+            continue
+        said = _SAID[type(component)](component, lengths)
+        rows.add(component.name, _kind(component), said or NONE, _met(system, component))
+
+
+def _kind(component: Component) -> str:
+    return component.kind.name if isinstance(component, JointComponent) else kind_of(component).replace("_", " ")
+
+
+def _met(system: System, component: Component) -> str:
+    """What its ports meet; of bodies the joints say it."""
+    if isinstance(component, Ground | RigidBody):
+        return ""
+    out = []
+    for port in component.ports:
+        others = [other.name for other, _ in system.at(component.name, port.name)]
+        wanted = [name for name in others if isinstance(system.component(name), Ground | RigidBody | System)]
+        if wanted or not isinstance(component, JointComponent):
+            out.append(f"{port.name}: {', '.join(wanted or others) or NONE}")
+    return "; ".join(out)
+
+
+def _signal(signal: Signal) -> str:
+    if isinstance(signal, Constant):
+        return number(signal.level)
+    if isinstance(signal, Ramp):
+        return f"{number(signal.offset)} + {number(signal.slope)}·t"
+    if isinstance(signal, Sine):
+        wave = f"{number(signal.amplitude)}·sin({number(signal.speed)}·t + {number(signal.phase)})"
+        return f"{number(signal.offset)} + {wave}"
+    assert isinstance(signal, Table)
+    return f"table of {len(signal.knots)} rows from {number(signal.knots[0])} to {number(signal.knots[-1])} s"
+
+
+def _controller(controller: Controller) -> str:
+    gains = (f"{name} {number(getattr(controller, name))}" for name in ("kp", "ki", "kd"))
+    return ", ".join((*gains, f"limit {number(controller.limit)}"))
+
+
+def _body(body: RigidBody, lengths: Lengths) -> str:
+    if body.mass is None:
+        return "mass not known"
+    return f"{number(body.mass)} kg at {lengths.point(body.centre_of_mass)} {lengths.unit}"
+
+
+def _joint(joint: JointComponent, lengths: Lengths) -> str:
+    g, out = joint.geometry, []
+    if joint.kind.name != "fixed" and g.axis is not None:
+        out.append(f"axis {vector(g.axis)}")
+    if joint.kind.name == "universal":
+        out.append(f"then {vector(g.axis2)}")
+    if joint.kind.name not in ("fixed", "prismatic") and g.point is not None:
+        out.append(f"at {lengths.point(g.point)} {lengths.unit}")
+    if joint.kind.name == "screw":
+        out.append(f"{lengths.length(g.pitch)} {lengths.unit} a turn")
+    return ", ".join(out)
+
+
+_SAID: dict[type[Component], Callable[[Any, Lengths], str]] = {
+    Ground: lambda c, u: "",
+    RigidBody: _body,
+    JointComponent: _joint,
+    MotionDrive: lambda c, u: f"{_signal(c.signal)} rad or m",
+    EffortDrive: lambda c, u: f"{_signal(c.signal)} N·m or N",
+    Spring: lambda c, u: f"{number(c.stiffness)} N·m/rad or N/m, rest {number(c.rest)} rad or m",
+    Damper: lambda c, u: f"{number(c.damping)} N·m·s/rad or N·s/m",
+    EndStop: lambda c, u: f"{number(c.lower)} to {number(c.upper)} rad or m",
+    Servo: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
+    DcMotor: lambda c, u: (
+        f"{number(c.resistance)} Ω, {number(c.inductance)} H, {number(c.constant)} N·m/A, gear {number(c.gear)}"
+    ),
+    VoltageSource: lambda c, u: f"{_signal(c.signal)} V",
+    VoltageController: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
+    SpringDamper: lambda c, u: (
+        f"{number(c.stiffness)} N/m, {number(c.damping)} N·s/m, rest {_length(c.rest, u)}, "
+        f"from {u.point(c.point)} to {u.point(c.other)} {u.unit}"
+    ),
+    Gear: lambda c, u: f"a = {number(c.ratio)}·b",
+    LoadComponent: lambda c, u: (
+        f"{_triple(c.force)} N, {_triple(c.torque)} N·m at {u.point(c.point)} {u.unit}"
+        f"{', turning with it' if c.turning else ''}"
+    ),
+}
+
+
+def _length(metres: float, lengths: Lengths) -> str:
+    return f"{lengths.length(metres)} {lengths.unit}"
+
+
+def _triple(values: Any) -> str:
+    return f"({', '.join(number(float(value)) for value in values)})"

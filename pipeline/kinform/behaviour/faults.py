@@ -1,0 +1,159 @@
+"""What is wrong with a flat network, component by component: what no solver could make a motion of."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from kinform.behaviour.components import (
+    Actor,
+    Component,
+    DcMotor,
+    EndStop,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    RigidBody,
+    SpringDamper,
+    System,
+    VoltageController,
+    VoltageSource,
+)
+from kinform.behaviour.shafts import Controller
+from kinform.behaviour.signals import Constant, Ramp, Sine, Table
+
+__all__ = ["faults"]
+
+_SIGNALS = (Constant, Ramp, Sine, Table)
+_UNIT = 1e-9
+"""Length of an axis beyond 1 that no rounding explains."""
+_UNBOUNDED = ("lower", "upper", "limit")
+"""Values that may be infinite."""
+
+
+def faults(system: System) -> tuple[tuple[str, str], ...]:
+    """(what the component is called, what is wrong) of a flat system, in the order of its components."""
+    found = list(_structure(system))
+    for component in system.components:
+        found += [(component.subject, why) for why in _values(component)]
+        found += [(component.subject, why) for why in _meetings(system, component)]
+    return tuple(dict.fromkeys(found))
+
+
+def _structure(system: System) -> Iterator[tuple[str, str]]:
+    grounds = [c for c in system.components if isinstance(c, Ground)]
+    if len(grounds) != 1:
+        yield (grounds[1].subject if grounds else "ground"), f"a device has one ground, this one has {len(grounds)}"
+    for kinds, what in (((Ground, RigidBody), "bodies"), ((JointComponent,), "joints")):
+        names = Counter(c.subject for c in system.components if isinstance(c, kinds))
+        yield from ((name, f"{count} {what} are called so") for name, count in names.items() if count > 1)
+
+
+def _values(component: Component) -> Iterator[str]:
+    """Numbers that are none, or that cannot be."""
+    for field in dataclasses.fields(component):
+        value = getattr(component, field.name)
+        if isinstance(component, RigidBody):
+            continue  # what is not known of a body stands in the way of dynamics only
+        if isinstance(value, Controller):
+            yield from _numbers(value, "its ")
+        elif isinstance(value, _SIGNALS):
+            yield from _numbers(value, "its law: ")
+            yield from _rows(value)
+        elif isinstance(value, float | int | np.ndarray) and not isinstance(value, bool):
+            yield from _number(field.name, value, "its ")
+    if isinstance(component, EndStop) and component.lower > component.upper:
+        yield f"its lower limit {component.lower:g} is above the upper {component.upper:g}"
+    if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):
+        yield "its resistance must be positive, its inductance not negative"
+    if isinstance(component, JointComponent):
+        yield from _geometry(component)
+
+
+def _geometry(joint: JointComponent) -> Iterator[str]:
+    try:
+        joint.kind.chain(joint.geometry)
+    except ValueError as error:
+        yield f"the {joint.kind.name} joint cannot be placed: {error}"
+    for name in ("axis", "axis2"):
+        vector = getattr(joint.geometry, name)
+        if vector is not None and np.all(np.isfinite(vector)) and abs(float(np.linalg.norm(vector)) - 1.0) > _UNIT:
+            yield f"its {name} is not of length 1"
+
+
+def _rows(signal: object) -> Iterator[str]:
+    if not isinstance(signal, Table):
+        return
+    if len(signal.knots) < 2 or len(signal.knots) != len(signal.levels):
+        yield f"its law: the table has {len(signal.knots)} times and {len(signal.levels)} levels, at least two each"
+    elif any(later <= earlier for earlier, later in pairwise(signal.knots)):
+        yield "its law: the times of its table do not increase"
+
+
+def _numbers(record: object, whose: str) -> Iterator[str]:
+    for field in dataclasses.fields(record):  # type: ignore[arg-type]
+        value = getattr(record, field.name)
+        if isinstance(value, float | int | tuple):
+            yield from _number(field.name, value, whose)
+
+
+def _number(name: str, value: object, whose: str) -> Iterator[str]:
+    array = np.asarray(value, dtype=np.float64)
+    bad = np.isnan(array) if name in _UNBOUNDED else ~np.isfinite(array)
+    if bad.any():
+        yield f"{whose}{name.replace('_', ' ')} is not a finite number"
+
+
+def _meetings(system: System, component: Component) -> Iterator[str]:
+    """Ports that meet nothing that could answer them, or too much."""
+    if isinstance(component, JointComponent | SpringDamper):
+        for port in ("a", "b"):
+            yield from _one_body(system, component, port)
+    if isinstance(component, JointComponent) and component.kind.rates:
+        others = [c for c, _ in system.at(component.name, "shaft") if isinstance(c, JointComponent)]
+        if others:
+            yield f"its shaft is joined with that of {_listed(others, 'joint')}: a gear of ratio 1 does that"
+    if isinstance(component, LoadComponent):
+        yield from _one_body(system, component, "frame")
+    if isinstance(component, Gear):
+        for port in ("a", "b"):
+            yield from _one_shaft(system, component, port)
+    if isinstance(component, Actor | VoltageController):
+        yield from _one_shaft(system, component, "shaft")
+    if isinstance(component, DcMotor):
+        yield from _supplied(system, component)
+    if isinstance(component, VoltageSource | VoltageController) and not any(
+        isinstance(other, DcMotor) for other, _ in system.at(component.name, "terminals")
+    ):
+        yield "it supplies no motor"
+
+
+def _one_body(system: System, component: Component, port: str) -> Iterator[str]:
+    met = [c for c, _ in system.at(component.name, port) if isinstance(c, Ground | RigidBody)]
+    if len(met) != 1:
+        yield f"its port {port} meets {_listed(met, 'body')}: it needs one body"
+
+
+def _one_shaft(system: System, component: Component, port: str) -> Iterator[str]:
+    met = [c for c, _ in system.at(component.name, port) if isinstance(c, JointComponent)]
+    if len(met) != 1:
+        yield f"its port {port} is on {_listed(met, 'joint')}: it needs one"
+
+
+def _supplied(system: System, motor: DcMotor) -> Iterator[str]:
+    met = [c for c, _ in system.at(motor.name, "terminals") if isinstance(c, VoltageSource | VoltageController)]
+    if len(met) != 1:
+        yield f"its terminals meet {_listed(met, 'source of a voltage')}: they need one"
+        return
+    (supply,) = met
+    if isinstance(supply, VoltageController) and system.node(supply.name, "shaft") != system.node(motor.name, "shaft"):
+        yield f'its controller "{supply.subject}" reads another shaft than its own, which is not simulated'
+
+
+def _listed(met: Sequence[Component], what: str) -> str:
+    return f"no {what}" if not met else f"{', '.join(c.subject for c in met)}"

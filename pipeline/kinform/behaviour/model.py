@@ -1,0 +1,233 @@
+"""Port models by hand: components are named, ports are joined by the names of what they meet.
+
+    model = Model()
+    model.ground("base")
+    model.body("bob", 1.0, (0, 0, -1), inertia=(0, 0, 0))
+    model.joint("hinge", "base", "bob", "revolute", axis=(0, 1, 0), point=(0, 0, 0))
+    model.spring("return", "hinge", stiffness=2.0)
+    system = model.system()
+
+World axes at the pose in which the model is written, SI and radians; a joint's value is zero in that pose.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinform.behaviour.components import (
+    Component,
+    Controller,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    EndStop,
+    Gear,
+    Ground,
+    JointComponent,
+    LoadComponent,
+    MotionDrive,
+    Node,
+    RigidBody,
+    Servo,
+    Spring,
+    SpringDamper,
+    System,
+    VoltageController,
+    VoltageSource,
+)
+from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.nested import placed
+from kinform.behaviour.signals import Signal
+from kinform.kinematics.graph import UnionFind
+
+__all__ = ["Model"]
+
+Array = NDArray[np.float64]
+Where = str | tuple[str, str]
+"""A component by name, or one of its ports: (component, port)."""
+
+
+class Model:
+    """A port model while it is written; `system()` is what it has become. Every method that adds raises ValueError
+    for a name that is taken, or a component or port that is not there."""
+
+    def __init__(self) -> None:
+        self.components: dict[str, Component] = {}
+        self._joined: list[tuple[tuple[str, str], tuple[str, str]]] = []
+        self._exposed: list[tuple[str, tuple[str, str]]] = []
+
+    def add(self, component: Component, **joined: Where) -> None:
+        """Add a component; `joined`: what each of its ports meets. A port that is not named meets nothing (yet)."""
+        if component.name in self.components:
+            raise ValueError(f'there is a component "{component.name}" already')
+        sizes = {port.name: port.size for port in component.ports}
+        for port in joined:
+            if port not in sizes:
+                raise ValueError(f'"{component.name}" has no port "{port}": it has {", ".join(sizes) or "none"}')
+        met = [((component.name, port), self._port(where, port, sizes[port])) for port, where in joined.items()]
+        self.components[component.name] = component
+        self._joined += met
+
+    def _port(self, where: Where, port: str, size: int) -> tuple[str, str]:
+        """The port that is meant: the one named, the one of the same name, or the only one that fits."""
+        name, wanted = (where, None) if isinstance(where, str) else where
+        if name not in self.components:
+            raise ValueError(f'there is no component "{name}": there are {", ".join(self.components) or "none"}')
+        fits = [p.name for p in self.components[name].ports if p.size == size]
+        if wanted is not None:
+            if wanted not in fits:
+                raise ValueError(f'"{name}" has no port "{wanted}" of size {size}: it has {", ".join(fits) or "none"}')
+            return name, wanted
+        if port in fits and not isinstance(self.components[name], JointComponent):
+            return name, port
+        if len(fits) != 1:
+            raise ValueError(
+                f'which port of "{name}" is meant for "{port}"? It has {", ".join(fits) or "none"} so wide'
+            )
+        return name, fits[0]
+
+    def join(self, first: tuple[str, str], second: Where) -> None:
+        """Join a port of a component with one of another: they are in one node then."""
+        name, port = first
+        size = {p.name: p.size for c in (self.components.get(name),) if c is not None for p in c.ports}.get(port)
+        if size is None:
+            raise ValueError(f'there is no port "{port}" of a component "{name}"')
+        self._joined.append((first, self._port(second, port, size)))
+
+    def expose(self, port: str, component: str, inner: str) -> None:
+        """Make a port of the system out of the node in which the port `inner` of a component is."""
+        if (component, inner) not in {(c.name, p.name) for c in self.components.values() for p in c.ports}:
+            raise ValueError(f'there is no port "{inner}" of a component "{component}" to expose as "{port}"')
+        self._exposed.append((port, (component, inner)))
+
+    def system(self, name: str = "", subject: str = "") -> System:
+        """The components, and the nodes that their joined ports make."""
+        ports = [(c.name, port.name) for c in self.components.values() for port in c.ports]
+        sizes = {(c.name, port.name): port.size for c in self.components.values() for port in c.ports}
+        number = {port: k for k, port in enumerate(ports)}
+        merged = UnionFind(len(ports))
+        for first, second in self._joined:
+            merged.union(number[first], number[second])
+        groups: dict[int, list[tuple[str, str]]] = defaultdict(list)
+        for port in ports:
+            groups[merged.find(number[port])].append(port)
+        nodes = tuple(Node(tuple(group), sizes[group[0]]) for group in groups.values())
+        return System(tuple(self.components.values()), nodes, name, subject, tuple(self._exposed))
+
+    def include(self, name: str, system: System, X: ArrayLike | None = None, **joined: Where) -> None:
+        """Put a system in, called `name`, moved by the pose X (4, 4); its ports meet what is named."""
+        moved = system if X is None else placed(system, np.asarray(X, dtype=np.float64))
+        self.add(System(moved.components, moved.nodes, name, name, moved.exposed), **joined)
+
+    def ground(self, name: str = "ground") -> None:
+        """What is at rest."""
+        self.add(Ground(name, name))
+
+    def body(self, name: str, mass: float | None, centre_of_mass: ArrayLike, inertia: ArrayLike) -> None:
+        """A rigid body: kg, m, kg·m² about the centre of mass ((3, 3), or the diagonal)."""
+        tensor = np.asarray(inertia, dtype=np.float64)
+        tensor = np.diag(tensor) if tensor.ndim == 1 else tensor
+        self.add(RigidBody(name, name, mass, np.asarray(centre_of_mass, dtype=np.float64), tensor))
+
+    def joint(
+        self,
+        name: str,
+        a: Where,
+        b: Where,
+        kind: str = "revolute",
+        *,
+        axis: ArrayLike | None = None,
+        point: ArrayLike | None = None,
+        axis2: ArrayLike | None = None,
+        pitch: float | None = None,
+    ) -> None:
+        """A joint between two bodies, of the kinds in `kinform.behaviour.joints.KINDS`; m a turn for the pitch."""
+        if kind not in KINDS:
+            raise ValueError(f'the joint "{name}" is of the unknown kind "{kind}": expected one of {", ".join(KINDS)}')
+        geometry = JointGeometry(_unit(axis), _vector(point), _unit(axis2), pitch)
+        self.add(JointComponent(name, name, KINDS[kind], geometry), a=a, b=b)
+
+    def motion(self, name: str, joint: Where, signal: Signal) -> None:
+        """The joint's value follows the signal."""
+        self.add(MotionDrive(name, name, signal), shaft=joint)
+
+    def effort(self, name: str, joint: Where, signal: Signal) -> None:
+        """The joint gets the effort of the signal, N·m or N."""
+        self.add(EffortDrive(name, name, signal), shaft=joint)
+
+    def spring(self, name: str, joint: Where, stiffness: float, rest: float = 0.0) -> None:
+        """N·m/rad and rad, or N/m and m."""
+        self.add(Spring(name, name, stiffness, rest), shaft=joint)
+
+    def damper(self, name: str, joint: Where, damping: float) -> None:
+        """N·m·s/rad or N·s/m."""
+        self.add(Damper(name, name, damping), shaft=joint)
+
+    def stop(self, name: str, joint: Where, lower: float = -math.inf, upper: float = math.inf) -> None:
+        """The joint's value stays between the limits, rad or m."""
+        self.add(EndStop(name, name, lower, upper), shaft=joint)
+
+    def gear(self, name: str, a: Where, b: Where, ratio: float) -> None:
+        """The value of joint `a` is the ratio times that of joint `b`."""
+        self.add(Gear(name, name, ratio), a=a, b=b)
+
+    def servo(self, name: str, joint: Where, target: Signal, controller: Controller) -> None:
+        """The effort on the joint is the controller's output for the target of its value."""
+        self.add(Servo(name, name, target, controller), shaft=joint)
+
+    def motor(
+        self, name: str, joint: Where, resistance: float, inductance: float, constant: float, gear: float = 1.0
+    ) -> None:
+        """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint."""
+        self.add(DcMotor(name, name, resistance, inductance, constant, gear), shaft=joint)
+
+    def voltage(self, name: str, motor: Where, signal: Signal) -> None:
+        """The voltage across the terminals of a motor, V."""
+        self.add(VoltageSource(name, name, signal), terminals=motor)
+
+    def controller(self, name: str, motor: Where, joint: Where, target: Signal, controller: Controller) -> None:
+        """A controller that gives the motor its voltage for the target of the joint's value."""
+        self.add(VoltageController(name, name, target, controller), terminals=motor, shaft=joint)
+
+    def spring_between(
+        self,
+        name: str,
+        a: Where,
+        b: Where,
+        points: tuple[ArrayLike, ArrayLike],
+        stiffness: float,
+        damping: float = 0.0,
+        rest: float = 0.0,
+    ) -> None:
+        """A spring and damper between a point of body `a` and one of body `b`: N/m, N·s/m, m."""
+        point, other = (np.asarray(end, dtype=np.float64) for end in points)
+        self.add(SpringDamper(name, name, point, other, stiffness, damping, rest), a=a, b=b)
+
+    def load(
+        self,
+        name: str,
+        body: Where,
+        point: ArrayLike,
+        force: ArrayLike = (0.0, 0.0, 0.0),
+        torque: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        turning: bool = False,
+    ) -> None:
+        """A force (N) and a torque (N·m) on a body at a point; `turning`: they turn with the body."""
+        push, twist, at = (np.asarray(value, dtype=np.float64) for value in (force, torque, point))
+        self.add(LoadComponent(name, name, push, twist, at, turning), frame=body)
+
+
+def _vector(value: ArrayLike | None) -> Array | None:
+    return None if value is None else np.asarray(value, dtype=np.float64)
+
+
+def _unit(value: ArrayLike | None) -> Array | None:
+    """The direction with length 1; what has none stays as it is, and is refused where it is needed."""
+    vector = _vector(value)
+    length = 0.0 if vector is None else float(np.linalg.norm(vector))
+    return vector / length if vector is not None and length > 0.0 else vector
