@@ -142,8 +142,9 @@ def simulate(
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
     function = design.assembly.function
-    stated = bool(function.requirements) or any(joint.range is not None for joint in function.joints)
-    wanted = stated if ranges is None else ranges
+    meshed = any(part.mesh is not None for part in design.assembly.parts)
+    stated = meshed and (bool(function.requirements) or any(joint.range is not None for joint in function.joints))
+    wanted = stated if ranges is None else meshed and ranges
 
     def run(view: Assembly) -> Any:
         from kinform import simulation
@@ -151,7 +152,8 @@ def simulate(
         run = simulation.simulate(view, kinematics, masses, level=level, progress=progress, say=say)
         return _collided(view, design, kinematics, run, wanted)
 
-    return _advance("simulation", design, run, ledger, level, None if wanted == stated else wanted)
+    asked = level if wanted == stated else f"{level}, ranges {wanted}"
+    return _advance("simulation", design, run, ledger, level, wanted, asked)
 
 
 def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simulation, ranges: bool) -> Simulation:
@@ -226,8 +228,10 @@ def _advance(
     ledger: Ledger | None,
     level: str | None = None,
     ranges: bool | None = None,
+    asked: str | None = None,
 ) -> Design:
-    """The design with the result of the stage: the earlier one where nothing changed, else a new one."""
+    """The design with the result of the stage: the earlier one where nothing changed, else a new one; `asked`: what was
+    asked for beside what the design says."""
     from kinform.results import fingerprints, inputs
 
     ledger = ledger or Ledger()
@@ -246,7 +250,7 @@ def _advance(
     return replace(
         start,
         **{_FIELDS[stage]: result},
-        fingerprints=_descended(marks, stage, level if ranges is None else f"{level}, ranges {ranges}"),
+        fingerprints=_descended(marks, stage, asked),
     )
 
 
@@ -274,4 +278,6 @@ def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> di
 def _before(stage: str, previous: Design) -> dict[str, str]:
     from kinform.results import fingerprints
 
-    return dict(fingerprints.of_stage(stage, _without(previous, stage)))
+    known = previous.simulation if stage == "simulation" else None
+    ranges = None if known is None else known.ranges is not None
+    return dict(fingerprints.of_stage(stage, _without(previous, stage), ranges=ranges))

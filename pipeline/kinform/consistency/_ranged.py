@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from kinform.consistency._compare import Comparison
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import angle, length
+from kinform.consistency._words import angle, length, quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 
@@ -25,6 +25,8 @@ class Ranged:
     sign: float = 1.0
     """−1 where the designer's values run against those of kinform."""
     reason: str = ""
+    given: bool = False
+    """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
 
 def ranged(context: Context) -> list[Ranged]:
@@ -32,13 +34,20 @@ def ranged(context: Context) -> list[Ranged]:
     joints = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     compared = context.comparisons
     if isinstance(compared, Outcome):
-        return [Ranged(joint, reason=compared.reason) for joint in joints]
+        given = compared.kind == "skipped" and not context.meshes
+        return [Ranged(joint, reason=compared.reason, given=given) for joint in joints]
     by_name = {comparison.intended.name: comparison for comparison in compared}
     return [_ranged(context, joint, by_name[joint.name]) for joint in joints]
 
 
 def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -> Ranged:
     run, joint = context.design.simulation, comparison.joint
+    if comparison.state == "stated":
+        bare = [body.name for body in comparison.bodies if body.name not in context.shaped]
+        if len(bare) == 2 and len(context.shaped) < 2:
+            return Ranged(intended, reason="its bodies have no meshes: the range is given", given=True)
+        if bare:
+            return Ranged(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh")
     if not comparison.right_type or joint is None or joint.type != intended.type or joint.axis is None:
         return Ranged(intended, reason="no joint of that type was found directly between its parts")
     if run is None or run.ranges is None:

@@ -59,12 +59,13 @@ def _shapes(assembly: Assembly) -> Assembly:
 
 
 def _bodies_and_joints(assembly: Assembly) -> Assembly:
-    """What decides bodies and joints: of the function, only the joints that it names; densities, only where
-    the heaviest body becomes the ground."""
+    """What decides bodies and joints: of the function, only the joints that it names, and where there are no meshes its
+    couplings; densities, only where the heaviest body becomes the ground."""
     bare, function = _bare(assembly), _bare_function(assembly.function)
     joints = tuple(replace(joint, range=None) for joint in function.joints)
     parts = bare.parts if bare.ground is None else _weightless(bare.parts)
-    return replace(bare, parts=parts, function=Function(joints=joints), simulation=None)
+    couplings = () if any(part.mesh is not None for part in parts) else function.couplings
+    return replace(bare, parts=parts, function=Function(joints=joints, couplings=couplings), simulation=None)
 
 
 def _densities(assembly: Assembly) -> Assembly:
