@@ -28,7 +28,9 @@ def check(context: Context) -> Outcome:
     if not couplings:
         return skipped("the function states no coupling")
     if not context.meshes:
-        return skipped(f"no part has a mesh: {counted(len(couplings), 'coupling')} given by the function, nothing to compare")
+        return skipped(
+            f"no part has a mesh: {counted(len(couplings), 'coupling')} given by the function, nothing to compare"
+        )
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics

@@ -29,7 +29,9 @@ def check(context: Context) -> Outcome:
         return skipped("no intended joint states a range")
     open_ = [item for item in items if not item.given]
     if not open_:
-        return skipped(f"bodies without meshes: {counted(len(items), 'range')} given by the function, nothing to compare")
+        return skipped(
+            f"bodies without meshes: {counted(len(items), 'range')} given by the function, nothing to compare"
+        )
     findings = []
     for item in open_:
         why = _unknown(item)
