@@ -10,16 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from kinform.errors import StageError
 from kinform.ledger import Ledger
-from kinform.model.assembly import Assembly
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
-from kinform.model.kinematics import Kinematics
-from kinform.model.mass import MassProperties
-from kinform.model.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly
+    from kinform.model.kinematics import Kinematics
+    from kinform.model.mass import MassProperties
+    from kinform.model.simulation import Simulation
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 

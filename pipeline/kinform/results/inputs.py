@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinform.model.assembly import Assembly, Mesh, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
-from kinform.model.kinematics import Body, ConstraintMatrix, Kinematics, Misfit, Mobility
+
+if TYPE_CHECKING:
+    from kinform.model.kinematics import Body, Kinematics
 
 __all__ = ["assembly_for", "bare_mesh", "only_bodies"]
 
@@ -34,6 +37,8 @@ def bare_mesh(mesh: Mesh) -> Mesh:
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:
     """Which parts move as one, and nothing of how."""
+    from kinform.model.kinematics import ConstraintMatrix, Kinematics, Misfit, Mobility
+
     zero = np.zeros(0)
     none = np.zeros(0, dtype=np.int64)
     matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)
