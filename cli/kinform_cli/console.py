@@ -72,7 +72,11 @@ def stderr() -> Console:
 def tell(text: str | Text) -> None:
     """A line on stderr. That nobody can read it changes no verdict."""
     try:
-        stderr().print(text, soft_wrap=True)
+        if isinstance(text, str):  # nothing to style: without rich, whose import takes longer than all else
+            sys.stderr.write(text + "\n")
+            sys.stderr.flush()
+        else:
+            stderr().print(text, soft_wrap=True)
     except OSError:
         _forget(sys.stderr)
 

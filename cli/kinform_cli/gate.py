@@ -7,11 +7,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-import typer
-
 from kinform_cli import console
+from kinform_cli.choices import FindingsFormat, Severity
 from kinform_cli.errors import FINDINGS
-from kinform_cli.options import FindingsFormat, Severity
 from kinform_cli.text import count
 
 if TYPE_CHECKING:
@@ -19,7 +17,7 @@ if TYPE_CHECKING:
     from kinform.model.design import Design
     from kinform.model.findings import Finding
 
-__all__ = ["conclude", "show"]
+__all__ = ["conclude", "show", "show_run"]
 
 
 def conclude(
@@ -30,7 +28,22 @@ def conclude(
     outcome: Outcome | None = None,
 ) -> NoReturn:
     """Print the findings of a design that was checked, and leave with the exit code of the gate; see `show`."""
+    import typer
+
     raise typer.Exit(show(design, format, fail_on, manifest_folder, outcome))
+
+
+def show_run(outcome: Outcome, format: FindingsFormat, fail_on: Severity, manifest_folder: Path | None) -> int:
+    """What a run says on its own account, then its findings; returns the exit code of the gate."""
+    design = outcome.gist
+    if not design.assembly.function.stated:
+        console.say("note: no [function] is stated: nothing is compared with what the design is for")
+    for note in design.assembly.notes:
+        console.say(f"note: {note}")
+    from kinform_cli.notes import ground_note
+
+    console.say(ground_note(design))
+    return show(design, format, fail_on, manifest_folder, outcome)
 
 
 def show(

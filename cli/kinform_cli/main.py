@@ -26,6 +26,12 @@ def main(arguments: Sequence[str]) -> int:
     console.settings.quiet = False
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
+        from kinform_cli.unchanged import try_unchanged
+
+        done = try_unchanged(arguments)
+        if done is not None:
+            console.flush()
+            return done
         import typer
 
         from kinform_cli.app import app

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,6 +10,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
+from kinform_cli.choices import FindingsFormat, Severity, TableFormat
 
 __all__ = [
     "AllowOutside",
@@ -32,33 +32,6 @@ __all__ = [
     "cores",
     "examples",
 ]
-
-
-class Severity(StrEnum):
-    """Severities of findings, from the worst."""
-
-    error = "error"
-    warning = "warning"
-    note = "note"
-
-
-class FindingsFormat(StrEnum):
-    """How findings are printed."""
-
-    full = "full"
-    concise = "concise"
-    json = "json"
-    sarif = "sarif"
-    junit = "junit"
-    github = "github"
-    md = "md"
-
-
-class TableFormat(StrEnum):
-    """How results are printed."""
-
-    table = "table"
-    json = "json"
 
 
 class _WithExamples:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from kinform.errors import Problem, ResultsError, StageError
-from kinform.model.assembly import Assembly, Part
-from kinform.model.contacts import Contacts
 from kinform.model.design import Design
-from kinform.model.findings import CheckReport, Finding
-from kinform.model.kinematics import Body, Joint, Mobility
-from kinform.model.mass import MassProperties
-from kinform.model.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly, Part
+    from kinform.model.contacts import Contacts
+    from kinform.model.findings import CheckReport, Finding
+    from kinform.model.kinematics import Body, Joint, Mobility
+    from kinform.model.mass import MassProperties
+    from kinform.model.simulation import Simulation
 
 __all__ = ["Named", "Outcome", "Results", "open_results"]
 

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from kinform.errors import StageError
 from kinform.ledger import Ledger
-from kinform.model.assembly import Assembly
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
-from kinform.model.kinematics import Kinematics
-from kinform.model.mass import MassProperties
-from kinform.model.simulation import Simulation
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
+    from kinform.model.assembly import Assembly
+    from kinform.model.kinematics import Kinematics
+    from kinform.model.mass import MassProperties
+    from kinform.model.simulation import Simulation
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
@@ -145,8 +145,9 @@ def simulate(
     kinematics = _needed(design.kinematics, "kinform simulate", "joints")
     masses = _needed(design.mass, "kinform simulate", "mass")
     function = design.assembly.function
-    stated = bool(function.requirements) or any(joint.range is not None for joint in function.joints)
-    wanted = stated if ranges is None else ranges
+    meshed = any(part.mesh is not None for part in design.assembly.parts)
+    stated = meshed and (bool(function.requirements) or any(joint.range is not None for joint in function.joints))
+    wanted = stated if ranges is None else meshed and ranges
 
     made: list[Behaviour] = []
 
@@ -159,7 +160,8 @@ def simulate(
         )  # fmt: skip
         return _collided(view, design, kinematics, run, wanted)
 
-    done = _advance("simulation", design, run, ledger, level, None if wanted == stated else wanted)
+    asked = level if wanted == stated else f"{level}, ranges {wanted}"
+    done = _advance("simulation", design, run, ledger, level, wanted, asked)
     if made:
         return replace(done, behaviour=made[-1])
     kept = ledger.previous.behaviour if ledger is not None and ledger.previous is not None else None
@@ -240,8 +242,10 @@ def _advance(
     ledger: Ledger | None,
     level: str | None = None,
     ranges: bool | None = None,
+    asked: str | None = None,
 ) -> Design:
-    """The design with the result of the stage: the earlier one where nothing changed, else a new one."""
+    """The design with the result of the stage: the earlier one where nothing changed, else a new one; `asked`: what was
+    asked for beside what the design says."""
     from kinform.results import fingerprints, inputs
 
     ledger = ledger or Ledger()
@@ -260,7 +264,7 @@ def _advance(
     return replace(
         start,
         **{_FIELDS[stage]: result},
-        fingerprints=_descended(marks, stage, level if ranges is None else f"{level}, ranges {ranges}"),
+        fingerprints=_descended(marks, stage, asked),
     )
 
 
@@ -288,4 +292,6 @@ def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> di
 def _before(stage: str, previous: Design) -> dict[str, str]:
     from kinform.results import fingerprints
 
-    return dict(fingerprints.of_stage(stage, _without(previous, stage)))
+    known = previous.simulation if stage == "simulation" else None
+    ranges = None if known is None else known.ranges is not None
+    return dict(fingerprints.of_stage(stage, _without(previous, stage), ranges=ranges))

@@ -79,6 +79,31 @@ def test_a_run_with_nothing_changed_parses_no_mesh_and_says_the_same(folder, cap
     assert (folder / "r.h5").stat().st_mtime > 1.6e9
 
 
+@pytest.mark.parametrize("format", ["full", "json", "github"])
+def test_the_short_way_of_a_run_with_nothing_changed_says_what_the_long_one_says(folder, capsys, format):
+    code = run("-q")
+    capsys.readouterr()
+    told = []
+    for more in ((), ("--jobs", "1")):  # the second is left to the command line proper
+        assert run("-f", format, *more) == code
+        told.append(capsys.readouterr())
+    assert told[0] == told[1]
+    assert "nothing changed" in told[0].err
+    assert "no [function]" not in told[0].err
+    assert run("--fail-on", "nothing") == run("-f") == 2
+
+
+def test_what_the_function_asks_for_first_gives_the_bytes_of_a_run_from_nothing(folder, capsys):
+    plain = (folder / "m.toml").read_text()
+    asked = plain + '\n[[function.require]]\nname = "held"\nkind = "retained"\npart = "shaft"\n'
+    for text in (asked, plain):
+        (folder / "m.toml").write_text(text)
+        run("-q")
+        (folder / "fresh.h5").unlink(missing_ok=True)
+        main(["run", "m.toml", "-o", "fresh.h5", "-q"])
+        assert (folder / "r.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
+
+
 def test_a_mesh_that_moved_outside_is_refused_again(folder, tmp_path_factory, capsys):
     run("-q")
     elsewhere = tmp_path_factory.mktemp("elsewhere") / "shaft.stl"

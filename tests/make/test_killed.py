@@ -52,6 +52,8 @@ def build(command: list[str], kill_after: float | None = None) -> bool:
 
 
 def kill_and_resume(folder: Path, designs, kills: int) -> None:
+    """Kills a build `kills` times, each time some way on from where the last one left it, and from nothing again
+    whenever it ends; so the moments are spread over the whole of it, and most of them fall into work."""
     plain, torn = folder / "plain", folder / "torn"
     start = time.monotonic()
     build(project(plain, designs))
@@ -60,9 +62,11 @@ def kill_and_resume(folder: Path, designs, kills: int) -> None:
     assert len(expected) == 5 * len(designs)
     command = project(torn, designs)
     moments = random.Random(6)
+    stage = 2.0 * whole / len(expected)  # two at a time
     done = 0
     while done < kills:
-        if build(command, moments.uniform(0.0, whole / 2)):
+        if build(command, moments.uniform(0.0, 2.0 * stage)):
+            assert results(torn) == expected
             shutil.rmtree(torn / "examples" / "build")
             continue
         done += 1
@@ -76,7 +80,7 @@ def kill_and_resume(folder: Path, designs, kills: int) -> None:
 
 
 def test_a_build_that_is_killed_and_resumed_ends_with_the_same_bytes(tmp_path):
-    kill_and_resume(tmp_path, FEW, 3)
+    kill_and_resume(tmp_path, FEW, 5)
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from assemblies import assembly, part
 
 from kinform.model.assembly import Source
 from kinform.model.design import Design
-from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
 
 NAMES = (
     "[m6]",
@@ -49,7 +49,12 @@ RULES = (
     RuleOutcome("KF501", "simulation-refused", "skipped", "no simulation is requested"),
     RuleOutcome("KF904", "range-not-checked", "inconclusive", "no rule checks ranges yet"),
 )
-REPORT = CheckReport((NOTE, ERROR, WARNING), RULES)
+ACCEPTED = Ignored(
+    Finding("KF407", "contact-unintended", "warning", ("c|<i>", "d"), "'c|<i>' and 'd' touch", file="parts/arm 1.toml", line=3),
+    "manifest",
+    "glued, see {drawing} <3>",
+)  # fmt: skip
+REPORT = CheckReport((NOTE, ERROR, WARNING), RULES, (ACCEPTED,))
 
 
 def named(names: tuple[str, ...] = NAMES) -> CheckReport:

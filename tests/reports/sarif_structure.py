@@ -24,9 +24,11 @@ OBJECTS = {
         {
             "ruleId": TEXT, "ruleIndex": WHOLE, "kind": TEXT, "level": TEXT, "message": "message",
             "locations": ["location"], "partialFingerprints": BAG, "properties": BAG,
+            "suppressions": ["suppression"], "baselineState": TEXT,
         },
         {"message"},
     ),
+    "suppression": ({"kind": TEXT, "status": TEXT, "justification": TEXT}, {"kind"}),
     "message": ({"text": TEXT}, {"text"}),
     "location": ({"physicalLocation": "physical", "logicalLocations": ["logical"]}, set()),
     "physical": ({"artifactLocation": "artifact", "region": "region"}, {"artifactLocation"}),
@@ -47,6 +49,8 @@ def check(log: object) -> None:
             assert rule.get("defaultConfiguration", {}).get("level", "note") in ("none", "note", "warning", "error")
         for result in run["results"]:
             _check_result(result, rules)
+        compared = {"baselineState" in result for result in run["results"]}
+        assert len(compared) < 2, "3.27.24: all results have a state, or none has"
 
 
 def _check_result(result, rules):
@@ -54,6 +58,10 @@ def _check_result(result, rules):
     assert kind in ("notApplicable", "pass", "fail", "review", "open", "informational")
     assert level in ("none", "note", "warning", "error")
     assert (kind == "fail") == (level != "none"), "3.27.10: only failures have a level"
+    assert result.get("baselineState", "new") in ("new", "unchanged", "updated", "absent")
+    for suppression in result.get("suppressions", ()):
+        assert suppression["kind"] in ("inSource", "external")
+        assert suppression.get("status", "accepted") in ("accepted", "underReview", "rejected")
     if "ruleIndex" in result:
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
     assert all(isinstance(value, str) for value in result.get("partialFingerprints", {}).values())

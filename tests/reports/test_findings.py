@@ -52,6 +52,9 @@ def test_full_tells_everything_within_eighty_columns():
         "not decided:\n"
         "  KF904 range-not-checked: no rule checks ranges yet\n"
         "\n"
+        "skipped:\n"
+        "  no simulation is requested: KF501\n"
+        "\n"
         "test: inconsistent\n"
         "1 error, 0 warnings, 1 note\n"
         "3 rules ran, 1 skipped, 1 inconclusive\n"
@@ -63,7 +66,7 @@ def test_json_carries_findings_and_rules():
     found = json.loads(render(REPORT, DESIGN, "json"))
     assert found["schema"] == "kinform/findings/1"
     assert found["counts"] == {
-        "error": 1, "warning": 0, "note": 1, "passed": 0, "failed": 2, "inconclusive": 1, "skipped": 1,
+        "error": 1, "warning": 0, "note": 1, "passed": 0, "failed": 2, "inconclusive": 1, "skipped": 1, "ignored": 0,
     }  # fmt: skip
     assert found["findings"][1]["subject"] == ["el\nbow"]
     assert found["findings"][1]["place"] == [0.001, 0.0, -0.02]

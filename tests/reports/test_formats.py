@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 import sarif_structure
-from hostile import DESIGN, NAMES, REPORT, named
+from hostile import DESIGN, ERROR, NAMES, REPORT, RULES, named
 from markdown_it import MarkdownIt
 
-from kinform.consistency import Rule
-from kinform.model.findings import CheckReport, RuleOutcome
+from kinform.consistency import Rule, adopt, with_baseline
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports import FORMATS, render
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -75,6 +78,61 @@ def test_a_rule_that_this_version_does_not_know_is_still_described():
     assert log["runs"][0]["tool"]["driver"]["rules"] == [{"id": "KF999", "name": "from-the-future"}]
 
 
+def adopting(report, *findings):
+    """The report beside a baseline of these findings, and of one that is not found any more."""
+    gone = Finding("KF101", "mesh-not-watertight", "error", ("old <b>",), "3 open edges")
+    return with_baseline(report, adopt(CheckReport((*findings, gone), RULES)))[0]
+
+
+def test_sarif_suppresses_what_is_accepted_with_the_reason():
+    run = json.loads(render(REPORT, DESIGN, "sarif"))["runs"][0]
+    (accepted,) = [result for result in run["results"] if "suppressions" in result]
+    assert accepted["ruleId"] == "KF407"
+    assert accepted["suppressions"] == [
+        {"kind": "external", "status": "accepted", "justification": "glued, see {drawing} <3>"}
+    ]
+    assert not any("baselineState" in result for result in run["results"])
+
+
+def test_sarif_says_what_is_new_beside_a_baseline():
+    log = json.loads(render(adopting(REPORT, ERROR), DESIGN, "sarif"))
+    sarif_structure.check(log)
+    states = [(r["ruleId"], r["baselineState"], "suppressions" in r) for r in log["runs"][0]["results"]]
+    assert sorted(states) == [
+        ("KF101", "absent", False), ("KF107", "new", False), ("KF402", "unchanged", True), ("KF407", "new", False),
+        ("KF407", "new", True), ("KF904", "new", False),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "report",
+    [REPORT, named(), CheckReport((), ()), adopting(REPORT, ERROR)],
+    ids=["golden", "hostile", "empty", "baseline"],
+)
+def test_sarif_has_no_error_for_the_multitool_of_its_authors(report, tmp_path):
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("needs node")
+    find = "process.stdout.write(require('@microsoft/sarif-multitool-linux'))"
+    found = subprocess.run([node, "-e", find], capture_output=True, text=True, check=False)
+    if found.returncode or not os.access(found.stdout, os.X_OK):
+        pytest.skip("@microsoft/sarif-multitool-linux is not installed where node finds it (NODE_PATH)")
+    (tmp_path / "log.sarif").write_text(render(report, DESIGN, "sarif"))
+    command = [
+        found.stdout,
+        "validate",
+        str(tmp_path / "log.sarif"),
+        "--output",
+        str(tmp_path / "v.sarif"),
+        "--level",
+        "Error",
+    ]
+    ran = subprocess.run([*command, "--kind", "Fail"], capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout
+    results = json.loads((tmp_path / "v.sarif").read_text(encoding="utf-8-sig"))["runs"][0].get("results", [])
+    assert not [result for result in results if result.get("level") == "error"], ran.stdout
+
+
 # --- JUnit ---------------------------------------------------------------------------------------------------------
 
 
@@ -102,12 +160,29 @@ def test_junit_fails_what_fails_the_gate_and_errs_where_nothing_was_decided():
     assert failures("note") == ["kinform.KF107", "kinform.KF402", "kinform.KF407"]
     suite = suite_of(REPORT)
     assert [case.get("classname") for case in suite.findall("testcase[error]")] == ["kinform.KF904"]
-    assert [case.get("classname") for case in suite.findall("testcase[skipped]")] == ["kinform.KF501"]
+    assert [case.get("classname") for case in suite.findall("testcase[skipped]")] == ["kinform.KF407", "kinform.KF501"]
     assert "2 shells" in suite.find("testcase[@classname='kinform.KF107']/system-out").text
 
 
 def test_junit_of_no_rules_is_not_a_pass():
     assert suite_of(CheckReport((), (RuleOutcome("KF101", "x", "skipped"),))).get("errors") == "1"
+
+
+def test_junit_skips_what_is_accepted_with_the_reason():
+    (case,) = suite_of(REPORT).findall("testcase[@name='contact-unintended: c|<i>, d']")
+    assert case.find("skipped").get("message") == "ignored by the manifest: glued, see {drawing} <3>"
+
+
+@pytest.mark.parametrize("report", [REPORT, named()], ids=["golden", "hostile"])
+def test_another_reader_of_junit_counts_the_same(report, tmp_path):
+    junitparser = pytest.importorskip("junitparser")
+    (tmp_path / "r.xml").write_text(render(report, DESIGN, "junit"))
+    whole = junitparser.JUnitXml.fromfile(str(tmp_path / "r.xml"))
+    stated = (whole.tests, whole.failures, whole.errors)
+    (suite,) = whole
+    kinds = [type(result).__name__ for case in suite for result in case.result]
+    assert stated == (len(list(suite)), kinds.count("Failure"), kinds.count("Error"))
+    assert suite.skipped == kinds.count("Skipped")
 
 
 def test_junit_keeps_every_name():
@@ -177,6 +252,13 @@ def test_markdown_is_a_heading_a_table_and_what_was_not_decided():
     assert sum(token.type == "tr_open" for token in found) == 1 + len(REPORT.findings)
     assert sum(token.type == "td_open" for token in found) == 5 * len(REPORT.findings)
     assert any("no rule checks ranges yet" in token.content for token in found if token.type == "inline")
+
+
+@pytest.mark.parametrize("format", ["full", "md", "json"])
+def test_what_is_ignored_or_skipped_is_told_with_its_reason(format):
+    text = " ".join(render(REPORT, DESIGN, format).replace("\\", "").split())
+    assert "glued, see {drawing} <3>" in text
+    assert "no simulation is requested" in text
 
 
 # --- all -----------------------------------------------------------------------------------------------------------

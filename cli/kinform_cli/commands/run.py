@@ -9,7 +9,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.gate import conclude
+from kinform_cli.gate import show_run
 from kinform_cli.inputs import Sources, is_manifest
 from kinform_cli.options import (
     AllowOutside,
@@ -86,14 +86,6 @@ def run(
             units=units,
             say=console.say,
         )
-    design = outcome.gist
     if depfile is not None and output is not None:
-        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
-    if not design.assembly.function.stated:
-        console.say("note: no [function] is stated: nothing is compared with what the design is for")
-    for note in design.assembly.notes:
-        console.say(f"note: {note}")
-    from kinform_cli.notes import ground_note
-
-    console.say(ground_note(design))
-    conclude(design, format, fail_on, sources[0].parent if manifest else None, outcome)
+        files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))
+    raise typer.Exit(show_run(outcome, format, fail_on, sources[0].parent if manifest else None))

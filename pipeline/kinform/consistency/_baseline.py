@@ -86,7 +86,7 @@ def with_baseline(report: CheckReport, baseline: Baseline) -> tuple[CheckReport,
     )
     every = sorted((*report.ignored, *ignored), key=lambda item: (item.finding.code, item.finding.subject, item.by))
     gone = tuple(sorted(baseline.keys - groups.keys()))
-    return replace(report, findings=kept, rules=rules, ignored=tuple(every)), gone
+    return replace(report, findings=kept, rules=rules, ignored=tuple(every), gone=gone), gone
 
 
 def _adopted(key: Key, found: Iterable[Finding], baseline: Baseline) -> bool:

@@ -87,6 +87,14 @@ class Context:
         return tuple(MeshUse(parts[0].mesh, tuple(parts)) for parts in uses.values() if parts[0].mesh is not None)
 
     @cached_property
+    def shaped(self) -> frozenset[str]:
+        """Bodies of which a part has a mesh; empty without kinematics."""
+        if self.design.kinematics is None:
+            return frozenset()
+        of_part = {part: body.name for body in self.design.kinematics.bodies for part in body.parts}
+        return frozenset(of_part[part.name] for part in self.assembly.parts if part.mesh is not None)
+
+    @cached_property
     def doubts(self) -> tuple[Doubt, ...]:
         """What is implausible about the sizes."""
         return doubts(self.assembly)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from kinform.consistency._compare import Comparison
+from kinform.consistency._compare import Comparison, bodies_of
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import angle, length
+from kinform.consistency._words import angle, length, quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 
@@ -25,16 +25,34 @@ class Ranged:
     sign: float = 1.0
     """−1 where the designer's values run against those of kinform."""
     reason: str = ""
+    given: bool = False
+    """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
 
 def ranged(context: Context) -> list[Ranged]:
     """Every intended joint that states a range, sorted by name."""
     joints = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return [Ranged(joint, reason=compared.reason) for joint in joints]
-    by_name = {comparison.intended.name: comparison for comparison in compared}
-    return [_ranged(context, joint, by_name[joint.name]) for joint in joints]
+    by_name = {} if isinstance(compared, Outcome) else {item.intended.name: item for item in compared}
+    other = compared.reason if isinstance(compared, Outcome) else ""
+    return [
+        _of_sticks(context, joint)
+        or (_ranged(context, joint, by_name[joint.name]) if by_name else Ranged(joint, reason=other))
+        for joint in joints
+    ]
+
+
+def _of_sticks(context: Context, intended: IntendedJoint) -> Ranged | None:
+    """A range of which a body has no mesh; it is given where nothing in the assembly could meet."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return None
+    bodies = sorted(set(bodies_of(context.assembly, kinematics, intended.between)))
+    bare = [name for name in bodies if name not in context.shaped]
+    if not bare:
+        return None
+    given = bare == bodies and len(context.shaped) < 2
+    return Ranged(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given)
 
 
 def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -> Ranged:

@@ -62,7 +62,7 @@ def requirement_rule(code: str, name: str, kind: str, documentation: str | None,
     def check(context: Context) -> Outcome:
         own = [r for r in context.function.requirements if r.kind == kind]
         if not own:
-            return skipped(f"the function states no requirement of kind {kind}")
+            return skipped("the function states no requirement of this kind")
         answers = [(requirement, answer(context, requirement, judge)) for requirement in own]
         known = [pair for pair in answers if pair[1].state != "undecided"]
         if not known:

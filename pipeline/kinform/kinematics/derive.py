@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,7 @@ from kinform.kinematics.screws import twist_at_origin
 from kinform.kinematics.separations import links_between, separations
 from kinform.kinematics.sites import redundancy_within
 from kinform.kinematics.snapping import snap, uncertainties
+from kinform.kinematics.stated import coupled_mobility, coupling_rows, restricted
 from kinform.model.assembly import Assembly, Assumption
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
@@ -95,7 +97,32 @@ def functional(assembly: Assembly) -> Kinematics:
         if pair is not None:
             stated[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     joints = tuple(stated[pair] for pair in sorted(stated))
-    return _finish(assembly, bodies, joints, (), Misfit(), {}, (), Extents(assembly).assembly, bodies)
+    size = Extents(assembly).assembly
+    found = _finish(assembly, bodies, joints, (), Misfit(), {}, (), size, bodies)
+    return _with_couplings(assembly, found, of_part, size) if assembly.function.couplings else found
+
+
+def _with_couplings(
+    assembly: Assembly, kinematics: Kinematics, of_part: Mapping[PartName, BodyName], size: float
+) -> Kinematics:
+    """The ball-and-stick model with the freedoms that the stated couplings leave."""
+    bodies, joints = kinematics.bodies, kinematics.joints
+    index = {body.name: k for k, body in enumerate(bodies)}
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
+    spaces = [joint.twists for joint in joints]
+    ground = next(k for k, body in enumerate(bodies) if body.ground)
+    closure = close(len(bodies), edges, spaces, ground, size)
+    rows = coupling_rows(
+        assembly.function, joints, lambda name: of_part[assembly.parts_of(name)[0]], closure.offset
+    )  # fmt: skip
+    tied = restricted(closure, rows)
+    counted = coupled_mobility(kinematics.mobility, closure, tied, rows)
+    poses = {part.name: part.X_WP for part in assembly.parts}
+    places = [poses[body.parts[0]][:3, 3] for body in bodies]
+    mobility = replace(
+        counted, freedoms=_freedoms(tied, edges, spaces), named=named_freedoms(bodies, joints, tied, {}, places)
+    )
+    return replace(kinematics, mobility=mobility)
 
 
 def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts
-from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
-from kinform.model.kinematics import Kinematics
-from kinform.model.mass import MassReport
-from kinform.model.simulation import Simulation
-from kinform.model.surfaces import MeshSurfaces
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly
+    from kinform.model.contacts import Contacts
+    from kinform.model.findings import CheckReport
+    from kinform.model.kinematics import Kinematics
+    from kinform.model.mass import MassReport
+    from kinform.model.simulation import Simulation
+    from kinform.model.surfaces import MeshSurfaces
 
 if TYPE_CHECKING:
     from kinform.behaviour.build import Behaviour

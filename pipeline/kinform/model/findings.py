@@ -59,6 +59,8 @@ class CheckReport:
     rules: tuple[RuleOutcome, ...]
     ignored: tuple[Ignored, ...] = ()
     """Findings that are accepted, in the order of findings; they decide nothing."""
+    gone: tuple[tuple[str, tuple[str, ...]], ...] | None = None
+    """Codes and subjects of a baseline that are not found any more; None where no baseline was compared."""
 
     @property
     def ran(self) -> int:

@@ -23,14 +23,17 @@ def render(report: CheckReport, design: Design, run: Mapping[str, Any] | None = 
 
 
 def document(report: CheckReport, design: Design) -> dict[str, Any]:
-    """An object with the schema, the verdict, counts, findings and rules."""
+    """An object with the schema, the verdict, counts, findings, those that are accepted, and rules."""
     counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}
-    outcomes = ("passed", "failed", "inconclusive", "skipped")
+    outcomes = ("passed", "failed", "inconclusive", "skipped", "ignored")
     return {
         "schema": SCHEMA,
         "assembly": design.assembly.name,
         "verdict": verdict_line(report),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
         "findings": [dataclasses.asdict(f) for f in report.findings],
+        "ignored": [
+            dataclasses.asdict(item.finding) | {"ignored_by": item.by, "reason": item.reason} for item in report.ignored
+        ],
         "rules": [dataclasses.asdict(r) for r in report.rules],
     }

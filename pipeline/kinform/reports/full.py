@@ -6,7 +6,16 @@ import textwrap
 
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.words import one_line, place, rule_counts, severity_counts, verdict_line, where
+from kinform.reports.words import (
+    accepted,
+    one_line,
+    place,
+    rule_counts,
+    severity_counts,
+    skipped,
+    verdict_line,
+    where,
+)
 
 __all__ = ["render"]
 
@@ -14,7 +23,7 @@ WIDTH = 80
 
 
 def render(report: CheckReport, design: Design) -> str:
-    """Findings, the most severe first, then what could not be decided, then the verdict."""
+    """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the verdict."""
     order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
     blocks = [_finding(f) for f in sorted(report.findings, key=lambda f: order[f.severity])]
     undecided = [r for r in report.rules if r.outcome == "inconclusive"]
@@ -23,6 +32,9 @@ def render(report: CheckReport, design: Design) -> str:
         for rule in undecided:
             lines += _wrapped(f"{rule.code} {rule.rule}: {one_line(rule.reason)}", "  ", "      ")
         blocks.append("\n".join(lines))
+    for head, told in (("ignored:", accepted(report)), ("skipped:", skipped(report))):
+        if told:
+            blocks.append("\n".join([head, *(line for text in told for line in _wrapped(text, "  ", "      "))]))
     name = one_line(design.assembly.name)
     blocks.append("\n".join([f"{name}: {verdict_line(report)}", severity_counts(report), rule_counts(report)]))
     return "\n\n".join(blocks) + "\n"

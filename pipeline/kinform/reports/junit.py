@@ -1,8 +1,8 @@
 """JUnit XML, for the test views of CI: a test case a rule, of a rule with findings a case a finding.
 
 Findings at or above the severity that fails the gate are failures; lesser ones are told by cases that pass. A
-rule that could not decide is an error, one that does not apply is skipped; so failures are exit code 1 and errors
-alone exit code 2. The text is ASCII with character references; what XML 1.0 cannot carry is escaped as in Python.
+rule that could not decide is an error, one that does not apply is skipped, and so is a finding that is accepted, with the
+reason; so failures are exit code 1 and errors alone exit code 2. The text is ASCII with character references; what XML 1.0 cannot carry is escaped as in Python.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections import Counter
 from xml.etree import ElementTree
 
 from kinform.model.design import Design
-from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
+from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.words import details, verdict_line
 
 __all__ = ["render"]
@@ -26,9 +26,12 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     suite = ElementTree.Element("testsuite", name=_legal(design.assembly.name))
     for rule in report.rules:
         own = [finding for finding in report.findings if finding.code == rule.code]
+        accepted = [item for item in report.ignored if item.finding.code == rule.code]
         for finding in own:
             _case_of_finding(suite, finding, finding.severity in failing)
-        if not own or rule.outcome == "inconclusive":
+        for item in accepted:
+            _case_of_accepted(suite, item)
+        if not (own or accepted) or rule.outcome == "inconclusive":
             _case_of_rule(suite, rule)
     known = {rule.code for rule in report.rules}
     for finding in report.findings:
@@ -64,6 +67,13 @@ def _case_of_finding(suite: ElementTree.Element, finding: Finding, fails: bool) 
     else:
         told = ElementTree.SubElement(case, "system-out")
     told.text = _legal("\n".join(lines))
+
+
+def _case_of_accepted(suite: ElementTree.Element, item: Ignored) -> None:
+    finding = item.finding
+    case = _case(suite, finding.code, f"{finding.rule}: {', '.join(finding.subject)}")
+    message = f"ignored by the {item.by}: {item.reason or finding.message}"
+    ElementTree.SubElement(case, "skipped", message=_legal(message))
 
 
 def _case_of_rule(suite: ElementTree.Element, rule: RuleOutcome) -> None:

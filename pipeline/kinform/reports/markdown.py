@@ -11,13 +11,22 @@ from collections.abc import Sequence
 
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.words import details, one_line, rule_counts, severity_counts, verdict_line, where
+from kinform.reports.words import (
+    accepted,
+    details,
+    one_line,
+    rule_counts,
+    severity_counts,
+    skipped,
+    verdict_line,
+    where,
+)
 
 __all__ = ["cell_code", "code", "escaped", "render", "table"]
 
 
 def render(report: CheckReport, design: Design) -> str:
-    """Verdict, a table of findings (the most severe first), their details, and the rules that could not decide."""
+    """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is ignored or skipped."""
     blocks = [
         f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report))}",
         f"{severity_counts(report)}; {rule_counts(report)}",
@@ -44,6 +53,10 @@ def render(report: CheckReport, design: Design) -> str:
         blocks.append(
             "Not decided:\n\n" + "\n".join(f"- {rule.code} {rule.rule}: {escaped(rule.reason)}" for rule in undecided)
         )
+    for head, told in (("Ignored", accepted(report)), ("Skipped", skipped(report))):
+        if told:
+            lines = "\n".join(f"- {escaped(text)}" for text in told)
+            blocks.append(f"<details><summary>{head}</summary>\n\n{lines}\n\n</details>")
     return "\n\n".join(blocks) + "\n"
 
 

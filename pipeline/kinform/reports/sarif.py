@@ -1,7 +1,9 @@
 """SARIF 2.1.0 (OASIS), for code scanning: a result a finding, located at the line of the manifest that declares its subject.
 
 A rule that could not decide is a result of kind `open`; what became of every rule is in the properties of the
-run. The text is ASCII, so that no encoding of a terminal or a pipe changes it.
+run. Findings that are accepted are results with a suppression that gives the reason. Where a baseline was compared,
+results are new, unchanged (adopted) or absent (not found any more). The text is ASCII, so that no encoding of a terminal
+or a pipe changes it.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from urllib.parse import quote
 
 from kinform._version import __version__
 from kinform.model.design import Design
-from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.words import verdict_line
 
 if TYPE_CHECKING:
@@ -29,8 +31,18 @@ def render(report: CheckReport, design: Design) -> str:
     """The log as text: one run."""
     index = {rule.code: k for k, rule in enumerate(report.rules)}
     manifest = design.assembly.source.file
-    results = [_failed(finding, index, manifest) for finding in report.findings]
-    results += [_open(rule, index, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
+    compared = report.gone is not None
+    results = [
+        _failed(finding, index, manifest) | ({"baselineState": "new"} if compared else {})
+        for finding in report.findings
+    ]
+    results += [_accepted(item, index, manifest, compared) for item in report.ignored]
+    results += [_absent(code, subject, index) for code, subject in report.gone or ()]
+    results += [
+        _open(rule, index, manifest) | ({"baselineState": "new"} if compared else {})
+        for rule in report.rules
+        if rule.outcome == "inconclusive"
+    ]
     driver = {"name": "kinform", "version": __version__, "rules": _descriptors(report.rules)}
     run = {
         "tool": {"driver": driver},
@@ -84,6 +96,31 @@ def _failed(finding: Finding, index: Mapping[str, int], manifest: str) -> dict[s
     )
 
 
+def _accepted(item: Ignored, index: Mapping[str, int], manifest: str, compared: bool) -> dict[str, Any]:
+    """A finding that decides nothing: who accepted it, and why."""
+    reason = item.reason or f"adopted by the {item.by}"
+    suppression = {"kind": "external", "status": "accepted", "justification": reason}
+    state = "unchanged" if item.by == "baseline" else "new"
+    more = {"suppressions": [suppression]} | ({"baselineState": state} if compared else {})
+    return _failed(item.finding, index, manifest) | more
+
+
+def _absent(code: str, subject: Sequence[str], index: Mapping[str, int]) -> dict[str, Any]:
+    """What the baseline adopts and is not found any more."""
+    return _present(
+        {
+            "ruleId": code,
+            "ruleIndex": index.get(code),
+            "kind": "pass",
+            "level": "none",
+            "message": _message(f"{', '.join(subject)}: no longer found"),
+            "locations": _locations("", None, subject),
+            "partialFingerprints": {"codeAndSubject/v1": _hashed(code, subject)},
+            "baselineState": "absent",
+        }
+    )
+
+
 def _open(rule: RuleOutcome, index: Mapping[str, int], manifest: str) -> dict[str, Any]:
     return _present(
         {
@@ -116,8 +153,11 @@ def _locations(file: str, line: int | None, subject: Sequence[str]) -> list[dict
 
 def _key(finding: Finding) -> str:
     """The same for the same inconsistency in another run: no numbers, no lines."""
-    text = json.dumps([finding.code, *finding.subject])
-    return hashlib.sha256(text.encode()).hexdigest()
+    return _hashed(finding.code, finding.subject)
+
+
+def _hashed(code: str, subject: Sequence[str]) -> str:
+    return hashlib.sha256(json.dumps([code, *subject]).encode()).hexdigest()
 
 
 def _present(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,7 +6,10 @@ from collections import Counter
 
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
-__all__ = ["counted", "details", "one_line", "place", "rule_counts", "severity_counts", "verdict_line", "where"]
+__all__ = [
+    "accepted", "counted", "details", "one_line", "place", "rule_counts", "severity_counts", "skipped", "verdict_line",
+    "where",
+]  # fmt: skip
 
 
 def counted(number: int, noun: str) -> str:
@@ -42,6 +45,30 @@ def details(finding: Finding) -> dict[str, str]:
         "remedy": finding.remedy,
     }
     return {key: value for key, value in facts.items() if value}
+
+
+def accepted(report: CheckReport) -> list[str]:
+    """Of every finding that is accepted, and of every rule all of whose doubts are, a line that says by whom and why."""
+    told = [
+        f"{item.finding.code} {item.finding.rule}: {', '.join(map(one_line, item.finding.subject))}: "
+        f"{one_line(item.reason) if item.reason else 'adopted'} (by the {item.by})"
+        for item in report.ignored
+    ]
+    known = {item.finding.code for item in report.ignored}
+    return told + [
+        f"{rule.code} {rule.rule}: {one_line(rule.reason)}"
+        for rule in report.rules
+        if rule.outcome == "ignored" and rule.code not in known
+    ]
+
+
+def skipped(report: CheckReport) -> list[str]:
+    """Each reason for which rules were skipped, with their codes."""
+    by_reason: dict[str, list[str]] = {}
+    for rule in report.rules:
+        if rule.outcome == "skipped":
+            by_reason.setdefault(one_line(rule.reason), []).append(rule.code)
+    return [f"{reason}: {', '.join(codes)}" for reason, codes in by_reason.items()]
 
 
 def severity_counts(report: CheckReport) -> str:

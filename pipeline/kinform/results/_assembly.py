@@ -22,7 +22,6 @@ from kinform.model.assembly import (
     freeze,
 )
 from kinform.model.checks import CheckSettings
-from kinform.model.function import Function
 from kinform.model.tolerances import Tolerances
 from kinform.results import _checks, _function
 from kinform.results._table import (
@@ -125,7 +124,7 @@ def read(group: h5py.Group) -> Assembly:
 
 
 def read_header(group: h5py.Group) -> Assembly:
-    """The assembly without parts, groups and function: its name, source, files and notes."""
+    """The assembly without parts and groups: its name, source, function, files and notes."""
     (header,) = read_rows(group, "header", _HEADER)
     return Assembly(
         **_with_source(header),
@@ -133,7 +132,7 @@ def read_header(group: h5py.Group) -> Assembly:
         groups=(),
         assumptions=(),
         tolerances=Tolerances(),
-        function=Function(),
+        function=_function.read(group["function"]),
         simulation=None,
         subassemblies=(),
         files=read_texts(group, "files"),

@@ -12,17 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from kinform.model.assembly import Mesh
-from kinform.model.contacts import Contacts
-from kinform.model.kinematics import Kinematics
-from kinform.model.mass import MassReport
-from kinform.model.simulation import Simulation
-from kinform.model.surfaces import MeshSurfaces
-
 __all__ = ["digest"]
 
-_RESULTS = (MeshSurfaces, Contacts, Kinematics, MassReport, Simulation)
-"""Results of stages: large, never changed, and part of the inputs of several stages."""
+_RESULTS = frozenset({"MeshSurfaces", "Contacts", "Kinematics", "MassReport", "Simulation"})
+"""Classes of results of stages, by name, so that none need be imported: large, never changed, and part of the inputs
+of several stages."""
 _known: weakref.WeakKeyDictionary[Any, str] = weakref.WeakKeyDictionary()
 """Hashes of results that are still in use; these classes compare by identity."""
 
@@ -85,7 +79,7 @@ def _plain(array: Any) -> Any:
 
 
 def _feed_record(hasher: Any, record: Any) -> None:
-    if not isinstance(record, _RESULTS):
+    if type(record).__name__ not in _RESULTS:
         _feed_fields(hasher, record)
         return
     if record not in _known:
@@ -105,4 +99,4 @@ def _feed_fields(hasher: Any, record: Any) -> None:
 @functools.cache
 def _fields(cls: type) -> tuple[str, ...]:
     names = tuple(field.name for field in dataclasses.fields(cls))
-    return tuple(name for name in names if name not in ("vertices", "faces")) if cls is Mesh else names
+    return tuple(name for name in names if name not in ("vertices", "faces")) if cls.__name__ == "Mesh" else names

@@ -11,7 +11,7 @@ import contextlib
 import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 
@@ -19,21 +19,11 @@ from kinform._version import __version__
 from kinform.errors import ResultsError
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
-from kinform.model.kinematics import Kinematics
-from kinform.results import (
-    _assembly,
-    _constraints,
-    _contacts,
-    _findings,
-    _joints,
-    _mass,
-    _mobility,
-    _simulation,
-    _store,
-    _surfaces,
-    _table,
-    lineage,
-)
+from kinform.results import _assembly, _findings, _store, _table, lineage
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly
+    from kinform.model.kinematics import Kinematics
 
 __all__ = ["SCHEMA", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
@@ -118,6 +108,8 @@ def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
 
 
 def _write_groups(file: h5py.File, design: Design) -> None:
+    from kinform.results import _constraints, _contacts, _joints, _mass, _mobility, _simulation, _surfaces
+
     marks, contacts, kinematics = design.fingerprints, design.contacts, design.kinematics
     _assembly.write(_group(file, "assembly", marks), design.assembly)
     if marks.files:
@@ -146,6 +138,9 @@ def _write_groups(file: h5py.File, design: Design) -> None:
 
 
 def _read_groups(file: h5py.File) -> Design:
+    from kinform.model.kinematics import Kinematics
+    from kinform.results import _constraints, _contacts, _joints, _mass, _mobility, _simulation, _surfaces
+
     parts: dict[str, Any] = {"assembly": _assembly.read(file["assembly"])}
     marks = Fingerprints(stages=_read_marks(file), files=_read_contents(file), lineage=_read_lineage(file))
     if "surfaces" in file:
@@ -208,11 +203,24 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
             if not known or known != lineage.current(manifest, _read_contents(file), allow_outside=allow_outside):
                 return None
             assembly = _assembly.read_header(file["assembly"])
-            bodies = None if assembly.ground is not None else _joints.read_bodies(file["joints"])
             marks = Fingerprints(lineage=_read_lineage(file))
-            return Design(assembly, kinematics=bodies, report=_findings.read(file["findings"]), fingerprints=marks)
+            return Design(
+                assembly,
+                kinematics=_bodies(file, assembly),
+                report=_findings.read(file["findings"]),
+                fingerprints=marks,
+            )
     except (ResultsError, *_DAMAGE):
         return None
+
+
+def _bodies(file: h5py.File, assembly: Assembly) -> Kinematics | None:
+    """The bodies, where the ground is one that kinform chose and findings are told with a note about it."""
+    if assembly.ground is not None:
+        return None
+    from kinform.results import _joints
+
+    return _joints.read_bodies(file["joints"])
 
 
 @contextlib.contextmanager

@@ -12,14 +12,17 @@ import pkgutil
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from kinform._version import __version__
-from kinform.model.assembly import Assembly, Mesh
-from kinform.model.design import Design
-from kinform.model.surfaces import MeshSurfaces
-from kinform.model.tolerances import Tolerances
 from kinform.results import inputs
 from kinform.results._digest import digest
+
+if TYPE_CHECKING:
+    from kinform.model.assembly import Assembly, Mesh
+    from kinform.model.design import Design
+    from kinform.model.surfaces import MeshSurfaces
+    from kinform.model.tolerances import Tolerances
 
 __all__ = [
     "Inputs",

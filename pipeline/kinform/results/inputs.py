@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinform.model.assembly import Assembly, Mesh, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
-from kinform.model.kinematics import Body, ConstraintMatrix, Kinematics, Misfit, Mobility
+
+if TYPE_CHECKING:
+    from kinform.model.kinematics import Body, Kinematics
 
 __all__ = ["assembly_for", "bare_mesh", "only_bodies"]
 
@@ -34,6 +37,8 @@ def bare_mesh(mesh: Mesh) -> Mesh:
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:
     """Which parts move as one, and nothing of how."""
+    from kinform.model.kinematics import ConstraintMatrix, Kinematics, Misfit, Mobility
+
     zero = np.zeros(0)
     none = np.zeros(0, dtype=np.int64)
     matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)
@@ -59,12 +64,13 @@ def _shapes(assembly: Assembly) -> Assembly:
 
 
 def _bodies_and_joints(assembly: Assembly) -> Assembly:
-    """What decides bodies and joints: of the function, only the joints that it names; densities, only where
-    the heaviest body becomes the ground."""
+    """What decides bodies and joints: of the function, only the joints that it names, and where there are no meshes its
+    couplings; densities, only where the heaviest body becomes the ground."""
     bare, function = _bare(assembly), _bare_function(assembly.function)
     joints = tuple(replace(joint, range=None) for joint in function.joints)
     parts = bare.parts if bare.ground is None else _weightless(bare.parts)
-    return replace(bare, parts=parts, function=Function(joints=joints), simulation=None)
+    couplings = () if any(part.mesh is not None for part in parts) else function.couplings
+    return replace(bare, parts=parts, function=Function(joints=joints, couplings=couplings), simulation=None)
 
 
 def _densities(assembly: Assembly) -> Assembly:

@@ -202,8 +202,9 @@ def _ranks(mechanism: Mechanism, actuation: Actuation, start: Start, settings: S
     rank = rank_of(rows[:, free], scale[free], settings.free)
     if rank == rank_of(rows, scale, settings.free):
         return "", rank
+    ties = "the loops and couplings" if len(mechanism.gear_v) else "the loops"
     return (
-        "the loops leave these drives no freedom at the start: there are too many of them, "
+        f"{ties} leave these drives no freedom at the start: there are too many of them, "
         "or the mechanism starts in a singular pose",
         rank,
     )

@@ -15,7 +15,7 @@ Example: an elbow of which 6 % of the contact area, beside the journal, forbids 
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency._words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
@@ -28,6 +28,8 @@ def check(context: Context) -> Outcome:
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics
+    if not context.meshes:
+        return skipped("no part has a mesh")
     return decided(_finding(context, joint) for joint in kinematics.joints if joint.status == "blocked")
 
 

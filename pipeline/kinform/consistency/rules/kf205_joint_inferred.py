@@ -11,7 +11,7 @@ Example: a servo horn that lies flat on a bracket: the common centre of their ri
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency._words import listed, quoted
 
 __all__ = ["RULE"]
@@ -25,6 +25,8 @@ def check(context: Context) -> Outcome:
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics
+    if not context.meshes:
+        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             [joint.name],

@@ -13,7 +13,7 @@ Example: a shaft tilted by 0.15° in a bearing of 40 mm length with 0.02 mm of c
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency._words import angle, length, listed, quoted
 
 __all__ = ["RULE"]
@@ -24,6 +24,8 @@ def check(context: Context) -> Outcome:
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics
+    if not context.meshes:
+        return skipped("no part has a mesh")
     findings = []
     for name, tilt, offset in kinematics.misaligned:
         joint = context.joint(name)

@@ -6,7 +6,7 @@ were found. A place that is reached is proved by its configuration; a hole betwe
 report says how large. One that is not reached was not found from any start, and its distance is given. Near enough is
 the tolerance, by default a thousandth of the assembly's size, or 0.1°. Collisions are another requirement: `clear`.
 Joints whose range is not known may turn freely for a "no"; for a "yes" they make the requirement inconclusive (KF902),
-as closed loops with more than two freedoms do for a "no".
+as closed loops with more than two freedoms do for a "no"; and so do joints that a stated coupling ties, for a "yes".
 
 Why it matters: the tool, the beam or the camera does not get where the task is.
 
@@ -26,6 +26,7 @@ from kinform.consistency._plausibility import extent
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
 from kinform.consistency._rule import Outcome
 from kinform.consistency._words import angle, counted, direction, length, place, quoted
+from kinform.function import resolve
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.coverage import cover
 from kinform.function.regions import Targets, targets_of
@@ -75,7 +76,26 @@ def judge(context: Context, requirement: Requirement) -> Answer:
             f"{text}, but only if {quoted(unknown)} may turn freely: no range is known",
             "State the `range` of the [[function.joint]].",
         )
+    tied = _tied(context, chain)
+    if tied:
+        return undecided(
+            f"{text}, but only if {quoted(tied)} move without each other: their coupling is stated and no geometry shows it",
+            "Check it by other means, or require `follow` of a simulated motion.",
+        )
     return met(text)
+
+
+def _tied(context: Context, chain: Chain) -> tuple[str, ...]:
+    """Names of stated joints of the chain that a stated coupling ties, where no contact of the chain does."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return ()
+    moving = {coordinate.joint for coordinate in chain.coordinates}
+    for coupling in context.function.couplings:
+        ends = [resolve(context.assembly, kinematics, name).joint for name in coupling.joints]
+        if any(joint is not None and joint.name in moving for joint in ends):
+            return coupling.joints
+    return ()
 
 
 def _chain(context: Context, part: str) -> Chain | Answer:

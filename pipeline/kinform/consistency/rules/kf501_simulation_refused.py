@@ -13,9 +13,13 @@ Example: `level = "dynamic"` for an arm of which one joint came out ambiguous.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency._rule import Declared, Outcome, Rule, decided, inconclusive
 from kinform.consistency._words import quoted
+from kinform.function import resolve
+from kinform.model.findings import Finding
 
 __all__ = ["RULE"]
 
@@ -27,19 +31,51 @@ def check(context: Context) -> Outcome:
         return simulation
     if simulation.status != "refused" and not simulation.failures:
         return decided()
-    request = context.assembly.simulation
     failures = simulation.failures or ((context.assembly.name, simulation.reason),)
-    findings = [
-        RULE.finding(
-            [subject],
-            f"{quoted([subject])} is not simulated: {reason}",
-            declared=request if request is not None and request.file is not None else context.assembly.source,
-            remedy="Remove the cause, or ask for a lower `level`.",
-        )
-        for subject, reason in failures
-    ]
+    findings = [_finding(context, subject, reason) for subject, reason in failures]
     reasons = "; ".join(f"{subject}: {reason}" for subject, reason in failures)
     return inconclusive(simulation.reason or reasons, findings)
+
+
+def _finding(context: Context, subject: str, reason: str) -> Finding:
+    names = _joints_in(context, subject)
+    joint = context.joint(names[0])
+    request = context.assembly.simulation
+    asked = request if request is not None and request.file is not None else None
+    level = request.level if request is not None else None
+    return RULE.finding(
+        names,
+        f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {reason}",
+        found="not simulated",
+        intended=f"a {level} simulation" if level else "a simulation",
+        place=context.place_of(joint) if joint is not None else None,
+        declared=_declaring(context, subject, names) or asked or context.assembly.source,
+        remedy="Remove the cause, or ask for a lower `level`.",
+    )
+
+
+def _joints_in(context: Context, subject: str) -> list[str]:
+    """The joints that a subject lists, else the subject itself."""
+    names = subject.split(", ")
+    return names if all(context.joint(name) is not None for name in names) else [subject]
+
+
+def _declaring(context: Context, subject: str, names: Sequence[str]) -> Declared | None:
+    """What in the manifest acts on the subject: a drive, a coupling, a load, or an initial value."""
+    function, kinematics = context.function, context.kinematics
+    if isinstance(kinematics, Outcome):
+        return None
+
+    def stands_for(stated: str) -> bool:
+        found = resolve(context.assembly, kinematics, stated).joint
+        return stated in names or (found is not None and found.name in names)
+
+    request = context.assembly.simulation
+    acting: list[tuple[bool, Declared]] = [(stands_for(drive.joint), drive) for drive in function.drives]
+    acting += [(subject == "coupling of " + " and ".join(c.joints), c) for c in function.couplings]
+    acting += [(load.part == subject, load) for load in function.loads]
+    acting += [(stands_for(value.joint), value) for value in (request.initial if request is not None else ())]
+    return next((item for matches, item in acting if matches), None)
 
 
 RULE = Rule("KF501", "simulation-refused", "note", __doc__, check)

@@ -1,7 +1,8 @@
 """The function states a coupling of joints for which geometry gives no ratio.
 
 No teeth, rack or screw that touch are found between bodies with joints of one freedom, or what ties them is a cam, or
-uncertain. The rule is inconclusive as long as there is one.
+uncertain. The rule is inconclusive as long as there is one. Where no part has a mesh, a coupling is given and counts as
+a constraint: the rule does not apply.
 
 Why it matters: whether the geometry couples these joints in this ratio is not known.
 
@@ -26,6 +27,10 @@ def check(context: Context) -> Outcome:
     couplings = context.function.couplings
     if not couplings:
         return skipped("the function states no coupling")
+    if not context.meshes:
+        return skipped(
+            f"no part has a mesh: {counted(len(couplings), 'coupling')} given by the function, nothing to compare"
+        )
     kinematics = context.kinematics
     if isinstance(kinematics, Outcome):
         return kinematics
