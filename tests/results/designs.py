@@ -18,10 +18,11 @@ from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
+from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
 from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Redundancy, Release
-from kinform.model.mass import MassProperties
+from kinform.model.mass import MassProperties, MassReport
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces, Surface
 
@@ -54,9 +55,16 @@ def lists(item: st.SearchStrategy[Any], size: int = 3) -> st.SearchStrategy[Any]
     return st.lists(item, max_size=size).map(tuple)
 
 
+NAMED = {
+    kind.__name__: kind
+    for kind in (Assembly, Behaviour, CheckReport, Contacts, Kinematics, MassReport, MeshSurfaces, Simulation)
+}
+"""Types that modules name in annotations only."""
+
+
 def of(cls: Any, **given: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Records of the class; fields that are not given are drawn by their annotation."""
-    hints = typing.get_type_hints(cls, localns={"Behaviour": Behaviour})
+    hints = typing.get_type_hints(cls, localns=NAMED)
     fields = [field.name for field in dataclasses.fields(cls)]
     return st.builds(cls, **{name: given[name] if name in given else by_type(hints[name]) for name in fields})
 

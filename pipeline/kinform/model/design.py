@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kinform.model.fingerprints import Fingerprints
 
 if TYPE_CHECKING:
+    from kinform.behaviour.build import Behaviour
     from kinform.model.assembly import Assembly
     from kinform.model.contacts import Contacts
     from kinform.model.findings import CheckReport
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
     from kinform.model.mass import MassReport
     from kinform.model.simulation import Simulation
     from kinform.model.surfaces import MeshSurfaces
-
-if TYPE_CHECKING:
-    from kinform.behaviour.build import Behaviour
 
 __all__ = ["Design"]
 

@@ -17,6 +17,7 @@ _FINDINGS = (
     text("remedy"),
 )  # fmt: skip
 _IGNORED = (*_FINDINGS, text("by"), text("reason"))
+_GONE = (text("code"), texts("subject"))
 _RULES = (text("code"), text("rule"), text("outcome"), text("reason"))
 
 
@@ -26,6 +27,8 @@ def write(group: h5py.Group, report: CheckReport) -> None:
     write_records(group, "rules", _RULES, report.rules)
     accepted = [vars(item.finding) | {"by": item.by, "reason": item.reason} for item in report.ignored]
     write_rows(group, "ignored", _IGNORED, accepted)
+    if report.gone is not None:
+        write_rows(group, "gone", _GONE, [{"code": code, "subject": subject} for code, subject in report.gone])
 
 
 def read(group: h5py.Group) -> CheckReport:
@@ -34,6 +37,9 @@ def read(group: h5py.Group) -> CheckReport:
         findings=read_records(group, "findings", _FINDINGS, Finding),
         rules=read_records(group, "rules", _RULES, RuleOutcome),
         ignored=tuple(map(_ignored, read_rows(group, "ignored", _IGNORED))) if "ignored" in group else (),
+        gone=tuple((row["code"], row["subject"]) for row in read_rows(group, "gone", _GONE))
+        if "gone" in group
+        else None,
     )
 
 
