@@ -21,6 +21,7 @@ __all__ = [
     "emit",
     "flush",
     "give_up",
+    "harmless",
     "out",
     "say",
     "settings",
@@ -73,12 +74,17 @@ def tell(text: str | Text) -> None:
     """A line on stderr. That nobody can read it changes no verdict."""
     try:
         if isinstance(text, str):  # nothing to style: without rich, whose import takes longer than all else
-            sys.stderr.write(text + "\n")
+            sys.stderr.write(harmless(text) + "\n")
             sys.stderr.flush()
         else:
             stderr().print(text, soft_wrap=True)
     except OSError:
         _forget(sys.stderr)
+
+
+def harmless(text: str) -> str:
+    """The text with control characters escaped, but for ends of lines: a name commands no terminal."""
+    return "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def _forget(stream: IO[str]) -> None:

@@ -102,7 +102,9 @@ def _print(place: str, message: str, remedy: str | None = None) -> None:
     """`place: error: message`, as compilers write it, so that editors find the place."""
     from rich.text import Text
 
-    text = Text.assemble((place, "bold"), ": ", ("error:", "bold red"), f" {message}")
+    text = Text.assemble(
+        (console.harmless(place), "bold"), ": ", ("error:", "bold red"), f" {console.harmless(message)}"
+    )
     if remedy:
-        text.append(f"\n  remedy: {remedy}")
+        text.append(f"\n  remedy: {console.harmless(remedy)}")
     console.tell(text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
+import contextlib
 import os
 import shutil
 import subprocess
@@ -58,8 +58,9 @@ def test_a_full_disk_loses_nothing_and_what_is_missing_comes_when_there_is_room(
     assert main(["run", "m.toml", "-o", "r.h5", "-q"]) == 0
     assert main(["lock", "r.h5", "-o", "l.json", "-q"]) == 0
     manifest.write_text(manifest.read_text().replace('"steel"', '"brass"'))
-    with (small_disk / "fill").open("wb", buffering=0) as fill, pytest.raises(OSError, match="No space"):
-        fill.writelines(itertools.repeat(bytes(4096)))
+    with (small_disk / "fill").open("wb", buffering=0) as fill, contextlib.suppress(OSError):
+        while fill.write(bytes(4096)):
+            pass
     os.sync()
     before = contents(small_disk)
     for arguments in WRITING:

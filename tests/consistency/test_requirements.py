@@ -532,3 +532,27 @@ def test_every_kind_of_requirement_has_a_rule_of_its_own():
     kinds = {get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(union)}
     assert kinds == set(CODES) == set(JUDGES)
     assert set(CODES.values()) <= {rule.code for rule in RULES}
+
+
+def test_a_smooth_peak_between_output_times_is_not_passed():
+    made = wheel(sine(30.0, 0.5))
+    # as if the output times lay half a step beside the peak
+    run = made.simulation
+    step = float(run.time[1])
+    shifted = np.sin(math.pi * (run.time + 0.5 * step)) * math.radians(30.0) * math.pi
+    coarse = replace(made, simulation=replace(run, joint_velocity=shifted[:, None]))
+    sampled = float(np.abs(shifted).max())
+    true = math.radians(30.0) * math.pi
+    assert sampled < true
+    between = 0.5 * (sampled + true)
+    assert state(coarse, "speed", joint="spin", limit=between)[0] == "undecided"
+    assert state(coarse, "speed", joint="spin", limit=1.0001 * true)[0] == "met"
+    assert state(coarse, "speed", joint="spin", limit=0.9999 * sampled)[0] == "violated"
+
+
+def test_a_jump_has_no_peak_beside_it():
+    made = wheel(sine(30.0, 0.5))
+    run = made.simulation
+    jumping = np.where(run.time < 0.5, 0.0, 1.0)[:, None]
+    jumped = replace(made, simulation=replace(run, joint_velocity=jumping))
+    assert state(jumped, "speed", joint="spin", limit=1.001)[0] == "met"

@@ -217,8 +217,21 @@ OF_THEIR_OWN = {
 """Code → a design on which the rule fires, and one on which it does not."""
 
 
+WHOLE = {"KF110", "KF301", "KF302", "KF303", "KF440", "KF501", "KF502", "KF503", "KF504"}
+"""Rules about the assembly, a run or the settings as a whole: they have no place in space."""
+ELSEWHERE_IN_SPACE = {"KF409", "KF410", "KF421", "KF432", "KF902"}
+"""Rules whose place is that of something that may not be there, or a direction."""
+
+
 def fired(made):
-    return {finding.code for finding in check(made).findings}
+    """Codes of the findings, each of which says what was found and intended, where, and what to do."""
+    report = check(made)
+    for finding in report.findings:
+        stated = (finding.subject, finding.message, finding.found, finding.intended, finding.remedy, finding.file)
+        assert all(stated), finding
+        assert finding.line is not None, finding
+        assert finding.place is not None or finding.code in WHOLE | ELSEWHERE_IN_SPACE, finding
+    return {finding.code for finding in report.findings}
 
 
 @pytest.mark.parametrize("code", OF_A_HINGE)

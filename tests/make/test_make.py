@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import shutil
 import subprocess
 import sys
@@ -40,10 +42,38 @@ def test_a_green_build_has_nothing_left_to_do_and_a_changed_mesh_is_built_again(
     mesh.write_bytes(bytes(data))
     result = project / "build" / "seeker_1dof.imported.h5"
     later = result.stat().st_mtime + 2
-    import os
-
     os.utime(mesh, (later, later))
     assert make(project, only, "-q", "all").returncode == 1
+
+
+def made(project):
+    """The bytes of all results."""
+    return {path.name: path.read_bytes() for path in sorted((project / "build").glob("*.h5"))}
+
+
+def test_whatever_changes_a_build_ends_with_the_bytes_of_one_from_nothing(project):
+    only, design = "DESIGNS=seeker_1dof", project.parent / "fixtures" / "seekers" / "seeker_1dof"
+
+    def built():
+        ran = make(project, only, "all")
+        assert ran.returncode == 0, ran.stderr
+        assert make(project, only, "-q", "all").returncode == 0
+        return made(project)
+
+    first = built()
+    # a stage that is missing
+    (project / "build" / "seeker_1dof.joints.h5").unlink()
+    assert built() == first
+    # another time of a mesh, the same content
+    os.utime(design / "camera.stl")
+    assert built() == first
+    # the manifest
+    manifest = design / "seeker_1dof.toml"
+    manifest.write_text(re.sub(r'material = "\w+"', 'material = "brass"', manifest.read_text(), count=1))
+    assert (second := built()) != first
+    # from nothing
+    shutil.rmtree(project / "build")
+    assert built() == second
 
 
 def test_a_red_gate_is_red_the_second_time_too(project):

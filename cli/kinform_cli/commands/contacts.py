@@ -17,13 +17,17 @@ EXAMPLES = examples(
 
 
 def contacts(source: Results, output: Output, jobs: Jobs = None, quiet: Quiet = False, debug: Debug = False) -> None:
-    """Find the analytic surfaces of each part, and where parts touch or overlap."""
+    """Find the analytic surfaces of each part, and where parts touch or overlap.
+
+    What is still valid in an earlier output is reused.
+    """
     files.check_output(output)
     from kinform import results, stages
+    from kinform.ledger import Ledger
 
     design = files.read(source)
     with files.needing(source), Working("contacts") as progress:
-        design = stages.contacts(design, jobs=cores(jobs), progress=progress)
+        design = stages.contacts(design, jobs=cores(jobs), progress=progress, ledger=Ledger.of(output))
     results.write(design, output)
     found = design.contacts
     assert found is not None

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from kinform.consistency._context import Context
 from kinform.consistency._control import Applied, apply, selected, unused
+from kinform.consistency._located import located
 from kinform.consistency._rule import Rule, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
@@ -45,7 +46,8 @@ def _run(rule: Rule, context: Context) -> Applied:
     """The rule under the settings of the manifest."""
     settings = context.assembly.check
     outcome = rule.check(context) if selected(rule, settings) else skipped("not selected by [check]")
-    return apply(rule, outcome, settings)
+    found = tuple(located(context, finding) for finding in outcome.findings)
+    return apply(rule, replace(outcome, findings=found), settings)
 
 
 def _order(finding: Finding) -> tuple[object, ...]:

@@ -1,4 +1,8 @@
-"""Peaks of a simulated quantity beside a limit."""
+"""Peaks of a simulated quantity beside a limit.
+
+The values are known at output times. Where they curve smoothly, the parabola through three of them says how high the
+peak between them is; jumps and kinks have no such peak. What is shorter than the output step is not seen.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +33,12 @@ def peak(
     if known.any():
         k = int(np.nanargmax(np.where(known, values, -np.inf)))
         text = f"{what} peaks at {shown(float(values[k]))} at t = {number(float(simulation.time[k]))} s"
+        summit = max(float(values[k]), _between(values))
+        if summit > limit >= values[k] and known.all():
+            return undecided(
+                f"{text}, and between the output times at about {shown(summit)}: too near to the limit",
+                "Ask for a shorter `step` of the output.", found=f"about {shown(summit)}", intended=intended,
+            )  # fmt: skip
         if values[k] > limit:
             return violated(
                 f"{text}, required is {intended}", found=shown(float(values[k])), intended=intended,
@@ -41,4 +51,18 @@ def peak(
             f"the simulation stopped at t = {number(float(simulation.time[-1]))} s: {simulation.reason}",
             "See KF502.", intended=intended,
         )  # fmt: skip
-    return met(f"{text}, of {len(values)} output times", found=shown(float(values[k])), intended=intended)
+    apart = f", {number(float(np.diff(simulation.time).max()))} s apart" if len(simulation.time) > 1 else ""
+    more = f", and between them at about {shown(summit)}" if shown(summit) != shown(float(values[k])) else ""
+    return met(f"{text}, of {len(values)} output times{apart}{more}", found=shown(float(values[k])), intended=intended)
+
+
+def _between(values: NDArray[np.float64]) -> float:
+    """The highest vertex of the parabolas through three neighbours, where the curvature beside them is much the same."""
+    if len(values) < 5:
+        return -np.inf
+    bend = np.diff(values, 2)
+    slope = 0.5 * (values[2:] - values[:-2])
+    beside = np.minimum(bend[:-2], bend[2:])
+    middle, rate, top = bend[1:-1], slope[1:-1], values[2:-2]
+    smooth = (middle < 0.0) & (beside < 0.25 * middle) & (np.abs(rate) <= -middle)
+    return float(np.max(top[smooth] - 0.5 * rate[smooth] ** 2 / middle[smooth], initial=-np.inf))

@@ -24,6 +24,7 @@ def check(context: Context) -> Outcome:
         RULE.finding(
             use.subject,
             f"the facets of the mesh {use.label} do not all face the same way",
+            found="facets that face both ways",
             intended="every edge run through once in each direction",
             declared=use.parts[0].source,
             remedy="Unify the normals of the mesh and export it again.",

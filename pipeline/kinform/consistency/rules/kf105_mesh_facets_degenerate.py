@@ -27,6 +27,7 @@ def check(context: Context) -> Outcome:
             f"without area {'was' if use.mesh.health.degenerate_facets == 1 else 'were'} removed "
             f"(vertices within {length(use.mesh.health.weld, context.units, 2)} are one)",
             found=counted(use.mesh.health.degenerate_facets, "facet"),
+            intended="facets with an area",
             declared=use.parts[0].source,
             remedy="Nothing, unless there are many: then export the mesh with more digits.",
         )

@@ -26,6 +26,7 @@ def check(context: Context) -> Outcome:
             use.subject,
             f"the mesh {use.label} holds {counted(use.mesh.health.duplicate_facets, 'facet')} more than once",
             found=counted(use.mesh.health.duplicate_facets, "duplicate facet"),
+            intended="every facet once",
             declared=use.parts[0].source,
             remedy="Remove the duplicates and export the mesh again.",
         )

@@ -25,6 +25,7 @@ def check(context: Context) -> Outcome:
             use.subject,
             f"the mesh {use.label} consists of {use.mesh.health.shells} shells that move as one body",
             found=f"{use.mesh.health.shells} shells",
+            intended="one shell, or pieces that move as one",
             declared=use.parts[0].source,
             remedy="Export pieces that move on their own as separate parts.",
         )

@@ -49,6 +49,7 @@ def check(context: Context) -> Outcome:
                 [name],
                 f"the mass properties of {quoted([name])} are impossible: {wrong[name]}",
                 found=wrong[name],
+                intended="a mass and an inertia that a rigid body can have",
                 place=part.X_WP[:3, 3],
                 declared=part.source,
                 remedy="Check the stated mass and inertia (kg, kg·m² about the centre of mass)."

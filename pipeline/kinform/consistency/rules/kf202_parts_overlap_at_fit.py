@@ -26,6 +26,7 @@ def check(context: Context) -> Outcome:
             overlap.parts,
             f"{quoted(overlap.parts)} overlap by {length(overlap.depth, context.units, 3)} where they mate",
             found=length(overlap.depth, context.units, 3),
+            intended="a clearance, unless a press fit is meant",
             place=overlap.place,
             declared=context.assembly.part(overlap.parts[0]).source,
             remedy="Nothing for a press fit; give parts that shall move a clearance.",

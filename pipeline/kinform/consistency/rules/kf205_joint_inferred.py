@@ -33,6 +33,7 @@ def check(context: Context) -> Outcome:
             f"the {joint.type} joint of {quoted(joint.bodies)} is inferred from {listed(joint.evidence)}: "
             f"{joint.reason}",
             found=f"{joint.type}, inferred",
+            intended="a joint that contact alone decides",
             place=context.place_of(joint),
             remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
         )

@@ -27,6 +27,7 @@ def check(context: Context) -> Outcome:
             + ("not to touch" if assumption.ignore else f"to be joined: {assumption.type}")
             + (f" ({assumption.reason})" if assumption.reason else ""),
             found="ignored contact" if assumption.ignore else f"{assumption.type}, assumed",
+            intended="what contact decides",
             place=assumption.point,
             declared=assumption.source,
             remedy="Nothing while the reason holds.",

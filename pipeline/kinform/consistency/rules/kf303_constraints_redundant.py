@@ -35,6 +35,7 @@ def check(context: Context) -> Outcome:
         f"the assembly has {counted(redundant, 'redundant constraint')}: "
         f"{'it is' if redundant == 1 else 'they are'} only met by exact parts",
         found=str(redundant),
+        intended="0",
         declared=context.assembly.source,
         remedy="Nothing if the parts are aligned well; otherwise use freer joints in the loops.",
     )

@@ -30,6 +30,7 @@ def check(context: Context) -> Outcome:
             [name],
             f"{quoted([name])} can move on its own without moving anything else; this freedom is not counted",
             found="idle freedom",
+            intended="freedoms that move something else",
             declared=context.assembly.part(bodies[name].parts[0]).source,
             remedy="Nothing if the part may spin or slide; otherwise hold it by a flat, a key or a [[group]].",
         )

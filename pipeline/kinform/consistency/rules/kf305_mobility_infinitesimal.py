@@ -42,6 +42,7 @@ def check(context: Context) -> Outcome:
                 f"{counted(certificate.infinitesimal, 'freedom')} of this loop "
                 f"{'is' if certificate.infinitesimal == 1 else 'are'} only infinitesimal",
                 found=f"finite mobility {certificate.finite} of {certificate.instantaneous}",
+                intended="freedoms that lead over a distance",
                 place=context.place_of(moving[0]) if moving else None,
                 declared=context.assembly.source,
                 remedy="Free a joint of the loop if it shall move; else move a joint out of line with the others.",

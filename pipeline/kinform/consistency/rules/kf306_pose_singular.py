@@ -43,6 +43,7 @@ def check(context: Context) -> Outcome:
                 f"{quoted(certificate.joints)} have {counted(certificate.instantaneous or 0, 'freedom')} in this pose, "
                 f"{branches}",
                 found="bifurcation" if len(ways) > 1 else "singular pose",
+                intended="a regular pose",
                 place=context.place_of(first) if first is not None else None,
                 declared=context.assembly.source,
                 remedy="Draw the assembly in another pose; guide the device where it passes this one.",

@@ -31,6 +31,8 @@ def check(context: Context) -> Outcome:
             f"{quoted([body.name])} is in no intended joint: its "
             f"{counted(sum(body.name in joint.bodies for joint in kinematics.joints), 'joint')} "
             "cannot be compared with the function",
+            found="no intended joint",
+            intended="an intended joint of every body, or a [[group]]",
             declared=context.assembly.part(body.parts[0]).source,
             remedy="Nothing for pins and screws; otherwise add the intended joint, or a [[group]].",
         )

@@ -1,6 +1,7 @@
 """The speed of a joint exceeds its limit during the simulation.
 
-The greatest of the output times counts: a shorter `step` finds shorter peaks. Without a simulation that ran to its
+The greatest of the output times counts; where a smooth peak between them would be above the limit, the requirement is
+inconclusive (KF902): a shorter `step` decides, and finds shorter peaks. Without a simulation that ran to its
 end the requirement is inconclusive (KF902).
 
 Why it matters: motors, encoders and bearings have a greatest speed.

@@ -36,6 +36,8 @@ def check(context: Context) -> Outcome:
             RULE.finding(
                 subject,
                 item.message,
+                found="no effect",
+                intended="an entry that changes something",
                 declared=declared,
                 remedy="Remove the entry, or correct its code or subject.",
             )

@@ -31,6 +31,7 @@ def check(context: Context) -> Outcome:
             [load.part],
             f"the load on {quoted([load.part])} was not simulated",
             found="not simulated",
+            intended="a dynamic simulation that carries the load",
             place=load.point,
             declared=load,
             remedy='Ask for `level = "dynamic"`, with the mass of every moving part known.',

@@ -37,6 +37,8 @@ def check(context: Context) -> Outcome:
         RULE.finding(
             hint.parts,
             f"{quoted(hint.parts)} {became}: {hint.evidence} ({hint.confidence} confidence)",
+            found=hint.evidence,
+            intended="what the manifest states",
             declared=context.assembly.source,
             remedy="Write it as [[group]] or [[assume]] if it is true.",
         )
