@@ -14,7 +14,7 @@ import sys
 import numpy as np
 import pytest
 from known import ROOT
-from models import ALL, known, model_of, motorised
+from models import ALL, design, known, model_of, motorised
 
 from kinform.errors import InputError
 from kinform.exports import FORMATS, ExportError, export
@@ -169,7 +169,7 @@ def test_bytes_depend_on_nothing_but_the_design(tmp_path):
 
 @pytest.mark.parametrize("format", ["mjcf", "modelica", "sdf", "urdf", "vhdl-ams"])
 def test_motors_and_servos_are_whole_in_json_and_named_as_lost_elsewhere(format):
-    found = motorised()
+    found = design(motorised())
     made = export(found, "json")
     assert not made.lost
     (data,) = made.files.values()
