@@ -11,6 +11,7 @@ from models import X, block, design, written
 from test_modelica import solved
 from test_urdf import forward, numbers
 from test_vhdl_ams import analysed
+from validators import package
 
 from kinform.exports import export
 from kinform.model.function import Coupling
@@ -67,7 +68,7 @@ def test_mjcf_couples(geared):
 
 
 def test_mujoco_reads_the_coupling(geared, tmp_path):
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     path, _ = written(geared, "mjcf", tmp_path)
     assert mujoco.MjModel.from_xml_path(str(path)).neq == 1
 

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 import pytest
 from models import CHAINS, LOOPS, known, model_of, written
+from validators import package
 
 from kinform.behaviour import RigidBody
 from kinform.exports import export
@@ -15,7 +16,7 @@ from kinform.simulation.spatial import to_matrix
 
 def loaded(found, folder):
     """MuJoCo's model and data at the start."""
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     path, _ = written(found, "mjcf", folder)
     model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)

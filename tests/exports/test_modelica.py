@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from known import FIXTURES
 from models import ALL, LOOPS, design, driven_four_bar, known, written
+from validators import package
 
 from kinform.exports import export
 from kinform.exports.loops import loops
@@ -18,7 +19,7 @@ from kinform.exports.tree import grow
 
 def solved(found, folder):
     """(T, B, 3) places and (T, B, 4) orientations of the bodies at our output times, by rumoca."""
-    rumoca = pytest.importorskip("rumoca", reason="rumoca is not installed")
+    rumoca = package("rumoca")
     path, _ = written(found, "modelica", folder)
     run = found.simulation
     model = rumoca.Session().load(str(path), model=f"{path.stem}.System")

@@ -9,13 +9,14 @@ import pytest
 from models import ALL, known, model_of, written
 from scipy.spatial.transform import Rotation
 from test_urdf import posed
+from validators import package
 
 from kinform.exports import export
 
 
 @pytest.mark.parametrize("name", sorted(ALL))
 def test_drake_finds_our_places_and_masses(name, tmp_path):
-    plants = pytest.importorskip("pydrake.multibody.plant", reason="drake is not installed")
+    plants = package("pydrake.multibody.plant")
     from pydrake.multibody.parsing import Parser
 
     found = known(name)

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from known import ROOT
 from models import ALL, design, known, model_of, motorised
+from validators import package
 
 from kinform.errors import InputError
 from kinform.exports import FORMATS, ExportError, export
@@ -98,7 +99,7 @@ def same(a, b):
 
 @pytest.mark.parametrize("name", ALL)
 def test_the_port_model_keeps_its_schema(name):
-    jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed")
+    jsonschema = package("jsonschema")
     (data,) = export(known(name), "json").files.values()
     jsonschema.Draft202012Validator.check_schema(schema())
     jsonschema.Draft202012Validator(schema()).validate(json.loads(data))

@@ -11,6 +11,7 @@ from devices import body as bare
 from known import FIXTURES
 from models import ALL, X, block, design, four_bar, known, model_of, written
 from scipy.spatial.transform import Rotation
+from validators import package
 
 from kinform.behaviour.joints import KINDS
 from kinform.exports import export
@@ -122,7 +123,7 @@ def test_backward_joints_have_negative_axes():
 def test_yourdfpy_and_pinocchio_find_the_same_places(name, tmp_path):
     found = known(name)
     path, _ = written(found, "urdf", tmp_path)
-    yourdfpy = pytest.importorskip("yourdfpy", reason="yourdfpy is not installed")
+    yourdfpy = package("yourdfpy")
     robot = yourdfpy.URDF.load(str(path), load_meshes=False)
     assert robot.validate()
     for seed in range(3):
@@ -136,7 +137,7 @@ def test_yourdfpy_and_pinocchio_find_the_same_places(name, tmp_path):
 def test_pinocchio_finds_the_same_places_and_inertias(name, tmp_path):
     found = known(name)
     path, _ = written(found, "urdf", tmp_path)
-    pin = pytest.importorskip("pinocchio", reason="pinocchio is not installed")
+    pin = package("pinocchio")
     robot = pin.buildModelFromUrdf(str(path))
     data = robot.createData()
     for seed in range(3):
@@ -182,9 +183,9 @@ def test_pinocchio_and_mujoco_find_the_meshes(name, tmp_path, derive_design):
     (manifest,) = FIXTURES.glob(f"*/{name}/{name}.toml")
     found = derive_design(manifest)
     path, _ = written(found, "urdf", tmp_path)
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     assert mujoco.MjModel.from_xml_path(str(path)).ngeom == len(found.assembly.parts)
-    pin = pytest.importorskip("pinocchio", reason="pinocchio is not installed")
+    pin = package("pinocchio")
     robot = pin.buildModelFromUrdf(str(path))
     shapes = pin.buildGeomFromUrdf(robot, str(path), pin.GeometryType.VISUAL, package_dirs=[str(tmp_path)])
     assert shapes.ngeoms == len(found.assembly.parts)

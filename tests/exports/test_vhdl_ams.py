@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 from known import manifests
 from models import ALL, design, driven_four_bar, known
+from validators import ghdl
 from vhdl_reader import SIZES, Flat, Jet, constant, read, residuals
 
 from kinform import stages
@@ -207,17 +207,6 @@ def test_a_run_without_forces_holds_what_rests():
     assert text.count("entity work.motion_constant") == 1
     found = design(driven_four_bar(level="kinematic"))
     assert "motion_constant" not in export(found, "vhdl-ams").files["3_device.vhd"].decode()
-
-
-def ghdl():
-    """GHDL 6, or skip."""
-    path = shutil.which("ghdl")
-    if path is None:
-        pytest.skip("ghdl is not installed")
-    version = subprocess.run([path, "--version"], capture_output=True, text=True, check=True).stdout
-    if not re.match(r"GHDL ([6-9]|\d\d)\.", version):
-        pytest.skip(f"needs GHDL 6: this is {version.splitlines()[0]}")
-    return path
 
 
 def analysed(made, folder):
