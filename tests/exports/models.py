@@ -96,6 +96,18 @@ def motorised(**request):
     return device(parts, joints, drives=drives, **({"duration": 0.2, "step": 0.05} | request))
 
 
+def controlled(**request):
+    """A servo that reaches its limit on a table, a motor with a coil on a voltage that swings."""
+    parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
+    joints = [joint("base", "outer", "revolute", Z, (0, 0, 0)), joint("inner", "outer", "revolute", Y, (0, 0, 0.1))]
+    swept = Law("table", times=(0.1, 0.2, 0.4), values=(0.0, 40.0, -20.0))
+    drives = [
+        drive("base~outer", "servo", swept, kp=4.0, kd=0.3, ki=2.0, limit=1.2),
+        drive("inner~outer", "dc_motor", sine(12, 2), resistance=2.0, constant=0.05, gear=10.0, inductance=0.02),
+    ]
+    return device(parts, joints, drives=drives, **({"duration": 0.5, "step": 0.01} | request))
+
+
 def every_joint(**request):
     """A chain with all kinds of joints, some of them backwards."""
     parts = [block(f"b{k}", (0.1 * k, 0.05, 0.02 * k), 1.0 / k) for k in range(1, 8)]
@@ -194,7 +206,8 @@ def nested(**request):
 
 
 CHAINS = {
-    made.__name__: made for made in (pendulum, gimbal, seeker, passive_seeker, every_joint, reversed_joints, nested)
+    made.__name__: made
+    for made in (pendulum, gimbal, seeker, passive_seeker, every_joint, reversed_joints, nested, motorised, controlled)
 }
 LOOPS = {made.__name__: made for made in (four_bar, slider_crank, driven_four_bar, spatial_loop)}
 ALL = CHAINS | LOOPS

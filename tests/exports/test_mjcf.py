@@ -60,9 +60,41 @@ def followed(found, folder):
     return worst
 
 
-@pytest.mark.parametrize("name", sorted(set(CHAINS) - {"seeker", "nested", "every_joint"}))
+LED = {"seeker", "nested", "every_joint", "motorised", "controlled"}
+"""Laws, integrals and coils are no part of MJCF, and screws are stiff couplings."""
+
+
+@pytest.mark.parametrize("name", sorted(set(CHAINS) - LED))
 def test_open_chains_move_alike(name, tmp_path):
     assert followed(known(name), tmp_path) < 1e-5
+
+
+def test_servos_and_motors_act_alike(tmp_path):
+    """A servo without integral that reaches its limit, and a motor without a coil."""
+    from devices import Z, device, drive, joint
+    from models import Y, block, design
+
+    from kinform.model.function import Law
+
+    parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
+    joints = [joint("base", "outer", "revolute", Z, (0, 0, 0)), joint("inner", "outer", "revolute", Y, (0, 0, 0.1))]
+    drives = [
+        drive("base~outer", "servo", Law("constant", value=30.0), kp=4.0, kd=0.4, limit=0.9),
+        drive("inner~outer", "dc_motor", resistance=2.0, constant=0.05, gear=10.0, voltage=6.0),
+    ]
+    found = design(device(parts, joints, drives=drives, duration=0.6, step=0.02))
+    assert not export(found, "mjcf").lost
+    assert followed(found, tmp_path) < 1e-5
+    assert found.simulation.joint_effort.max() == pytest.approx(0.9) or found.simulation.joint_effort.min() < 0.0
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("motorised", "the integral of its controller (ki = 2)"), ("controlled", "the target of its controller follows"),
+     ("controlled", "the inductance of its motor (0.02 H)"), ("controlled", "the voltage of its motor follows a law")],
+)  # fmt: skip
+def test_what_a_servo_or_motor_is_without_is_named(name, told):
+    assert any(told in text for text in export(known(name), "mjcf").lost)
 
 
 def test_a_screw_is_a_stiff_coupling(tmp_path):

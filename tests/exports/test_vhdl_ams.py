@@ -5,15 +5,19 @@ from __future__ import annotations
 import re
 import subprocess
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from known import manifests
 from models import ALL, design, driven_four_bar, known
+from scipy.integrate import solve_ivp
+from scipy.interpolate import BPoly
 from validators import ghdl
 from vhdl_reader import SIZES, Flat, Jet, constant, read, residuals
 
 from kinform import stages
+from kinform.behaviour import JointComponent, Servo
 from kinform.exports import export
 from kinform.exports.model import export_model
 from kinform.exports.vhdl_structure import COUNT
@@ -21,7 +25,7 @@ from kinform.simulation.spatial import cross_motion, multiply, quaternions
 
 FREEDOMS = {
     "pendulum": 1, "gimbal": 3, "seeker": 1, "passive_seeker": 2, "every_joint": 12, "reversed_joints": 8, "nested": 5,
-    "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1,
+    "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1, "motorised": 2, "controlled": 2,
 }  # fmt: skip
 """Freedoms of the devices, by hand: those that no drive prescribes."""
 
@@ -111,16 +115,56 @@ def jets(model, entities, flat, top, k):
         for n, (coordinate, _) in enumerate(joint.kind.coordinates):
             values = q[slot.q][n], v[slot.v][n], acceleration[slot.v][n]
             quantities[ports[coordinate]] = Jet(values)
+    for path, entity, _, ports in flat.leaves:
+        label = path.rstrip("/").rsplit("/", 1)[-1].removesuffix("_i")
+        if entity.name in ("servo", "dc_motor"):
+            (actor,) = (c for c in system.components if re.sub(r"_+", "_", re.sub(r"\W", "_", c.name)) == label)
+            _electric(model, actor, k, path, ports, potentials, quantities)
     return potentials, quantities
 
 
-def worst(found, made, samples=(1, -1)):
-    """The worst residual along our run, and the last solution."""
+def _electric(model, actor, k, path, ports, potentials, quantities):
+    """The states of a servo or motor, by integrating its law along our run."""
+    run, system = model.simulation, model.system
+    (joint,) = (c for c, _ in system.at(actor.name, "shaft") if isinstance(c, JointComponent))
+    (column,) = (c for c, name in zip(run.joint_offset, run.joint_names, strict=False) if name == joint.subject)
+    states = (run.joint_position, run.joint_velocity, run.joint_acceleration)
+    curve = BPoly.from_derivatives(run.time, np.stack([values[:, column] for values in states], axis=1))
+    rate, t = curve.derivative(), float(run.time[k])
+    if isinstance(actor, Servo):
+        control, target = actor.controller, actor.target
+        quantities[ports["target"]] = Jet([target.value(t), target.rate(t), target.acceleration(t)])
+
+        def change(t, y):
+            e = target.value(t) - curve(t)
+            wanted = control.kp * e + control.ki * y[0] + control.kd * (target.rate(t) - rate(t))
+            return [0.0 if wanted * np.sign(e) > control.limit else e]
+
+        states = {"sum": change}
+    else:
+        supply, motor = system.supply(actor.name), actor.constant * actor.gear
+        potentials[ports["p"]] = Jet([supply.signal.value(t), supply.signal.rate(t), np.nan])
+        if not actor.inductance:
+            return
+
+        def change(t, y):
+            return [(supply.signal.value(t) - actor.resistance * y[0] - motor * rate(t)) / actor.inductance]
+
+        states = {"i": change}
+    for name, law in states.items():
+        value = [0.0]
+        for start, end in pairwise(run.time[: k % len(run.time) + 1]):
+            value = solve_ivp(law, (start, end), value, rtol=1e-10, atol=1e-12).y[:, -1]
+        quantities[f"{path}{name}"] = Jet([value[0], law(t, value)[0], np.nan])
+
+
+def worst(found, made, samples=None):
+    """The worst residual along our run (at its first step, half way and at its end), and all solutions."""
     entities, flat, top = opened(made)
     model = export_model(found)
     run = model.simulation
     out = []
-    for k in samples:
+    for k in samples or (1, len(run.time) // 2, -1):
         potentials, quantities = jets(model, entities, flat, top, k)
         # Just after the time of the output: tables begin their next stretch there.
         out.append(residuals(flat, potentials, quantities, float(run.time[k])))
@@ -157,6 +201,25 @@ def test_a_wrong_statement_does_not_hold(old, new):
     assert files != made.files
     largest, _ = worst(found, replace(made, files=files), samples=(7,))
     assert largest.worst > 1e-5
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("kd * e'dot", "kd * value'dot"),
+        ("given == bound", "given == wanted"),
+        ("sum'dot == e", "sum'dot == 2.0 * e"),
+        ("inductance * i'dot", "0.9 * inductance * i'dot"),
+        ("effort == coupling * gear * i", "effort == coupling * i"),
+    ],
+)
+def test_a_wrong_statement_of_a_drive_does_not_hold(old, new):
+    found = known("controlled")
+    made = export(found, "vhdl-ams")
+    files = {name: data.decode().replace(old, new).encode() for name, data in made.files.items()}
+    assert files != made.files
+    largest, _ = worst(found, replace(made, files=files), samples=(12, 30))
+    assert largest.worst > 1e-4
 
 
 def test_efforts_of_drives_are_those_of_our_run():

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
-from kinform.behaviour.components import DcMotor, EndStop, Servo, SpringDamper, VoltageController, VoltageSource
+from kinform.behaviour.components import EndStop, SpringDamper
 from kinform.errors import StageError
 from kinform.function import resolve
 from kinform.model.assembly import Assembly
@@ -176,10 +176,6 @@ def _ranges(
 
 
 _ELSEWHERE: dict[type[Component], str] = {
-    Servo: "a servo",
-    DcMotor: "a DC motor",
-    VoltageSource: "the voltage of a motor",
-    VoltageController: "the controller of a motor",
     EndStop: "end stops with impacts",
     SpringDamper: "a spring between two points",
 }

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from kinform.behaviour import (
     Actor,
     Damper,
+    DcMotor,
     EffortDrive,
     Ground,
     JointComponent,
     LoadComponent,
     MotionDrive,
     RigidBody,
+    Servo,
     Spring,
 )
 from kinform.behaviour.components import Gear
@@ -25,9 +27,11 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 
-__all__ = ["Robot", "RobotLink", "Visual", "robot"]
+__all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot"]
 
 Array = NDArray[np.float64]
+Driver = MotionDrive | EffortDrive | Servo | DcMotor
+"""What drives a joint."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +87,9 @@ class RobotLink:
         return sum(s.stiffness * s.rest for s in self.springs) / self.stiffness if self.stiffness else 0.0
 
     @property
-    def drives(self) -> tuple[MotionDrive | EffortDrive, ...]:
-        """The drives on its joint."""
-        return tuple(actor for actor in self.actors if isinstance(actor, MotionDrive | EffortDrive))
+    def drives(self) -> tuple[Driver, ...]:
+        """The drives, servos and motors on its joint."""
+        return tuple(actor for actor in self.actors if isinstance(actor, Driver))
 
 
 @dataclass(frozen=True, eq=False)
