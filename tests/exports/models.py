@@ -8,11 +8,12 @@ from functools import cache
 import numpy as np
 from devices import HERE, Z, body, device, drive, initial, joint, rod, sine
 
+from kinform import stages
 from kinform.exports import export, write
 from kinform.exports.model import export_model
 from kinform.model.assembly import Subassembly
 from kinform.model.design import Design
-from kinform.model.function import Law, Load
+from kinform.model.function import Law, Load, SimulationRequest
 from kinform.simulation import simulate
 
 DOWN = np.array([0.0, -9.81, 0.0])
@@ -83,6 +84,15 @@ def passive_seeker(**request):
         Load("outer", np.array([0.0, 0.4, 0.1]), np.array([0.0, 0.0, 0.03]), np.array([0, 0.1, 0.1]), "world", "d", 2),
     ]
     return device(parts, joints, drives=drives, loads=loads, **({"duration": 1.0, "step": 0.05} | request))
+
+
+def swinging(found, **request):
+    """The same design left to itself under a slanted gravity: dynamics, without drives."""
+    asked = SimulationRequest(**({"gravity": np.array([3.0, -2.0, -9.0]), "duration": 0.2, "step": 0.01} | request))
+    function = replace(found.assembly.function, drives=())
+    return stages.simulate(
+        replace(found, assembly=replace(found.assembly, simulation=asked, function=function)), level="dynamic"
+    )
 
 
 def motorised(**request):

@@ -38,7 +38,7 @@ def gap(found, model, data, mujoco, k):
     """Greatest distance of a body's place and orientation from those of our output k."""
     run, exported, worst = found.simulation, model_of(found), 0.0
     for b, name in enumerate(run.body_names):
-        if name == "base":
+        if name == exported.system.ground.subject:
             continue
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
         R = to_matrix(run.q_WB[k, b])

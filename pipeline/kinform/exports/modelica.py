@@ -33,7 +33,7 @@ from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
 from kinform.exports.exported import Exported
 from kinform.exports.laws import pieces
-from kinform.exports.loops import Closure, Loops, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
@@ -77,9 +77,7 @@ def export(model: ExportModel) -> Exported:
     for component in model.system.components:
         if isinstance(component, Ground | RigidBody):
             _body(built, component, names)
-    held = found.free if not model.with_forces else frozenset[int]()
-    if held:
-        remarks.append("our run is one without forces: joints that nothing prescribes are held where they start")
+    held = held_rates(model, found, lost, remarks)
     for link in tree.links:
         if link.joint is not None:
             _carried(built, model, tree, link, names, found, held)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.behaviour import Ground, JointComponent, RigidBody
 from kinform.exports.exported import Exported
-from kinform.exports.loops import Closure, Loops, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import number, render, vector
@@ -38,14 +38,7 @@ def export(model: ExportModel) -> Exported:
     writer = Writer(model)
     for scope in writer.scopes.paths[1:]:
         writer.child(scope)
-    held = frozenset[int]() if model.with_forces else found.free
-    if held:
-        remarks.append("our run is one without forces: joints that nothing prescribes are held where they start")
-        lost += [
-            f"{slot.name}: in our run it rests, here its spherical joint swings"
-            for slot in model.mechanism.slots
-            if slot.has_ball and any(k in held for k in range(slot.v.start, slot.v.stop))
-        ]
+    held = held_rates(model, found, lost, remarks)
     for body in model.system.bodies:
         _body(writer, body)
     closures = {closure.joint.subject: closure for closure in found.closures}
