@@ -88,11 +88,17 @@ def passive_seeker(**request):
 
 def swinging(found, **request):
     """The same design left to itself under a slanted gravity: dynamics, without drives."""
-    asked = SimulationRequest(**({"gravity": np.array([3.0, -2.0, -9.0]), "duration": 0.2, "step": 0.01} | request))
-    function = replace(found.assembly.function, drives=())
-    return stages.simulate(
-        replace(found, assembly=replace(found.assembly, simulation=asked, function=function)), level="dynamic"
-    )
+    key = (id(found), *sorted(request.items()))
+    if key not in _swung:
+        asked = SimulationRequest(**({"gravity": np.array([3.0, -2.0, -9.0]), "duration": 0.2, "step": 0.01} | request))
+        function = replace(found.assembly.function, drives=())
+        assembly = replace(found.assembly, simulation=asked, function=function)
+        _swung[key] = found, stages.simulate(replace(found, assembly=assembly), level="dynamic")
+    return _swung[key][1]
+
+
+_swung = {}
+"""Designs of `swinging`, with those that they were made from."""
 
 
 def motorised(**request):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from known import FIXTURES
-from models import ALL, LOOPS, design, driven_four_bar, known, written
+from models import ALL, LOOPS, design, driven_four_bar, known, swinging, written
 from validators import package
 
 from kinform.exports import export
@@ -60,6 +60,36 @@ def test_rumoca_finds_the_trajectory_of_a_fixture(name, tmp_path, derive_design)
     np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
     sign = np.sign(np.einsum("tbi,tbi->tb", q, found.simulation.q_WB))
     np.testing.assert_allclose(q * sign[..., None], found.simulation.q_WB, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "bennett", "screw_right", "spherical_open"])
+def test_rumoca_finds_how_a_fixture_swings(name, tmp_path, derive_design):
+    """Dynamics of bodies whose masses are those of their meshes, without drives."""
+    (manifest,) = FIXTURES.glob(f"*/{name}/{name}.toml")
+    found = swinging(derive_design(manifest))
+    assert found.simulation.status == "done"
+    p, q = solved(found, tmp_path)
+    np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
+    sign = np.sign(np.einsum("tbi,tbi->tb", q, found.simulation.q_WB))
+    np.testing.assert_allclose(q * sign[..., None], found.simulation.q_WB, atol=1e-6)
+    assert np.ptp(q, axis=0).max() > 0.02
+
+
+def test_what_moves_in_a_run_without_forces_though_nothing_prescribes_it_is_named(derive_design):
+    (manifest,) = FIXTURES.glob("broken/four_bar_missing_pin/four_bar_missing_pin.toml")
+    found = derive_design(manifest)
+    assert found.simulation.level == "kinematic"
+    for format in ("modelica", "vhdl-ams"):
+        told = [text for text in export(found, format).lost if "here it is held" in text]
+        assert [text.partition(":")[0] for text in told] == ["base~rocker_unit", "coupler~crank_unit"]
+
+
+@pytest.mark.parametrize("format", ["modelica", "vhdl-ams"])
+@pytest.mark.parametrize(("name", "told"), [("shaky_truss", True), ("parallelogram_flat", True), ("bennett", False)])
+def test_a_start_in_a_singular_pose_is_named(format, name, told, derive_design):
+    (manifest,) = FIXTURES.glob(f"mechanisms/{name}/{name}.toml")
+    lost = export(swinging(derive_design(manifest)), format).lost
+    assert any("it starts in a singular pose" in text for text in lost) == told
 
 
 def test_a_run_without_forces_is_the_same_motion(tmp_path):

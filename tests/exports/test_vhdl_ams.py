@@ -317,18 +317,27 @@ def test_ghdl_rejects_a_broken_twin(old, new, tmp_path):
     assert analysed(replace(made, files=files), tmp_path).returncode == 1
 
 
-@pytest.mark.parametrize("manifest", [*manifests(), *stories()], ids=named)
+MANY = {"stewart_platform"}
+"""Fixtures with so many bodies that reading their statements back takes long."""
+
+
+@pytest.mark.parametrize(
+    "manifest",
+    [pytest.param(m, id=named(m), marks=[pytest.mark.slow] * (m.stem in MANY)) for m in manifests()],
+)
 def test_every_statement_of_a_fixture_holds_along_its_trajectory(manifest, derive_design):
     """Below the dynamic level no accelerations are known, so all are simulated with forces; what cannot be, says so."""
     found = derive_design(manifest)
     if found.simulation.level != "dynamic":
         found = swinging(found)
     made = export(found, "vhdl-ams")
-    if found.simulation.status != "done":
+    if found.simulation.status != "done" or np.ptp(found.simulation.rank):
         assert made.lost
         return
-    largest, _ = worst(found, made, samples=(1, -1))
-    assert largest.worst < 1e-6, largest.where
+    largest, _ = worst(found, made, samples=(-1,))
+    # In wrong units a seeker weighs a million tons.
+    heaviest = max((b.mass for b in found.mass.bodies if b.mass is not None), default=0.0)
+    assert largest.worst < 1e-6 * max(1.0, heaviest), largest.where
     assert largest.equations == largest.unknowns
 
 

@@ -509,6 +509,8 @@ def _solve(rows, unknown, index, evaluate, count):
     acting = np.abs(A).max(axis=1) > 0.0
     through, _, rank, _ = lstsq(A[acting], -b[acting], lapack_driver="gelsy", cond=1e-12)
     assert rank == n, "the through quantities are not determined"
+    # Once more with what is left: forces may be large.
+    through -= lstsq(A[acting], (A @ through + b)[acting], lapack_driver="gelsy", cond=1e-12)[0]
     left = np.abs(A @ through + b)
     worst = int(left.argmax())
     solved = {name: through[index[name]] for name in unknown}

@@ -20,7 +20,7 @@ from kinform.exports.tree import Closing, Tree
 from kinform.kinematics.screws import perpendicular
 from kinform.simulation.closure import rank_of
 
-__all__ = ["Closure", "Loops", "held_rates", "loops"]
+__all__ = ["Closure", "Loops", "held_rates", "loops", "singular"]
 
 Array = NDArray[np.float64]
 
@@ -115,6 +115,17 @@ def held_rates(model: ExportModel, found: Loops, lost: list[str], remarks: list[
                 f"{slot.name}: nothing prescribes it; in our run it moves no more than it must, here it is held"
             )
     return found.free
+
+
+def singular(model: ExportModel) -> tuple[str, ...]:
+    """A sentence where the start is a singular pose: what is redundant there is not so along our run."""
+    run = model.simulation
+    if run is None or not len(run.rank) or run.rank.max() <= run.rank[0]:
+        return ()
+    return (
+        f"the loops away from the start: {run.rank[0]} of their equations are independent there, {run.rank.max()} later "
+        "in our run, and only the former are held; it starts in a singular pose",
+    )
 
 
 def _reached(tree: Tree, link: int) -> bool:

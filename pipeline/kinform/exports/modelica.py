@@ -33,7 +33,7 @@ from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
 from kinform.exports.exported import Exported
 from kinform.exports.laws import pieces
-from kinform.exports.loops import Closure, Loops, held_rates, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
@@ -72,7 +72,7 @@ def export(model: ExportModel) -> Exported:
     names = identifiers(
         (component.name for component in model.system.components), MODELICA, beside=("gravity",), suffixes=_SUFFIXES
     )
-    lost, remarks = list(model.lost), []
+    lost, remarks = [*model.lost, *singular(model)], []
     built = _Built()
     for component in model.system.components:
         if isinstance(component, Ground | RigidBody):

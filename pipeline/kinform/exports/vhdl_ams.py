@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.behaviour import Ground, JointComponent, RigidBody
 from kinform.exports.exported import Exported
-from kinform.exports.loops import Closure, Loops, held_rates, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import number, render, vector
@@ -34,7 +34,7 @@ def export(model: ExportModel) -> Exported:
     """1_mechanics.vhd, 2_components.vhd, 3_NAME.vhd and 4_NAME_bench.vhd, in the order of their dependence."""
     tree = grow(model.system)
     found = loops(model, tree)
-    lost, remarks = list(model.lost), []
+    lost, remarks = [*model.lost, *singular(model)], []
     writer = Writer(model)
     for scope in writer.scopes.paths[1:]:
         writer.child(scope)
