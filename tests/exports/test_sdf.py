@@ -39,6 +39,18 @@ def test_drake_finds_our_places_and_masses(name, tmp_path):
             np.testing.assert_allclose(at_centre, body.inertia, atol=1e-9)
 
 
+@pytest.mark.parametrize(("name", "driven"), [("seeker", {"base~outer", "inner~outer"}), ("gimbal", set())])
+def test_drake_drives_the_joints_that_are_driven(name, driven, tmp_path):
+    plants = package("pydrake.multibody.plant")
+    from pydrake.multibody.parsing import Parser
+
+    path, _ = written(known(name), "sdf", tmp_path)
+    plant = plants.MultibodyPlant(0.0)
+    Parser(plant).AddModels(str(path))
+    plant.Finalize()
+    assert {plant.get_joint_actuator(k).joint().name() for k in plant.GetJointActuatorIndices()} == driven
+
+
 def positions(plant, values):
     """Drake's positions: balls by roll, pitch and yaw, universal joints by both angles, in the order of the tree."""
     out = np.zeros(plant.num_positions())
