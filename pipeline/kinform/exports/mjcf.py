@@ -95,7 +95,7 @@ def export(model: ExportModel) -> Exported:
     equalities = [row for closing in made.closing for row in _closure(made, closing, twins)]
     rows = actuators(made, lost)
     ordered = list(_walk(root))
-    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(

@@ -159,7 +159,7 @@ def _starts(mechanism: Mechanism, q: Array, v: Array) -> dict[str, BodyStart]:
 def _ranges(
     assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]
 ) -> dict[str, tuple[float, float]]:
-    """Ranges that the geometry leaves; where that is not known, those that the function states."""
+    """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it."""
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for stated in assembly.function.joints:
@@ -169,8 +169,9 @@ def _ranges(
             out[found.joint.name] = (float(low), float(high))
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
-            low = -np.inf if joint.range_lower is None else joint.range_lower
-            high = np.inf if joint.range_upper is None else joint.range_upper
+            stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))
+            low = stated_low if joint.range_lower is None else joint.range_lower
+            high = stated_high if joint.range_upper is None else joint.range_upper
             out[joint.name] = (float(low), float(high))
     return dict(sorted(out.items()))
 

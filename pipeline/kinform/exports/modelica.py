@@ -72,7 +72,8 @@ def export(model: ExportModel) -> Exported:
     names = identifiers(
         (component.name for component in model.system.components), MODELICA, beside=("gravity",), suffixes=_SUFFIXES
     )
-    lost, remarks = [*model.lost, *singular(model)], []
+    lost = [*model.lost, *singular(model)]
+    remarks: list[str] = []
     built = _Built()
     for component in model.system.components:
         if isinstance(component, Ground | RigidBody):

@@ -127,6 +127,16 @@ class Robot:
         return next((k for k in self.links if k.link.joint is not None and k.link.joint.subject == joint), None)
 
     @property
+    def unranged(self) -> tuple[str, ...]:
+        """A sentence about the joints whose ranges nothing says."""
+        names = [
+            link.link.joint.subject
+            for link in self.links
+            if link.link.joint is not None and link.link.joint.kind.rates == 1 and link.range is None
+        ]
+        return (f"no limits, because no range is known: {', '.join(sorted(names))}",) if names else ()
+
+    @property
     def moved(self) -> bool:
         """Whether it starts elsewhere than at rest in the pose of the meshes."""
         return bool(np.any(self.model.q != self.model.mechanism.start) or np.any(self.model.v))

@@ -81,7 +81,7 @@ def export(model: ExportModel) -> Exported:
     if grains or weightless:
         grain = f"links without mass have {GRAIN:g} kg, because SDF takes 1 kg where nothing is stated"
         lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
-    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
     text = render(
         "model.sdf.j2", robot=made, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
         ground=_free(made, "world_fixed"),

@@ -34,7 +34,8 @@ def export(model: ExportModel) -> Exported:
     """1_mechanics.vhd, 2_components.vhd, 3_NAME.vhd and 4_NAME_bench.vhd, in the order of their dependence."""
     tree = grow(model.system)
     found = loops(model, tree)
-    lost, remarks = [*model.lost, *singular(model)], []
+    lost = [*model.lost, *singular(model)]
+    remarks: list[str] = []
     writer = Writer(model)
     for scope in writer.scopes.paths[1:]:
         writer.child(scope)
