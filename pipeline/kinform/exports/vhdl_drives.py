@@ -59,7 +59,7 @@ def drives(writer: Writer, found: Loops, held: frozenset[int], lost: list[str], 
         if not kept:
             remarks.append(f"{gear.subject}: it is redundant with the loops")
             continue
-        _gear(writer, gear.name, gear.ratio, lost)
+        _gear(writer, gear.name, gear.ratio)
 
 
 def _on_shaft(
@@ -113,23 +113,20 @@ def _motor(writer: Writer, home: Scope, name: str, motor: DcMotor, value: str) -
     _instance(writer, home, label, entity, f"voltage of {supply.subject}", given, at)
 
 
-def _gear(writer: Writer, name: str, ratio: float, lost: list[str]) -> None:
-    system = writer.model.system
-    joints = [system.joint_at(name, port) for port in ("a", "b")]
-    homes = {writer.scopes.of[joint.name] for joint in joints}
-    if len(homes) > 1:
-        lost.append(f"{name}: it couples joints of different sub-assemblies")
-        return
-    (home,) = homes
-    label = writer.names[name]
+def _gear(writer: Writer, name: str, ratio: float) -> None:
+    """A gear in the innermost scope around both joints: their values come up to it, its efforts go down."""
+    system, top, label = writer.model.system, writer.scopes.of[name], writer.names[name]
     ports: dict[str, str] = {}
-    for port, joint in zip("ab", joints, strict=True):
-        value = f"{writer.names[joint.name]}_{joint.kind.coordinates[0][0]}"
-        writer.of[home].declarations.append(f"quantity {label}_{port}_effort : real")
-        writer.efforts[f"{value}_effort"][1].append(f"{label}_{port}_effort")
-        ports |= {f"{port}_value": value, f"{port}_effort": f"{label}_{port}_effort"}
-    generics = {"ratio": writer.generic(home, f"{label}_ratio", "real", number(ratio))}
-    writer.add(home, Part(label, "gear", name, generics, ports))
+    for port in "ab":
+        joint = system.joint_at(name, port)
+        home = writer.scopes.of[joint.name]
+        value, effort = f"{writer.names[joint.name]}_{joint.kind.coordinates[0][0]}", f"{label}_{port}_effort"
+        writer.pass_up(value, home, top)
+        writer.pass_down(effort, top, home)
+        writer.efforts[f"{value}_effort"][1].append(effort)
+        ports |= {f"{port}_value": value, f"{port}_effort": effort}
+    generics = {"ratio": writer.generic(top, f"{label}_ratio", "real", number(ratio))}
+    writer.add(top, Part(label, "gear", name, generics, ports))
 
 
 def _law(writer: Writer, kind: str, name: str, signal: Signal) -> tuple[str, Values]:

@@ -111,6 +111,8 @@ class Writer:
         self.equations = 0
         self.potentials = 0
         self.efforts: dict[str, tuple[Scope, list[str]]] = {}
+        self.passed: dict[str, Scope] = {}
+        """The scope in which a quantity is declared that was passed up."""
 
     def node(self, name: str, home: Scope, top: Scope) -> None:
         """Declare a frame's terminals and orientation in `top`, and pass them down to `home`."""
@@ -127,6 +129,26 @@ class Writer:
                 f"quantity {name}_q : out quaternion",
             ]
             self.child(scope).ports.update({f"{name}_{axis}": f"{name}_{axis}" for axis in (*AXES, "q")})
+
+    def pass_up(self, name: str, home: Scope, top: Scope) -> None:
+        """Make a real quantity that is declared in `home` known in `top`."""
+        at = self.passed.get(name, home)
+        scopes = self.scopes.between(top, at)
+        if not scopes:
+            return
+        self.of[at].declarations.remove(f"quantity {name} : real")
+        self.of[top].declarations.append(f"quantity {name} : real")
+        self.passed[name] = top
+        for scope in scopes:
+            self.of[scope].ports.append(f"quantity {name} : out real")
+            self.child(scope).ports[name] = name
+
+    def pass_down(self, name: str, top: Scope, home: Scope) -> None:
+        """Declare a real quantity in `top`, known down to `home`."""
+        self.of[top].declarations.append(f"quantity {name} : real")
+        for scope in self.scopes.between(top, home):
+            self.of[scope].ports.append(f"quantity {name} : in real")
+            self.child(scope).ports[name] = name
 
     def child(self, scope: Scope) -> Part:
         """The instance of a scope in the one above."""
