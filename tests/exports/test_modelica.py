@@ -8,13 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from known import FIXTURES
-from models import ALL, LOOPS, design, driven_four_bar, known, swinging, written
+from models import ALL, LOOPS, design, driven_four_bar, known, model_of, swinging, written
 from validators import package
 
-from kinform.exports import export
+from kinform.behaviour import Constant, Node, System, VoltageController, VoltageSource
+from kinform.behaviour.shafts import Controller
+from kinform.exports import export, modelica, write
 from kinform.exports.loops import loops
 from kinform.exports.model import export_model
 from kinform.exports.tree import grow
+from kinform.simulation import Course, simulate_system
 
 
 def solved(found, folder):
@@ -90,6 +93,36 @@ def test_a_start_in_a_singular_pose_is_named(format, name, told, derive_design):
     (manifest,) = FIXTURES.glob(f"mechanisms/{name}/{name}.toml")
     lost = export(swinging(derive_design(manifest)), format).lost
     assert any("it starts in a singular pose" in text for text in lost) == told
+
+
+def controlled_by_voltage():
+    """The port model of `motorised` with a controller of the motor's voltage instead of a source."""
+    model = model_of(known("motorised"))
+    (source,) = (c for c in model.system.components if isinstance(c, VoltageSource))
+    ((motor, _),) = model.system.at(source.name, "terminals")
+    pid = VoltageController(source.name, source.subject, Constant(0.4), Controller(30.0, ki=5.0, kd=1.0, limit=8.0))
+    shaft = model.system.node(motor.name, "shaft")
+    nodes = [Node((*n.ports, (pid.name, "shaft")), n.size) if n is shaft else n for n in model.system.nodes]
+    components = tuple(pid if c is source else c for c in model.system.components)
+    return replace(model, system=System(components, tuple(nodes)), simulation=None)
+
+
+def test_rumoca_controls_the_voltage_of_a_motor_as_we_do(tmp_path):
+    model = controlled_by_voltage()
+    made = modelica.export(model)
+    assert made.lost == ()
+    write(made, tmp_path)
+    solver = package("rumoca")
+    loaded = solver.Session().load(str(tmp_path / "device.mo"), model="device.System")
+    config = solver.SimConfig(solver="rk-like", rtol=1e-10, atol=1e-11)
+    result = loaded.simulate((0, 0.2), dt=0.05, config=config)
+    values = result.to_dict()
+    values = values.get("data", values)
+    ours = simulate_system(model.system, Course(0.2, 0.05, model.gravity))
+    picked = [np.flatnonzero(np.isclose(result.time, t, rtol=0.0, atol=1e-9))[-1] for t in ours.time]
+    theirs = np.asarray(values["joint_inner_outer.value"])[picked]
+    np.testing.assert_allclose(theirs, ours.joint_position[:, ours.joint_names.index("inner~outer")], atol=1e-6)
+    assert np.ptp(theirs) > 0.1
 
 
 def test_a_run_without_forces_is_the_same_motion(tmp_path):

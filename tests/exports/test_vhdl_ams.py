@@ -13,11 +13,12 @@ from known import FIXTURES, manifests, stories
 from models import ALL, design, driven_four_bar, known, swinging
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
+from test_modelica import controlled_by_voltage
 from validators import ghdl
 from vhdl_reader import SIZES, Flat, Jet, constant, read, residuals
 
 from kinform.behaviour import JointComponent, Servo
-from kinform.exports import export
+from kinform.exports import export, vhdl_ams
 from kinform.exports.model import export_model
 from kinform.exports.vhdl_structure import COUNT
 from kinform.simulation.spatial import cross_motion, multiply, quaternions
@@ -294,6 +295,13 @@ def named(manifest):
 def test_ghdl_accepts_every_fixture(manifest, tmp_path, derive_design):
     ghdl()
     ran = analysed(export(derive_design(manifest), "vhdl-ams"), tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
+def test_ghdl_accepts_a_controller_of_a_voltage(tmp_path):
+    made = vhdl_ams.export(controlled_by_voltage())
+    assert b"entity work.voltage_controller" in made.files["3_device.vhd"]
+    ran = analysed(made, tmp_path)
     assert (ran.returncode, ran.stderr) == (0, "")
 
 
