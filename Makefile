@@ -1,11 +1,14 @@
 # Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks.
+# Tests that need other programs (GHDL, rumoca, MuJoCo, Drake, …) skip unless `make validators` has installed them.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
+# What these need besides is not needed here: GHDL is a program, and yourdfpy's trimesh is ours.
+ALONE = eitri-hdl==0.1.0 yourdfpy==0.0.60
 DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
 
-.PHONY: demo test lint lock fixtures docs clean
+.PHONY: demo test lint validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -37,10 +40,22 @@ $(VENV)/.developing: pyproject.toml requirements-dev.lock | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --no-deps --editable .
 	@touch $@ $(VENV)/.installed
 
+validators: $(VENV)/.validators
+
+$(VENV)/.validators: validators/requirements.lock validators/package-lock.json Makefile | $(VENV)/.developing
+	$(BIN)/python -m pip install --quiet --no-deps --requirement validators/requirements.lock $(ALONE)
+	@mkdir -p $(VENV)/npm
+	@cp validators/package.json validators/package-lock.json $(VENV)/npm
+	@if command -v npm > /dev/null; then npm ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund --silent; \
+	else echo "npm is not installed: glTF, SARIF and the accessibility of the page are not validated"; fi
+	@touch $@
+
+COMPILE = $(BIN)/pip-compile --quiet --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header
 lock:
 	$(BIN)/python -m pip install --quiet pip-tools
-	$(BIN)/pip-compile --quiet --extra dev --strip-extras --no-emit-index-url --no-emit-trusted-host \
-	  --no-emit-find-links --no-header --output-file requirements-dev.lock pyproject.toml
+	$(COMPILE) --extra dev --output-file requirements-dev.lock pyproject.toml
+	$(COMPILE) --constraint requirements-dev.lock --output-file validators/requirements.lock validators/requirements.in
+	cd validators && npm install --package-lock-only --omit-lockfile-registry-resolved --no-audit --no-fund --silent
 
 fixtures: $(VENV)/.developing
 	$(BIN)/python fixtures/generate.py

@@ -17,6 +17,12 @@ def manifests() -> list[Path]:
     return sorted(p for p in FIXTURES.glob("*/*/*.toml") if p.stem == p.parent.name)
 
 
+def stories() -> list[Path]:
+    """The manifests of the seeker's story, its sub-assemblies apart."""
+    found = sorted((FIXTURES / "seeker").rglob("*.toml"))
+    return [p for p in found if not any(p.parent.parent == other.parent for other in found)]
+
+
 def truth_of(manifest: Path):
     """What is to be found in a fixture; None for broken twins."""
     path = manifest.parent / "truth.json"

@@ -8,11 +8,12 @@ from functools import cache
 import numpy as np
 from devices import HERE, Z, body, device, drive, initial, joint, rod, sine
 
+from kinform import stages
 from kinform.exports import export, write
 from kinform.exports.model import export_model
 from kinform.model.assembly import Subassembly
 from kinform.model.design import Design
-from kinform.model.function import Law, Load
+from kinform.model.function import Law, Load, SimulationRequest
 from kinform.simulation import simulate
 
 DOWN = np.array([0.0, -9.81, 0.0])
@@ -85,6 +86,21 @@ def passive_seeker(**request):
     return device(parts, joints, drives=drives, loads=loads, **({"duration": 1.0, "step": 0.05} | request))
 
 
+def swinging(found, **request):
+    """The same design left to itself under a slanted gravity: dynamics, without drives."""
+    key = (id(found), *sorted(request.items()))
+    if key not in _swung:
+        asked = SimulationRequest(**({"gravity": np.array([3.0, -2.0, -9.0]), "duration": 0.2, "step": 0.01} | request))
+        function = replace(found.assembly.function, drives=())
+        assembly = replace(found.assembly, simulation=asked, function=function)
+        _swung[key] = found, stages.simulate(replace(found, assembly=assembly), level="dynamic")
+    return _swung[key][1]
+
+
+_swung = {}
+"""Designs of `swinging`, with those that they were made from."""
+
+
 def motorised(**request):
     """A servo on one turn, a DC motor on the other."""
     parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
@@ -94,6 +110,18 @@ def motorised(**request):
         drive("inner~outer", "dc_motor", resistance=2.0, constant=0.05, gear=10.0, voltage=6.0),
     ]
     return device(parts, joints, drives=drives, **({"duration": 0.2, "step": 0.05} | request))
+
+
+def controlled(**request):
+    """A servo that reaches its limit on a table, a motor with a coil on a voltage that swings."""
+    parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
+    joints = [joint("base", "outer", "revolute", Z, (0, 0, 0)), joint("inner", "outer", "revolute", Y, (0, 0, 0.1))]
+    swept = Law("table", times=(0.1, 0.2, 0.4), values=(0.0, 40.0, -20.0))
+    drives = [
+        drive("base~outer", "servo", swept, kp=4.0, kd=0.3, ki=2.0, limit=1.2),
+        drive("inner~outer", "dc_motor", sine(12, 2), resistance=2.0, constant=0.05, gear=10.0, inductance=0.02),
+    ]
+    return device(parts, joints, drives=drives, **({"duration": 0.5, "step": 0.01} | request))
 
 
 def every_joint(**request):
@@ -194,7 +222,8 @@ def nested(**request):
 
 
 CHAINS = {
-    made.__name__: made for made in (pendulum, gimbal, seeker, passive_seeker, every_joint, reversed_joints, nested)
+    made.__name__: made
+    for made in (pendulum, gimbal, seeker, passive_seeker, every_joint, reversed_joints, nested, motorised, controlled)
 }
 LOOPS = {made.__name__: made for made in (four_bar, slider_crank, driven_four_bar, spatial_loop)}
 ALL = CHAINS | LOOPS

@@ -13,6 +13,7 @@ from models import model_of, written
 from test_glb import judged
 from test_urdf import forward, numbers, posed
 from test_vhdl_ams import analysed
+from validators import package
 
 from kinform import stages
 from kinform.exports import export
@@ -55,7 +56,7 @@ def test_urdf_has_the_six_axes_where_they_are(arm):
 
 
 def test_yourdfpy_loads_it_with_its_meshes_and_finds_the_six_axes(arm, tmp_path):
-    yourdfpy = pytest.importorskip("yourdfpy", reason="yourdfpy is not installed")
+    yourdfpy = package("yourdfpy")
     found, truth = arm
     path, _ = written(found, "urdf", tmp_path)
     robot = yourdfpy.URDF.load(str(path))
@@ -74,7 +75,7 @@ def test_yourdfpy_loads_it_with_its_meshes_and_finds_the_six_axes(arm, tmp_path)
 
 
 def test_mujoco_finds_the_six_axes(arm, tmp_path):
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     found, truth = arm
     path, lost = written(found, "mjcf", tmp_path)
     assert any("a body without mass, which MuJoCo refuses" in text for text in lost)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import Z, device, drive, intended, sine
+from devices import HERE, Z, device, drive, intended, sine
 from models import X, block, design, written
 from test_modelica import solved
 from test_urdf import forward, numbers
-from test_vhdl_ams import analysed
+from test_vhdl_ams import analysed, opened
+from validators import package
 
 from kinform.exports import export
+from kinform.model.assembly import Subassembly
 from kinform.model.function import Coupling
 
 
@@ -67,7 +70,7 @@ def test_mjcf_couples(geared):
 
 
 def test_mujoco_reads_the_coupling(geared, tmp_path):
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     path, _ = written(geared, "mjcf", tmp_path)
     assert mujoco.MjModel.from_xml_path(str(path)).neq == 1
 
@@ -81,5 +84,31 @@ def test_rumoca_moves_the_rack_as_we_do(geared, tmp_path):
 def test_ghdl_reads_the_gear(geared, tmp_path):
     made = export(geared, "vhdl-ams")
     assert b"entity work.gear" in made.files["3_device.vhd"]
+    ran = analysed(made, tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")
+
+
+def test_a_gear_between_joints_of_different_sub_assemblies_is_in_the_one_around_both(tmp_path):
+    """The value of the joint inside comes out of its entity, and the gear's effort goes in."""
+    wanted = [
+        intended("carry", "base", "arm/one", "revolute", Z, (0, 0, 0)),
+        intended("inner", "arm/one", "arm/two", "revolute", Z, (0.1, 0, 0)),
+        intended("rack", "slide", "base", "prismatic", X, (0, 0.1, 0)),
+    ]
+    parts = [block("arm/one", (0.1, 0, 0)), block("arm/two", (0.2, 0, 0)), block("slide", (0.3, 0.1, 0))]
+    assembly, chain, mass = device(
+        parts, [], intended=wanted, couplings=[Coupling(("rack", "inner"), 0.02, "device.toml", 1)],
+        drives=[drive("inner", "motion", sine(90, 1))], level="functional", duration=0.5, step=0.05,
+    )  # fmt: skip
+    found = design((replace(assembly, subassemblies=(Subassembly("arm", "arm.toml", None, HERE),)), chain, mass))
+    assert found.simulation.status == "done"
+    made = export(found, "vhdl-ams")
+    entities, flat, top = opened(made)
+    assert "gear" in {kind for _, kind, _, _ in entities[top].parts}
+    assert "gear" not in {kind for _, kind, _, _ in entities["arm"].parts}
+    ((_, _, _, ports),) = (leaf for leaf in flat.leaves if leaf[1].name == "gear")
+    joints = {path: own for path, entity, _, own in flat.leaves if entity.name in ("revolute_joint", "prismatic_joint")}
+    values = {own.get("angle", own.get("distance")) for own in joints.values()}
+    assert {ports["a_value"], ports["b_value"]} <= values
     ran = analysed(made, tmp_path)
     assert (ran.returncode, ran.stderr) == (0, "")

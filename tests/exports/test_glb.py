@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import shutil
+import os
 import struct
 import subprocess
 
@@ -12,6 +12,7 @@ import pytest
 from known import FIXTURES, manifests
 from models import known
 from scipy.spatial.transform import Rotation
+from validators import npm, program
 
 from kinform.exports import export
 
@@ -121,13 +122,12 @@ def test_sticks_move_without_meshes():
 
 def judged(data, folder):
     """Issues by the Khronos validator; skips without it."""
-    node = shutil.which("node")
-    if node is None:
-        pytest.skip("node is not installed")
-    if subprocess.run([node, "-e", "require('gltf-validator')"], capture_output=True, check=False).returncode:
-        pytest.skip("gltf-validator is not installed where node finds it (NODE_PATH)")
+    node, place = program("node"), npm("gltf-validator").parent
     (folder / "x.glb").write_bytes(data)
-    ran = subprocess.run([node, "-e", VALIDATE, str(folder / "x.glb")], capture_output=True, text=True, check=True)
+    ran = subprocess.run(
+        [node, "-e", VALIDATE, str(folder / "x.glb")], capture_output=True, text=True, check=True,
+        env={**os.environ, "NODE_PATH": str(place)},
+    )  # fmt: skip
     return json.loads(ran.stdout)
 
 

@@ -8,17 +8,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from known import FIXTURES
-from models import ALL, LOOPS, design, driven_four_bar, known, written
+from models import ALL, LOOPS, design, driven_four_bar, known, model_of, swinging, written
+from validators import package
 
-from kinform.exports import export
+from kinform.behaviour import Constant, Node, System, VoltageController, VoltageSource
+from kinform.behaviour.shafts import Controller
+from kinform.exports import export, modelica, write
 from kinform.exports.loops import loops
 from kinform.exports.model import export_model
 from kinform.exports.tree import grow
+from kinform.simulation import Course, simulate_system
 
 
 def solved(found, folder):
     """(T, B, 3) places and (T, B, 4) orientations of the bodies at our output times, by rumoca."""
-    rumoca = pytest.importorskip("rumoca", reason="rumoca is not installed")
+    rumoca = package("rumoca")
     path, _ = written(found, "modelica", folder)
     run = found.simulation
     model = rumoca.Session().load(str(path), model=f"{path.stem}.System")
@@ -59,6 +63,66 @@ def test_rumoca_finds_the_trajectory_of_a_fixture(name, tmp_path, derive_design)
     np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
     sign = np.sign(np.einsum("tbi,tbi->tb", q, found.simulation.q_WB))
     np.testing.assert_allclose(q * sign[..., None], found.simulation.q_WB, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "bennett", "screw_right", "spherical_open"])
+def test_rumoca_finds_how_a_fixture_swings(name, tmp_path, derive_design):
+    """Dynamics of bodies whose masses are those of their meshes, without drives."""
+    (manifest,) = FIXTURES.glob(f"*/{name}/{name}.toml")
+    found = swinging(derive_design(manifest))
+    assert found.simulation.status == "done"
+    p, q = solved(found, tmp_path)
+    np.testing.assert_allclose(p, found.simulation.p_WB, atol=1e-6)
+    sign = np.sign(np.einsum("tbi,tbi->tb", q, found.simulation.q_WB))
+    np.testing.assert_allclose(q * sign[..., None], found.simulation.q_WB, atol=1e-6)
+    assert np.ptp(q, axis=0).max() > 0.02
+
+
+def test_what_moves_in_a_run_without_forces_though_nothing_prescribes_it_is_named(derive_design):
+    (manifest,) = FIXTURES.glob("broken/four_bar_missing_pin/four_bar_missing_pin.toml")
+    found = derive_design(manifest)
+    assert found.simulation.level == "kinematic"
+    for format in ("modelica", "vhdl-ams"):
+        told = [text for text in export(found, format).lost if "here it is held" in text]
+        assert [text.partition(":")[0] for text in told] == ["base~rocker_unit", "coupler~crank_unit"]
+
+
+@pytest.mark.parametrize("format", ["modelica", "vhdl-ams"])
+@pytest.mark.parametrize(("name", "told"), [("shaky_truss", True), ("parallelogram_flat", True), ("bennett", False)])
+def test_a_start_in_a_singular_pose_is_named(format, name, told, derive_design):
+    (manifest,) = FIXTURES.glob(f"mechanisms/{name}/{name}.toml")
+    lost = export(swinging(derive_design(manifest)), format).lost
+    assert any("it starts in a singular pose" in text for text in lost) == told
+
+
+def controlled_by_voltage():
+    """The port model of `motorised` with a controller of the motor's voltage instead of a source."""
+    model = model_of(known("motorised"))
+    (source,) = (c for c in model.system.components if isinstance(c, VoltageSource))
+    ((motor, _),) = model.system.at(source.name, "terminals")
+    pid = VoltageController(source.name, source.subject, Constant(0.4), Controller(30.0, ki=5.0, kd=1.0, limit=8.0))
+    shaft = model.system.node(motor.name, "shaft")
+    nodes = [Node((*n.ports, (pid.name, "shaft")), n.size) if n is shaft else n for n in model.system.nodes]
+    components = tuple(pid if c is source else c for c in model.system.components)
+    return replace(model, system=System(components, tuple(nodes)), simulation=None)
+
+
+def test_rumoca_controls_the_voltage_of_a_motor_as_we_do(tmp_path):
+    model = controlled_by_voltage()
+    made = modelica.export(model)
+    assert made.lost == ()
+    write(made, tmp_path)
+    solver = package("rumoca")
+    loaded = solver.Session().load(str(tmp_path / "device.mo"), model="device.System")
+    config = solver.SimConfig(solver="rk-like", rtol=1e-10, atol=1e-11)
+    result = loaded.simulate((0, 0.2), dt=0.05, config=config)
+    values = result.to_dict()
+    values = values.get("data", values)
+    ours = simulate_system(model.system, Course(0.2, 0.05, model.gravity))
+    picked = [np.flatnonzero(np.isclose(result.time, t, rtol=0.0, atol=1e-9))[-1] for t in ours.time]
+    theirs = np.asarray(values["joint_inner_outer.value"])[picked]
+    np.testing.assert_allclose(theirs, ours.joint_position[:, ours.joint_names.index("inner~outer")], atol=1e-6)
+    assert np.ptp(theirs) > 0.1
 
 
 def test_a_run_without_forces_is_the_same_motion(tmp_path):

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from models import X, Z, block, design
 from test_vhdl_ams import analysed, opened
+from validators import package
 
 from kinform.exports import FORMATS, export
 from kinform.exports.names import FILES, MJCF, MODELICA, SDF, VHDL, XML, comment, identifiers
@@ -103,10 +104,10 @@ def test_odd_names_are_well_formed_xml_and_all_there(format, oddly_named):
 
 def test_odd_names_are_read_by_mujoco_and_drake(oddly_named, tmp_path):
     found, names = oddly_named
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     (text,) = export(found, "mjcf").files.values()
     assert mujoco.MjModel.from_xml_string(text.decode()).nbody == len(names) + 1
-    plants = pytest.importorskip("pydrake.multibody.plant", reason="drake is not installed")
+    plants = package("pydrake.multibody.plant")
     from pydrake.multibody.parsing import Parser
 
     ((name, text),) = export(found, "sdf").files.items()
@@ -118,7 +119,7 @@ def test_odd_names_are_read_by_mujoco_and_drake(oddly_named, tmp_path):
 
 def test_odd_names_are_read_by_rumoca(oddly_named, tmp_path):
     found, _ = oddly_named
-    rumoca = pytest.importorskip("rumoca", reason="rumoca is not installed")
+    rumoca = package("rumoca")
     small = [block("entity", (0.1, 0, 0)), block("end", (0.2, 0, 0)), block('"; der', (0.3, 0, 0))]
     joints = [
         joint("base", "entity", "revolute", Z, (0, 0, 0)),
@@ -129,8 +130,7 @@ def test_odd_names_are_read_by_rumoca(oddly_named, tmp_path):
     made = replace(made, assembly=replace(made.assembly, name=found.assembly.name))
     ((name, text),) = export(made, "modelica").files.items()
     (tmp_path / name).write_bytes(text)
-    package = name.removesuffix(".mo")
-    assert rumoca.Session().load(str(tmp_path / name), model=f"{package}.System") is not None
+    assert rumoca.Session().load(str(tmp_path / name), model=f"{name.removesuffix('.mo')}.System") is not None
 
 
 def test_odd_names_are_read_by_ghdl(oddly_named, tmp_path):

@@ -9,13 +9,14 @@ import pytest
 from models import ALL, known, model_of, written
 from scipy.spatial.transform import Rotation
 from test_urdf import posed
+from validators import package
 
 from kinform.exports import export
 
 
 @pytest.mark.parametrize("name", sorted(ALL))
 def test_drake_finds_our_places_and_masses(name, tmp_path):
-    plants = pytest.importorskip("pydrake.multibody.plant", reason="drake is not installed")
+    plants = package("pydrake.multibody.plant")
     from pydrake.multibody.parsing import Parser
 
     found = known(name)
@@ -36,6 +37,18 @@ def test_drake_finds_our_places_and_masses(name, tmp_path):
             assert inertia.get_mass() == pytest.approx(body.mass, abs=1e-9)
             at_centre = inertia.Shift(inertia.get_com()).CalcRotationalInertia().CopyToFullMatrix3()
             np.testing.assert_allclose(at_centre, body.inertia, atol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "driven"), [("seeker", {"base~outer", "inner~outer"}), ("gimbal", set())])
+def test_drake_drives_the_joints_that_are_driven(name, driven, tmp_path):
+    plants = package("pydrake.multibody.plant")
+    from pydrake.multibody.parsing import Parser
+
+    path, _ = written(known(name), "sdf", tmp_path)
+    plant = plants.MultibodyPlant(0.0)
+    Parser(plant).AddModels(str(path))
+    plant.Finalize()
+    assert {plant.get_joint_actuator(k).joint().name() for k in plant.GetJointActuatorIndices()} == driven
 
 
 def positions(plant, values):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from devices import body as bare
 from known import FIXTURES
 from models import ALL, X, block, design, four_bar, known, model_of, written
 from scipy.spatial.transform import Rotation
+from validators import package
 
 from kinform.behaviour.joints import KINDS
 from kinform.exports import export
@@ -122,7 +124,7 @@ def test_backward_joints_have_negative_axes():
 def test_yourdfpy_and_pinocchio_find_the_same_places(name, tmp_path):
     found = known(name)
     path, _ = written(found, "urdf", tmp_path)
-    yourdfpy = pytest.importorskip("yourdfpy", reason="yourdfpy is not installed")
+    yourdfpy = package("yourdfpy")
     robot = yourdfpy.URDF.load(str(path), load_meshes=False)
     assert robot.validate()
     for seed in range(3):
@@ -136,7 +138,7 @@ def test_yourdfpy_and_pinocchio_find_the_same_places(name, tmp_path):
 def test_pinocchio_finds_the_same_places_and_inertias(name, tmp_path):
     found = known(name)
     path, _ = written(found, "urdf", tmp_path)
-    pin = pytest.importorskip("pinocchio", reason="pinocchio is not installed")
+    pin = package("pinocchio")
     robot = pin.buildModelFromUrdf(str(path))
     data = robot.createData()
     for seed in range(3):
@@ -182,9 +184,9 @@ def test_pinocchio_and_mujoco_find_the_meshes(name, tmp_path, derive_design):
     (manifest,) = FIXTURES.glob(f"*/{name}/{name}.toml")
     found = derive_design(manifest)
     path, _ = written(found, "urdf", tmp_path)
-    mujoco = pytest.importorskip("mujoco", reason="mujoco is not installed")
+    mujoco = package("mujoco")
     assert mujoco.MjModel.from_xml_path(str(path)).ngeom == len(found.assembly.parts)
-    pin = pytest.importorskip("pinocchio", reason="pinocchio is not installed")
+    pin = package("pinocchio")
     robot = pin.buildModelFromUrdf(str(path))
     shapes = pin.buildGeomFromUrdf(robot, str(path), pin.GeometryType.VISUAL, package_dirs=[str(tmp_path)])
     assert shapes.ngeoms == len(found.assembly.parts)
@@ -233,6 +235,30 @@ def test_limits_come_from_the_function_in_our_sign():
     # The designer counts base relative to one: the range is turned round.
     assert [float(limits["base~one"].get(side)) for side in ("lower", "upper")] == [-1.5, 0.2]
     assert [float(limits["one~two"].get(side)) for side in ("lower", "upper")] == [-1e9, 0.3]
+
+
+def test_limits_are_those_of_the_geometry_where_it_stops_a_joint_and_stated_ones_elsewhere():
+    wanted = [intended("swing", "base", "one", "revolute", Z, (0, 0, 0), range=(-0.2, 1.5))]
+    found = design(
+        device([block("one", (0.1, 0, 0))], [joint("base", "one", "revolute", Z, (0, 0, 0))], intended=wanted)
+    )
+    seen = {}
+    for lower, upper in ((-0.7, None), (None, None), (-0.7, 0.9)):
+        (swing,) = found.kinematics.joints
+        status = "unbounded" if lower is upper else "found"
+        ranged = replace(swing, range_status=status, range_lower=lower, range_upper=upper)
+        made = replace(found, kinematics=replace(found.kinematics, joints=(ranged,)))
+        limit = ElementTree.fromstring(export(made, "urdf").files["device.urdf"]).find("joint/limit")
+        seen[lower, upper] = tuple(float(limit.get(side)) for side in ("lower", "upper"))
+    assert seen == {(-0.7, None): (-0.7, 1.5), (None, None): (-0.2, 1.5), (-0.7, 0.9): (-0.7, 0.9)}
+
+
+@pytest.mark.parametrize("format", ["urdf", "sdf", "mjcf"])
+def test_joints_without_limits_are_named_in_a_note(format):
+    made = export(known("gimbal"), format)
+    (note,) = (text for text in made.remarks if text.startswith("no limits"))
+    assert note.endswith("a rotor~inner, base~outer, inner~outer")
+    assert note.encode() in next(data for name, data in made.files.items() if "/" not in name)
 
 
 def test_a_body_that_nothing_holds_floats_and_is_named():

@@ -331,17 +331,24 @@ class Flat:
 
 
 def chosen(statement, evaluate, values):
-    """The simultaneous statements in a row: of an `if … use` the branch that holds."""
+    """The simultaneous statements in a row: of an `if … use` the branch that holds.
+
+    Raises LookupError as long as it is not known which does.
+    """
     if not statement.startswith("if"):
         return [statement]
     for condition, body in re.findall(r"(?:if|elsif)\s+(.*?)\s+use\s+(.*?);", statement, re.S):
+        if unknown := names_in(parse(re.sub(r"'above|<", "-", condition))) - {*values, "now"}:
+            raise LookupError(unknown)
         if holds(condition, evaluate, values):
             return [body.strip()]
     return [re.search(r"else\s+(.*?);", statement, re.S)[1].strip()]
 
 
 def holds(condition, evaluate, values):
-    """A boolean generic, or a comparison with `now`."""
+    """A boolean generic, a comparison with `now`, or whether a quantity is above something."""
+    if above := re.fullmatch(r"(\w+)'above\((.*)\)", condition, re.S):
+        return float((evaluate(parse(above[1]), values) - evaluate(parse(above[2]), values)).d[0]) > 0.0
     if "<" not in condition:
         return values[condition.lower()] is True
     left, right = condition.split("<")
@@ -350,7 +357,7 @@ def holds(condition, evaluate, values):
 
 def constant(text):
     """Value of a generic: true, false, upright, zero, a number, a vector."""
-    named = {"true": True, "false": False, "upright": np.array([1.0, 0, 0, 0]), "zero": np.zeros(3)}
+    named = {"true": True, "false": False, "upright": np.array([1.0, 0, 0, 0]), "zero": np.zeros(3), "unlimited": 1e300}
     if text in named:
         return named[text]
     numbers = [float(x) for x in text.strip("()").split(",")]
@@ -373,14 +380,15 @@ class Residuals:
 def residuals(flat, potentials, quantities, now):
     """Residuals of all statements.
 
-    potentials: jets of the nets (places, and angular velocities); quantities: jets of orientations and
-    joint coordinates by their net names. Through quantities, their vectors and efforts are unknown.
+    potentials: jets of the nets (places, angular velocities, voltages); quantities: jets of orientations and
+    joint coordinates by their net names, and of states by their own. Through quantities, their vectors and
+    efforts are unknown.
     """
     evaluate = Evaluator(flat.functions, now)
     unknown = {}
     rows = []
     nodes = {}
-    fixed = {"zero": np.zeros(3), "upright": np.array([1.0, 0, 0, 0])}
+    fixed = {"zero": np.zeros(3), "upright": np.array([1.0, 0, 0, 0]), "unlimited": 1e300}
 
     def symbol(name, size=1):
         if name not in unknown:
@@ -399,15 +407,19 @@ def residuals(flat, potentials, quantities, now):
             net = ports[terminal]
             if across:
                 values[across] = potentials[net]
-            forces[through] = symbol(f"{path}{through}")
             nodes.setdefault(net, []).append(f"{path}{through}")
+            if f"{path}{through}" in quantities:
+                values[through] = quantities[f"{path}{through}"]
+            else:
+                forces[through] = symbol(f"{path}{through}")
         for port in (*entity.inputs, *entity.outputs):
             net = ports[port]
             if net in quantities:
                 values[port] = quantities[net]
             else:
                 forces[port] = symbol(net)
-        own = {name: SIZES[kind] for name, kind in entity.quantities.items()}
+        own = {name: SIZES[kind] for name, kind in entity.quantities.items() if f"{path}{name}" not in quantities}
+        values.update({n: quantities[f"{path}{n}"] for n in entity.quantities if n not in own})
         contexts.append((path, entity, values, forces, own))
         count += len(entity.branches)
         count += sum(SIZES[t] for t in entity.outputs.values()) + sum(SIZES[t] for t in entity.quantities.values())
@@ -418,7 +430,8 @@ def residuals(flat, potentials, quantities, now):
         rows.append((f"{path}{statement}", *[parse(side) for side in statement.split("==")], dict(fixed), forces))
         count += 1
     for net, through in nodes.items():
-        rows.append((f"node {net}", None, None, through, None))
+        given = sum(float(quantities[name].d[0]) for name in through if name in quantities)
+        rows.append((f"node {net}", given, None, [name for name in through if name not in quantities], None))
     return _solve(rows, unknown, index, evaluate, count)
 
 
@@ -428,12 +441,18 @@ def _nets(statement, scope):
 
 def _define(path, entity, values, forces, own, evaluate, symbol, rows):
     """Evaluate quantities that statements define from what is known; the rest are unknown, or equations."""
-    pending = []
-    for statement in entity.statements:
-        pending += [(text, *[parse(side) for side in text.split("==")]) for text in chosen(statement, evaluate, values)]
+    pending, waiting = [], list(entity.statements)
     progress = True
     while progress:
         progress = False
+        for statement in list(waiting):
+            try:
+                texts = chosen(statement, evaluate, values)
+            except LookupError:
+                continue
+            waiting.remove(statement)
+            pending += [(text, *[parse(side) for side in text.split("==")]) for text in texts]
+            progress = True
         for row in list(pending):
             text, left, right = row
             name = left[1] if left[0] == "name" else None
@@ -444,6 +463,7 @@ def _define(path, entity, values, forces, own, evaluate, symbol, rows):
                 rows.append((f"{path}{text}", left, right, values, {}))
                 pending.remove(row)
                 progress = True
+    assert not waiting, f"{path}: it is not known which branch holds of {waiting}"
     for name, size in own.items():
         if name not in values:
             forces[name] = symbol(f"{path}{name}", size)
@@ -456,12 +476,12 @@ def _solve(rows, unknown, index, evaluate, count):
     matrix, rest, places = [], [], []
     equations = 0
     for where, left, right, values, forces in rows:
-        if left is None:
+        if right is None:
             line = np.zeros(n)
             for name in values:
                 line[index[name]] += 1.0
             matrix.append(line[None])
-            rest.append(np.zeros(1))
+            rest.append(np.full(1, left))
             places.append(where)
             continue
         used = (names_in(left) | names_in(right)) & set(forces)
@@ -489,6 +509,8 @@ def _solve(rows, unknown, index, evaluate, count):
     acting = np.abs(A).max(axis=1) > 0.0
     through, _, rank, _ = lstsq(A[acting], -b[acting], lapack_driver="gelsy", cond=1e-12)
     assert rank == n, "the through quantities are not determined"
+    # Once more with what is left: forces may be large.
+    through -= lstsq(A[acting], (A @ through + b)[acting], lapack_driver="gelsy", cond=1e-12)[0]
     left = np.abs(A @ through + b)
     worst = int(left.argmax())
     solved = {name: through[index[name]] for name in unknown}

@@ -20,10 +20,12 @@ from kinform.exports.tree import Closing, Tree
 from kinform.kinematics.screws import perpendicular
 from kinform.simulation.closure import rank_of
 
-__all__ = ["Closure", "Loops", "loops"]
+__all__ = ["Closure", "Loops", "held_rates", "loops", "singular"]
 
 Array = NDArray[np.float64]
 
+MOVED = 1e-9
+"""rad or m: what counts as motion."""
 SAMPLES = 24
 """Poses of our run at which the free coordinates must be good."""
 CLOSE = 0.7
@@ -95,6 +97,35 @@ def loops(model: ExportModel, tree: Tree) -> Loops:
     free = _free(model, closings, frames, rest, sorted(held))
     gear_rows = range(len(rows) - gears, len(rows))
     return Loops(tuple(closures), tuple(k in held for k in gear_rows), frozenset(rest[free].tolist()), led)
+
+
+def held_rates(model: ExportModel, found: Loops, lost: list[str], remarks: list[str]) -> frozenset[int]:
+    """Rates that the equations hold, because our run is one without forces; what that run did otherwise is added."""
+    run = model.simulation
+    if model.with_forces or run is None or not found.free:
+        return frozenset()
+    remarks.append("our run is one without forces: joints that nothing prescribes are held where they start")
+    columns = dict(zip(run.joint_names, run.joint_offset, strict=False))
+    for slot in model.mechanism.slots:
+        held = [k for k in range(slot.v.stop - slot.v.start) if slot.v.start + k in found.free]
+        if held and slot.has_ball:
+            lost.append(f"{slot.name}: in our run it rests, here its spherical joint swings")
+        elif any(np.ptp(run.joint_position[:, int(columns[slot.name]) + k]) > MOVED for k in held):
+            lost.append(
+                f"{slot.name}: nothing prescribes it; in our run it moves no more than it must, here it is held"
+            )
+    return found.free
+
+
+def singular(model: ExportModel) -> tuple[str, ...]:
+    """A sentence where the start is a singular pose: what is redundant there is not so along our run."""
+    run = model.simulation
+    if run is None or not len(run.rank) or run.rank.max() <= run.rank[0]:
+        return ()
+    return (
+        f"the loops away from the start: {run.rank[0]} of their equations are independent there, {run.rank.max()} later "
+        "in our run, and only the former are held; it starts in a singular pose",
+    )
 
 
 def _reached(tree: Tree, link: int) -> bool:

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from kinform.behaviour import MotionDrive
-from kinform.exports.robot import Robot
+from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
+from kinform.exports.robot import Driver, Robot
 
 __all__ = ["tree_losses"]
+
+_WHAT: dict[type[Driver], str] = {
+    MotionDrive: "its motion follows a law",
+    EffortDrive: "its effort follows a law",
+    Servo: "a servo with its gains and target",
+    DcMotor: "a DC motor with its voltage",
+}
 
 
 def tree_losses(made: Robot, format: str, *, springs: bool = False) -> Iterator[str]:
@@ -18,8 +25,7 @@ def tree_losses(made: Robot, format: str, *, springs: bool = False) -> Iterator[
             yield f"{closing.joint.subject}: what acts on it ({type(actor).__name__}) is left out with it"
     for link in made.links:
         for drive in link.drives:
-            what = "its motion follows a law" if isinstance(drive, MotionDrive) else "its effort follows a law"
-            yield f"{drive.subject}: {what}, which {format} does not have; only that it is driven"
+            yield f"{drive.subject}: {_WHAT[type(drive)]}, which {format} does not have; only that it is driven"
         if not springs:
             for spring in link.springs:
                 yield f"{spring.subject}: a spring of {spring.stiffness:g} N·m/rad or N/m"

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour import Constant, MotionDrive
 from kinform.behaviour.primitives import Ball
 from kinform.exports.exported import Exported
 from kinform.exports.mjcf_drives import actuators, gears, load
@@ -94,9 +93,9 @@ def export(model: ExportModel) -> Exported:
     made = _with_moments(made, lost)
     root, twins = _bodies(made)
     equalities = [row for closing in made.closing for row in _closure(made, closing, twins)]
-    rows = actuators(made)
+    rows = actuators(made, lost)
     ordered = list(_walk(root))
-    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(
@@ -113,11 +112,6 @@ def export(model: ExportModel) -> Exported:
 def _losses(made: Robot) -> list[str]:
     out = []
     for link in made.links:
-        for drive in link.drives:
-            if isinstance(drive, MotionDrive):
-                out.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
-            elif not isinstance(drive.signal, Constant):
-                out.append(f"{drive.subject}: its effort follows a law; its actuator holds the effort at the start")
         for visual in link.visuals:
             if visual.facets > MOST_FACETS:
                 out.append(f"{visual.name}: its mesh; MuJoCo reads up to {MOST_FACETS} facets")

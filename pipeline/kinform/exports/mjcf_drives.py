@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from kinform.behaviour import LoadComponent, MotionDrive
+from kinform.behaviour import Constant, DcMotor, EffortDrive, LoadComponent, MotionDrive, Servo, VoltageController
 from kinform.behaviour.primitives import Ball
+from kinform.behaviour.shafts import Controller
+from kinform.behaviour.signals import Signal
 from kinform.exports.names import XML, identifiers
 from kinform.exports.robot import Robot, RobotLink
 
@@ -28,8 +31,8 @@ def gears(made: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     return out
 
 
-def actuators(made: Robot) -> list[dict[str, Any]]:
-    """Drives, with what they hold at the start."""
+def actuators(made: Robot, lost: list[str]) -> list[dict[str, Any]]:
+    """Drives, with what they hold at the start; what MuJoCo does otherwise is added to `lost`."""
     out: list[dict[str, Any]] = []
     links = list(made.links)
     names = identifiers((drive.name for link in links for drive in link.drives), XML)
@@ -37,19 +40,57 @@ def actuators(made: Robot) -> list[dict[str, Any]]:
         joint = link.link.joint
         for drive in link.drives:
             assert joint is not None
-            moving = isinstance(drive, MotionDrive)
-            inertia = _inertia_on(made, link) if moving else 0.0
-            out.append(
-                {
-                    "name": names[drive.name],
-                    "joint": made.joint_names[joint.subject],
-                    "moving": moving,
-                    "kp": inertia * BANDWIDTH**2,
-                    "kv": 2.0 * inertia * BANDWIDTH,
-                    "start": drive.signal.value(0.0),
-                }
-            )
+            at = {"name": names[drive.name], "joint": made.joint_names[joint.subject], "bound": None}
+            if isinstance(drive, MotionDrive):
+                inertia = _inertia_on(made, link)
+                gains = {"kp": inertia * BANDWIDTH**2, "kv": 2.0 * inertia * BANDWIDTH}
+                out.append(at | gains | {"type": "position", "start": drive.signal.value(0.0)})
+                lost.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
+            elif isinstance(drive, EffortDrive):
+                out.append(at | {"type": "motor", "start": drive.signal.value(0.0)})
+                if not isinstance(drive.signal, Constant):
+                    lost.append(
+                        f"{drive.subject}: its effort follows a law; its actuator holds the effort at the start"
+                    )
+            elif isinstance(drive, Servo):
+                out.append(at | _servo(drive.subject, drive.target, drive.controller, 1.0, 0.0, lost))
+            else:
+                out.append(at | _motor(made, drive, lost))
     return out
+
+
+def _servo(
+    subject: str, target: Signal, controller: Controller, ratio: float, drag: float, lost: list[str]
+) -> dict[str, Any]:
+    """A position servo; `ratio`: effort for a unit of the controller's output, `drag`: damping beside it."""
+    if not isinstance(target, Constant):
+        lost.append(f"{subject}: the target of its controller follows a law; it is that at the start, at rest")
+    if controller.ki:
+        lost.append(f"{subject}: the integral of its controller (ki = {controller.ki:g})")
+    bounded = math.isfinite(controller.limit)
+    if bounded and drag:
+        lost.append(f"{subject}: the limit of its controller's voltage ({controller.limit:g} V)")
+    return {
+        "type": "position",
+        "kp": ratio * controller.kp,
+        "kv": ratio * controller.kd + drag,
+        "start": target.value(0.0),
+        "bound": controller.limit if bounded and not drag else None,
+    }
+
+
+def _motor(made: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
+    """A motor whose current follows its voltage at once; controlled by that, or by its controller's target."""
+    if motor.inductance:
+        lost.append(f"{motor.subject}: the inductance of its motor ({motor.inductance:g} H)")
+    ratio = motor.constant * motor.gear / motor.resistance
+    drag = ratio * motor.constant * motor.gear
+    supply = made.model.system.supply(motor.name)
+    if isinstance(supply, VoltageController):
+        return _servo(motor.subject, supply.target, supply.controller, ratio, drag, lost)
+    if not isinstance(supply.signal, Constant):
+        lost.append(f"{motor.subject}: the voltage of its motor follows a law; its actuator holds that at the start")
+    return {"type": "general", "gain": ratio, "drag": drag, "start": supply.signal.value(0.0)}
 
 
 def _inertia_on(made: Robot, link: RobotLink) -> float:

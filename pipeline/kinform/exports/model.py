@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
-from kinform.behaviour.components import DcMotor, EndStop, Servo, SpringDamper, VoltageController, VoltageSource
+from kinform.behaviour.components import EndStop, SpringDamper
 from kinform.errors import StageError
 from kinform.function import resolve
 from kinform.model.assembly import Assembly
@@ -165,7 +165,7 @@ def _starts(mechanism: Mechanism, q: Array, v: Array) -> dict[str, BodyStart]:
 def _ranges(
     assembly: Assembly, kinematics: Kinematics, joints: tuple[JointComponent, ...]
 ) -> dict[str, tuple[float, float]]:
-    """Ranges that the geometry leaves; where that is not known, those that the function states."""
+    """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it."""
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for stated in assembly.function.joints:
@@ -175,17 +175,14 @@ def _ranges(
             out[found.joint.name] = (float(low), float(high))
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
-            low = -np.inf if joint.range_lower is None else joint.range_lower
-            high = np.inf if joint.range_upper is None else joint.range_upper
+            stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))
+            low = stated_low if joint.range_lower is None else joint.range_lower
+            high = stated_high if joint.range_upper is None else joint.range_upper
             out[joint.name] = (float(low), float(high))
     return dict(sorted(out.items()))
 
 
 _ELSEWHERE: dict[type[Component], str] = {
-    Servo: "a servo",
-    DcMotor: "a DC motor",
-    VoltageSource: "the voltage of a motor",
-    VoltageController: "the controller of a motor",
     EndStop: "end stops with impacts",
     SpringDamper: "a spring between two points",
 }

@@ -8,18 +8,32 @@ the body in the independent directions alone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour import Component, Damper, EffortDrive, Ground, MotionDrive, RigidBody, Spring
+from kinform.behaviour import (
+    Component,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    Ground,
+    MotionDrive,
+    RigidBody,
+    Servo,
+    Spring,
+    System,
+    VoltageController,
+)
 from kinform.behaviour.primitives import Ball, OneFreedom
+from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
 from kinform.exports.exported import Exported
 from kinform.exports.laws import pieces
-from kinform.exports.loops import Closure, Loops, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
@@ -32,7 +46,8 @@ Array = NDArray[np.float64]
 
 LIBRARY = (
     "Frame Shaft Ground Body Revolute Prismatic Screw Spherical Fixed Free Cylindrical Planar PlanarReversed Universal "
-    "Motion Effort Spring Damper Gear Load System Place Turn turned back product"
+    "Motion Effort Spring Damper Gear Load System Place Turn turned back product Pin Servo Voltage VoltageController Motor "
+    "MotorWithoutCoil"
 ).split()
 
 _SUFFIXES = ("", "_closure", "_free", *(f"_held_{k}" for k in (1, 2, 3)))
@@ -57,14 +72,13 @@ def export(model: ExportModel) -> Exported:
     names = identifiers(
         (component.name for component in model.system.components), MODELICA, beside=("gravity",), suffixes=_SUFFIXES
     )
-    lost, remarks = list(model.lost), []
+    lost = [*model.lost, *singular(model)]
+    remarks: list[str] = []
     built = _Built()
     for component in model.system.components:
         if isinstance(component, Ground | RigidBody):
             _body(built, component, names)
-    held = found.free if not model.with_forces else frozenset[int]()
-    if held:
-        remarks.append("our run is one without forces: joints that nothing prescribes are held where they start")
+    held = held_rates(model, found, lost, remarks)
     for link in tree.links:
         if link.joint is not None:
             _carried(built, model, tree, link, names, found, held)
@@ -253,6 +267,10 @@ def _actors(
                 built.instances.append(("Spring", name, values, actor.subject))
             elif isinstance(actor, Damper):
                 built.instances.append(("Damper", name, f"d={number(actor.damping)}", actor.subject))
+            elif isinstance(actor, Servo):
+                built.instances.append(("Servo", name, _controlled(actor.controller, actor.target), actor.subject))
+            elif isinstance(actor, DcMotor):
+                _motor(built, system, names, actor, f"{names[joint.name]}.shaft")
             else:
                 continue
             built.connections.append((f"{name}.shaft", f"{names[joint.name]}.shaft"))
@@ -269,6 +287,53 @@ def _actors(
         built.instances.append(("Load", names[load.name], values, load.subject))
         body: Component = system.body_at(load.name, "frame")
         built.connections.append((f"{names[load.name]}.frame", f"{names[body.name]}.frame"))
+
+
+def _motor(built: _Built, system: System, names: dict[str, str], motor: DcMotor, shaft: str) -> None:
+    """A motor, and at its terminal what supplies it."""
+    keys = ("resistance", "constant", "gear", *(("inductance",) if motor.inductance else ()))
+    values = [f"{'k' if key == 'constant' else key}={number(getattr(motor, key))}" for key in keys]
+    kind = "Motor" if motor.inductance else "MotorWithoutCoil"
+    built.instances.append((kind, names[motor.name], ", ".join(values), motor.subject))
+    supply = system.supply(motor.name)
+    label = names[supply.name]
+    if isinstance(supply, VoltageController):
+        built.instances.append(
+            ("VoltageController", label, _controlled(supply.controller, supply.target), supply.subject)
+        )
+        built.connections.append((f"{label}.shaft", shaft))
+    else:
+        built.instances.append(("Voltage", label, f"given={_formula(supply.signal)}", f"voltage of {supply.subject}"))
+    built.connections.append((f"{label}.pin", f"{names[motor.name]}.pin"))
+
+
+def _controlled(controller: Controller, target: Signal) -> str:
+    """Modifiers of a controller."""
+    values = {"kp": controller.kp, "ki": controller.ki, "kd": controller.kd}
+    if math.isfinite(controller.limit):
+        values["bound"] = controller.limit
+    return ", ".join([*(f"{key}={number(value)}" for key, value in values.items()), f"target={_formula(target)}"])
+
+
+def _formula(signal: Signal) -> str:
+    """A law as an expression of time."""
+    if isinstance(signal, Constant):
+        return number(signal.level)
+    if isinstance(signal, Ramp):
+        return f"{number(signal.offset)} + ({number(signal.slope)})*time"
+    if isinstance(signal, Sine):
+        turn = f"({number(signal.speed)})*time + ({number(signal.phase)})"
+        return f"{number(signal.offset)} + ({number(signal.amplitude)})*sin({turn})"
+    assert isinstance(signal, Table | Spline)
+    out = ""
+    for end, start, coefficients in pieces(signal):
+        powers = (
+            f"({number(c)})" + f"*(time - ({number(start)}))" * bool(k) + f"^{k}" * (k > 1)
+            for k, c in enumerate(coefficients)
+        )  # fmt: skip
+        head = f"if time < {number(end)} then " if math.isfinite(end) else ""
+        out += f"{' else' * bool(out)}{' ' * (bool(out) and not head)}{head}{' + '.join(powers)}"
+    return out
 
 
 def _drive(built: _Built, kind: str, name: str, signal: Signal, comment: str) -> None:

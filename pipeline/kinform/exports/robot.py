@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from kinform.behaviour import (
     Actor,
     Damper,
+    DcMotor,
     EffortDrive,
     Ground,
     JointComponent,
     LoadComponent,
     MotionDrive,
     RigidBody,
+    Servo,
     Spring,
 )
 from kinform.behaviour.components import Gear
@@ -25,9 +27,11 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 
-__all__ = ["Robot", "RobotLink", "Visual", "robot"]
+__all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot"]
 
 Array = NDArray[np.float64]
+Driver = MotionDrive | EffortDrive | Servo | DcMotor
+"""What drives a joint."""
 
 
 @dataclass(frozen=True)
@@ -83,9 +87,9 @@ class RobotLink:
         return sum(s.stiffness * s.rest for s in self.springs) / self.stiffness if self.stiffness else 0.0
 
     @property
-    def drives(self) -> tuple[MotionDrive | EffortDrive, ...]:
-        """The drives on its joint."""
-        return tuple(actor for actor in self.actors if isinstance(actor, MotionDrive | EffortDrive))
+    def drives(self) -> tuple[Driver, ...]:
+        """The drives, servos and motors on its joint."""
+        return tuple(actor for actor in self.actors if isinstance(actor, Driver))
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +125,16 @@ class Robot:
     def link_of(self, joint: str) -> RobotLink | None:
         """The link that a joint carries; None for a joint that closes a loop."""
         return next((k for k in self.links if k.link.joint is not None and k.link.joint.subject == joint), None)
+
+    @property
+    def unranged(self) -> tuple[str, ...]:
+        """A sentence about the joints whose ranges nothing says."""
+        names = [
+            link.link.joint.subject
+            for link in self.links
+            if link.link.joint is not None and link.link.joint.kind.rates == 1 and link.range is None
+        ]
+        return (f"no limits, because no range is known: {', '.join(sorted(names))}",) if names else ()
 
     @property
     def moved(self) -> bool:

@@ -2,13 +2,13 @@
 
 Link frames are those of `tree`. Cylindrical and planar joints, and universal ones whose axes are askew,
 are chains of joints with links of almost no mass between them, because a link without mass counts as
-1 kg in SDF.
+1 kg in SDF. That a joint is not driven is said by an effort of 0.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,7 @@ class _Axis:
     stiffness: float = 0.0
     rest: float = 0.0
     mimic: tuple[str, float] | None = None
+    driven: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,7 @@ def export(model: ExportModel) -> Exported:
     if grains or weightless:
         grain = f"links without mass have {GRAIN:g} kg, because SDF takes 1 kg where nothing is stated"
         lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
-    remarks = ["meshes do not collide, because mating surfaces always touch"]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
     text = render(
         "model.sdf.j2", robot=made, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
         ground=_free(made, "world_fixed"),
@@ -107,7 +108,8 @@ def _direct(made: Robot, link: RobotLink) -> _Joint | None:
         return None
     turning = bool(screws[0].omega.any())
     limits = link.range if link.range is not None and any(map(math.isfinite, link.range)) else None
-    axis = _Axis(screws[0].omega if turning else screws[0].slide, limits, link.damping, link.stiffness, link.rest)
+    direction = screws[0].omega if turning else screws[0].slide
+    axis = _Axis(direction, limits, link.damping, link.stiffness, link.rest, driven=bool(link.drives))
     if kind == "screw":
         return _Joint(name, "screw", parent, link.name, (axis,), joint.geometry.pitch)
     return _Joint(name, kind, parent, link.name, (axis,))
@@ -125,9 +127,7 @@ def _mimicking(
     out, done = [], False
     for joint in joints:
         if joint.name == first and len(joint.axes) == 1 and joint.axes[0].mimic is None:
-            axis = joint.axes[0]
-            followed = _Axis(axis.direction, axis.limits, axis.damping, axis.stiffness, axis.rest, (second, ratio))
-            joint, done = _Joint(joint.name, joint.type, joint.parent, joint.child, (followed,), joint.pitch), True
+            joint, done = replace(joint, axes=(replace(joint.axes[0], mimic=(second, ratio)),)), True
         out.append(joint)
     if not done:
         lost.append(f"{gear}: SDF lets a joint follow one other only, and none that closes a loop")

@@ -38,7 +38,7 @@ def export(model: ExportModel) -> Exported:
     made = robot(model, XML, KINDS)
     lost = [*model.lost, *tree_losses(made, "URDF"), *_spherical(made)]
     taken = {link.name for link in made.links}
-    joints, remarks = [], []
+    joints, remarks = [], [*made.unranged]
     mimics = _mimics(made, lost)
     for link in made.links:
         if link.link.joint is None:

@@ -13,24 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour import (
-    Damper,
-    EffortDrive,
-    Ground,
-    JointComponent,
-    MotionDrive,
-    RigidBody,
-    Spring,
-)
-from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
+from kinform.behaviour import Ground, JointComponent, RigidBody
 from kinform.exports.exported import Exported
-from kinform.exports.laws import pieces
-from kinform.exports.loops import Closure, Loops, loops
+from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
-from kinform.exports.scopes import Scope
 from kinform.exports.text import number, render, vector
 from kinform.exports.tree import Tree, grow
+from kinform.exports.vhdl_drives import drives
 from kinform.exports.vhdl_structure import AXES, COUNT, Part, Writer
 from kinform.kinematics.screws import perpendicular
 from kinform.simulation.spatial import to_matrix
@@ -44,18 +34,12 @@ def export(model: ExportModel) -> Exported:
     """1_mechanics.vhd, 2_components.vhd, 3_NAME.vhd and 4_NAME_bench.vhd, in the order of their dependence."""
     tree = grow(model.system)
     found = loops(model, tree)
-    lost, remarks = list(model.lost), []
+    lost = [*model.lost, *singular(model)]
+    remarks: list[str] = []
     writer = Writer(model)
     for scope in writer.scopes.paths[1:]:
         writer.child(scope)
-    held = frozenset[int]() if model.with_forces else found.free
-    if held:
-        remarks.append("our run is one without forces: joints that nothing prescribes are held where they start")
-        lost += [
-            f"{slot.name}: in our run it rests, here its spherical joint swings"
-            for slot in model.mechanism.slots
-            if slot.has_ball and any(k in held for k in range(slot.v.start, slot.v.stop))
-        ]
+    held = held_rates(model, found, lost, remarks)
     for body in model.system.bodies:
         _body(writer, body)
     closures = {closure.joint.subject: closure for closure in found.closures}
@@ -66,7 +50,7 @@ def export(model: ExportModel) -> Exported:
             lost.append(f"{joint.subject}: it closes a loop that is not connected with the ground")
             continue
         _joint(writer, tree, joint, closures.get(joint.subject), found, held)
-    _actors(writer, found, held, lost, remarks)
+    drives(writer, found, held, lost, remarks)
     for load in model.system.loads:
         home = writer.scopes.of[load.name]
         frame = writer.names[model.system.body_at(load.name, "frame").name]
@@ -95,7 +79,7 @@ def _files(writer: Writer, lost: list[str], remarks: list[str]) -> Exported:
     order = ("1_mechanics.vhd", "2_components.vhd", f"3_{top}.vhd", f"4_{bench}.vhd")
     system = render(
         "system.vhd.j2", model=model, lost=lost, remarks=remarks, equations=writer.equations, order=order,
-        potentials=6 * writer.nodes, tables=writer.tables,
+        potentials=writer.potentials, tables=writer.tables,
         scopes=[writer.of[path] for path in reversed(writer.scopes.paths)],
     )  # fmt: skip
     files = {
@@ -221,82 +205,3 @@ def _world(writer: Writer, joint: JointComponent, v: Array) -> Array:
     """Relative angular velocity of a spherical joint in the axes of the world."""
     first = writer.model.system.body_at(joint.name, "a").subject
     return np.asarray(to_matrix(writer.model.start[first].quaternion) @ v)
-
-
-def _actors(writer: Writer, found: Loops, held: frozenset[int], lost: list[str], remarks: list[str]) -> None:
-    model, system = writer.model, writer.model.system
-    slots = {slot.name: slot for slot in model.mechanism.slots}
-    for joint in system.joints:
-        label, home, led = writer.names[joint.name], writer.scopes.of[joint.name], False
-        for actor in system.actors(joint.name):
-            name, value = writer.names[actor.name], f"{label}_{joint.kind.coordinates[0][0]}"
-            if isinstance(actor, MotionDrive):
-                if led:
-                    lost.append(f"{actor.subject}: a second drive prescribes the motion of {joint.subject}")
-                    continue
-                led = True
-                signal = smooth(actor.signal) if model.with_forces else actor.signal
-                entity, values = _law(writer, "motion", name, signal)
-            elif isinstance(actor, EffortDrive):
-                entity, values = _law(writer, "effort", name, actor.signal)
-            elif isinstance(actor, Spring):
-                entity, values = "spring", {"stiffness": actor.stiffness, "rest": actor.rest}
-            elif isinstance(actor, Damper):
-                entity, values = "damper", {"damping": actor.damping}
-            else:
-                continue
-            _on_shaft(writer, home, name, entity, actor.subject, values, value)
-        for k, (coordinate, _) in enumerate(joint.kind.coordinates):
-            if slots[joint.subject].v.start + k in held and joint.kind.name != "spherical":
-                value = f"{label}_{coordinate}"
-                level = {"level": float(model.coordinates(joint.subject)[0][k])}
-                _on_shaft(writer, home, f"{value}_held", "motion_constant", f"{joint.subject} is held", level, value)
-    for gear, kept in zip(system.gears, found.gears, strict=True):
-        if not kept:
-            remarks.append(f"{gear.subject}: it is redundant with the loops")
-            continue
-        _gear(writer, gear.name, gear.ratio, lost)
-
-
-def _on_shaft(
-    writer: Writer, home: Scope, name: str, entity: str, text: str, values: dict[str, float], value: str
-) -> None:
-    """An actor on a coordinate: it reads the value and gives an effort."""
-    writer.of[home].declarations.append(f"quantity {name}_effort : real")
-    writer.efforts[f"{value}_effort"][1].append(f"{name}_effort")
-    generics = {key: writer.generic(home, f"{name}_{key}", "real", number(x)) for key, x in values.items()}
-    writer.add(home, Part(f"{name}_i", entity, text, generics, {"value": value, "effort": f"{name}_effort"}))
-
-
-def _gear(writer: Writer, name: str, ratio: float, lost: list[str]) -> None:
-    system = writer.model.system
-    joints = [system.joint_at(name, port) for port in ("a", "b")]
-    homes = {writer.scopes.of[joint.name] for joint in joints}
-    if len(homes) > 1:
-        lost.append(f"{name}: it couples joints of different sub-assemblies")
-        return
-    (home,) = homes
-    label = writer.names[name]
-    ports: dict[str, str] = {}
-    for port, joint in zip("ab", joints, strict=True):
-        value = f"{writer.names[joint.name]}_{joint.kind.coordinates[0][0]}"
-        writer.of[home].declarations.append(f"quantity {label}_{port}_effort : real")
-        writer.efforts[f"{value}_effort"][1].append(f"{label}_{port}_effort")
-        ports |= {f"{port}_value": value, f"{port}_effort": f"{label}_{port}_effort"}
-    generics = {"ratio": writer.generic(home, f"{label}_ratio", "real", number(ratio))}
-    writer.add(home, Part(label, "gear", name, generics, ports))
-
-
-def _law(writer: Writer, kind: str, name: str, signal: Signal) -> tuple[str, dict[str, float]]:
-    """The entity of a law and its generics; a table gets an entity of its own."""
-    if isinstance(signal, Constant):
-        return f"{kind}_constant", {"level": signal.level}
-    if isinstance(signal, Ramp):
-        return f"{kind}_ramp", {"offset": signal.offset, "slope": signal.slope}
-    if isinstance(signal, Sine):
-        return f"{kind}_sine", {key: getattr(signal, key) for key in ("offset", "amplitude", "speed", "phase")}
-    assert isinstance(signal, Table | Spline)
-    entity = f"table_{name}"
-    left = "value" if kind == "motion" else "effort"
-    writer.tables.append({"name": entity, "left": left, "pieces": pieces(signal)})
-    return entity, {}

@@ -18,8 +18,9 @@ __all__ = ["AXES", "COUNT", "Generic", "Part", "Structure", "Writer"]
 COUNT = {
     "ground": 16, "rigid_body": 34, "massless_frame": 22, "fixed_joint": 36, "revolute_joint": 47,
     "prismatic_joint": 41, "screw_joint": 47, "cylindrical_joint": 49, "planar_joint": 57, "universal_joint": 52,
-    "spherical_joint": 45, "closure": 60, "load": 21, "motion_constant": 1, "motion_ramp": 1, "motion_sine": 1,
-    "effort_constant": 1, "effort_ramp": 1, "effort_sine": 1, "spring": 1, "damper": 1, "gear": 2,
+    "spherical_joint": 45, "closure": 60, "load": 21, "spring": 1, "damper": 1, "gear": 2, "servo": 6, "dc_motor": 2,
+    "voltage_controller": 6,
+    **{f"{kind}_{law}": 1 for kind in ("motion", "effort", "target", "voltage") for law in ("constant", "ramp", "sine")},
 }  # fmt: skip
 """Equations of each entity, as many as its unknowns: through quantities, and quantities that are not inputs."""
 
@@ -37,9 +38,15 @@ _SUFFIXES = (
         f"_{name}"
         for name in (
             "m c inertia n s n1 n2 n3 lead w_start given effort level offset slope amplitude speed phase stiffness "
-            "rest damping ratio a_effort b_effort force torque turning"
+            "rest damping ratio a_effort b_effort force torque turning kp ki kd bound resistance inductance coupling gear p"
         ).split()
     ),
+    *(
+        f"_{source}{suffix}"
+        for source in ("target", "supply")
+        for suffix in "_i _level _offset _slope _amplitude _speed _phase _kp _ki _kd _bound".split()
+    ),
+    "_target",
 )
 """What is appended to the name of a component, so that no two names meet."""
 
@@ -91,7 +98,7 @@ class Writer:
         )
         self.scopes = scope_of(model)
         paths = self.scopes.paths
-        tables = (f"table_{name}" for name in self.names.values())
+        tables = (f"table_{name}{end}" for name in self.names.values() for end in ("", "_target", "_supply"))
         called = {path: f"/{path}" if path else model.name for path in paths}
         entities = identifiers(called.values(), VHDL, beside=("mechanics", "components", *COUNT, *tables))
         self.entity = {path: entities[called[path]] for path in paths}
@@ -102,12 +109,14 @@ class Writer:
         self.starts: dict[str, str] = {}
         self.tables: list[dict[str, Any]] = []
         self.equations = 0
-        self.nodes = 0
+        self.potentials = 0
         self.efforts: dict[str, tuple[Scope, list[str]]] = {}
+        self.passed: dict[str, Scope] = {}
+        """The scope in which a quantity is declared that was passed up."""
 
     def node(self, name: str, home: Scope, top: Scope) -> None:
         """Declare a frame's terminals and orientation in `top`, and pass them down to `home`."""
-        self.nodes += 1
+        self.potentials += 6
         self.of[top].declarations += [
             f"terminal {name}_x, {name}_y, {name}_z : translational",
             f"terminal {name}_rx, {name}_ry, {name}_rz : rotational",
@@ -120,6 +129,26 @@ class Writer:
                 f"quantity {name}_q : out quaternion",
             ]
             self.child(scope).ports.update({f"{name}_{axis}": f"{name}_{axis}" for axis in (*AXES, "q")})
+
+    def pass_up(self, name: str, home: Scope, top: Scope) -> None:
+        """Make a real quantity that is declared in `home` known in `top`."""
+        at = self.passed.get(name, home)
+        scopes = self.scopes.between(top, at)
+        if not scopes:
+            return
+        self.of[at].declarations.remove(f"quantity {name} : real")
+        self.of[top].declarations.append(f"quantity {name} : real")
+        self.passed[name] = top
+        for scope in scopes:
+            self.of[scope].ports.append(f"quantity {name} : out real")
+            self.child(scope).ports[name] = name
+
+    def pass_down(self, name: str, top: Scope, home: Scope) -> None:
+        """Declare a real quantity in `top`, known down to `home`."""
+        self.of[top].declarations.append(f"quantity {name} : real")
+        for scope in self.scopes.between(top, home):
+            self.of[scope].ports.append(f"quantity {name} : in real")
+            self.child(scope).ports[name] = name
 
     def child(self, scope: Scope) -> Part:
         """The instance of a scope in the one above."""
