@@ -33,7 +33,7 @@ def check(context: Context) -> Outcome:
     findings = [
         RULE.finding(
             item.parts,
-            f"{quoted(item.parts[0])} and {quoted(item.parts[1])} collide at t = {number(item.time, 6)} s, "
+            f"{quoted(item.parts)} collide at t = {number(item.time, 6)} s, "
             f"at {place(item.place, context.units)}, up to {length(item.depth, context.units)} deep",
             found=f"t = {number(item.time, 6)} s",
             intended="no collision",

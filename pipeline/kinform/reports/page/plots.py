@@ -18,7 +18,7 @@ from kinform.function import resolve
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
-from kinform.reports.page.scene import wanted_names
+from kinform.reports.page.subjects import wanted_names
 
 __all__ = ["Plot", "Series", "drawn", "plots"]
 
@@ -77,16 +77,33 @@ def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plo
         scale, shown = _scale(unit, design.assembly.units, metres)
         values = run.joint_position[:, column] * scale
         limits: list[tuple[str, float]] = []
-        if "." not in name and kind in ("revolute", "prismatic") and design.kinematics is not None:
-            found = next((j for j in design.kinematics.joints if j.name == name), None)
+        if "." not in name and kind in ("revolute", "prismatic") and design.ranged is not None:
+            found = next((j for j in design.ranged.joints if j.name == name), None)
             if found is not None:
                 ends = [("found", found.range_lower, found.range_upper)] if found.range_status == "found" else []
                 wanted = _required(design, name)
                 ends += [("required", *wanted)] if wanted is not None else []
                 for word, low, high in ends:
                     limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
-        out.append(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits)))
+        out.append(_near(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits))))
     return out
+
+
+def _near(plot: Plot) -> Plot:
+    """The plot without the limits found that are so far from the curve that it would be flat; they are named."""
+    every = [
+        v for s in plot.series for v in (float(np.nanmin(s.values)), float(np.nanmax(s.values))) if math.isfinite(v)
+    ]
+    every += [value for label, value in plot.limits if not label.startswith("found")]
+    if not every:
+        return plot
+    low, high = min(every), max(every)
+    room = max(high - low, 1e-12)
+    near = tuple(limit for limit in plot.limits if low - room <= limit[1] <= high + room)
+    far = "".join(
+        f", {label} {_number(value)}{plot.unit} not shown" for label, value in plot.limits if (label, value) not in near
+    )
+    return replace(plot, title=plot.title + far, limits=near)
 
 
 def _required(design: Design, name: str) -> tuple[float, float] | None:
@@ -178,7 +195,8 @@ def drawn(plot: Plot, time: Array) -> str:
         parts.append(f'<line class="limit" x1="{LEFT}" x2="{RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
         inside = at + (11.0 if at < (TOP + BOTTOM) / 2 else -4.0)
         text = escape(f"{label} {_number(value)}{plot.unit}")
-        parts.append(f'<text class="tick" x="{RIGHT}" y="{inside:.1f}" text-anchor="end">{text}</text>')
+        side, anchor = (LEFT + 4.0, "start") if label.startswith("found") else (RIGHT, "end")
+        parts.append(f'<text class="tick" x="{side}" y="{inside:.1f}" text-anchor="{anchor}">{text}</text>')
     for k, series in enumerate(plot.series):
         parts.append(f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>')
     if len(plot.series) > 1:
