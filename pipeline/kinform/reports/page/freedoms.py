@@ -180,9 +180,9 @@ class _Linkage:
     def _reach(self, rates: Array, turns: bool, end: float | None) -> float:
         """How far the driver goes to one side (rad or m, positive)."""
         if end is not None:
-            return min(abs(float(end)), float(FULL if turns else self.size))
+            return float(min(abs(end), FULL if turns else self.size))
         reach = float(TURN if turns else SLIDE * self.size)
-        return min(reach, 1.4 * TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300))
+        return float(min(reach, 1.4 * TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300)))
 
     def _followed(self, rates: Array, driver: int, steps: Array) -> tuple[Array, str]:
         """Poses (S, B, 4, 4) at the driver's steps; the last closed pose again where loops do not close."""

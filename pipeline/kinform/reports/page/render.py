@@ -17,9 +17,9 @@ from markupsafe import Markup
 
 from kinform._version import __version__
 from kinform.model.design import Design
+from kinform.reports.graph import graph_legend, graph_panel
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.colours import FITS
-from kinform.reports.page.drawing import graph_drawing
 from kinform.reports.page.embedded import packed
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plots
@@ -61,7 +61,8 @@ def page(design: Design, scene: Scene | None = None) -> str:
         fits=FITS,
         has_overlaps=bool(embedded["overlaps"]),
         motions=embedded["motions"],
-        graph=Markup(graph_drawing(design.kinematics, scene.colours) if design.kinematics is not None else ""),
+        graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
+        legend=[] if design.kinematics is None else graph_legend(design.kinematics),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plots(design)],
         overview=Markup(_data(artist.overview(800, 500))),
         style=Markup(_asset("page.css")),
