@@ -9,7 +9,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.gate import conclude
+from kinform_cli.gate import show
 from kinform_cli.inputs import Sources, is_manifest
 from kinform_cli.options import (
     AllowOutside,
@@ -74,6 +74,7 @@ def run(
         if output is None:
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
         files.check_text_output(depfile, inputs=[*sources, output])
+    first = output is not None and not output.exists()
     import kinform
 
     with Working("run") as working:
@@ -96,4 +97,10 @@ def run(
     from kinform_cli.notes import ground_note
 
     console.say(ground_note(design))
-    conclude(design, format, fail_on, sources[0].parent if manifest else None, outcome)
+    code = show(design, format, fail_on, sources[0].parent if manifest else None, outcome)
+    if output is None:
+        console.say("nothing was kept: add -o F.h5, and `kinform show` and `kinform report` can look at the results")
+    elif first:
+        page = output.with_suffix(".html")
+        console.say(f"next: kinform report {output} -o {page}   (one page to look at), or: kinform show {output}")
+    raise typer.Exit(code)
