@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.reports.page.colours import OVERLAP, SIGNAL, rgb
+from kinform.reports.page.colours import OVERLAP, rgb
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.png import png
 from kinform.reports.page.raster import AXES, Buffers, View, rasterise, view_of
 from kinform.reports.page.scene import Scene
+from kinform.reports.page.strokes import dashed, polyline, ring, strokes_of
 
 __all__ = ["Artist"]
 
@@ -54,15 +55,21 @@ class Artist:
         self.known: dict[str, _Item] = {}
 
     def overview(self, width: int = 960, height: int = 600) -> bytes:
-        """The whole assembly, with overlaps in red, as PNG."""
+        """The whole assembly with the axes of its joints, overlaps in red, as PNG."""
         items = self._items([part.name for part in self.scene.design.assembly.parts])
-        if not items:
+        signs = [
+            stroke @ AXES.T for joint in self.scene.joints for stroke in strokes_of(joint, *self.scene.placed(joint))
+        ]
+        if not items and not signs:
             return png(np.zeros((height, width, 4), np.uint8))
-        view = view_of(_cloud(items), FINER * width, FINER * height)
+        places = np.concatenate([*signs, *(item.vertices for item in items)])
+        view = view_of(places, FINER * width, FINER * height, 1.08 if items else 1.5)
         image = _drawn(view, items)
         red = self._red(lambda parts: True)
         if red:
             image = _over(_drawn(view, red), image, 0.75)
+        for stroke in signs:
+            polyline(image, view.project(stroke)[:, :2], 2.0 * FINER)
         return png(_reduced(image))
 
     def finding(self, index: int, width: int = 480, height: int = 320) -> bytes:
@@ -98,9 +105,9 @@ class Artist:
             if joint.name in focus.joints and joint.axis is not None and not moved:
                 point, size = scene.placed(joint)
                 ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
-                _stroke(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
+                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
         if place is not None:
-            _ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
+            ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         return png(_reduced(image))
 
     def _items(
@@ -180,6 +187,8 @@ def _drawn(view: View, items: list[_Item]) -> Array:
     """(height, width, 4) of 0 … 1, colours not multiplied by their weight."""
     projected = [view.project(item.vertices) for item in items]
     kept = [_within(view, places, item.faces) for places, item in zip(projected, items, strict=True)]
+    if not items:
+        return np.zeros((view.height, view.width, 4))
     starts = np.cumsum([0, *(len(item.vertices) for item in items)])
     faces = np.concatenate([own + start for own, start in zip(kept, starts, strict=False)])
     owner = np.repeat(np.arange(len(items)), [len(own) for own in kept])
@@ -253,30 +262,6 @@ def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array
     whole = a + b * (1.0 - a)
     colour = (front[..., :3] * a + back[..., :3] * b * (1.0 - a)) / np.maximum(whole, 1e-9)
     return np.concatenate([colour, whole], axis=2)
-
-
-def _stroke(image: Array, ends: Array, width: float) -> None:
-    height, across = image.shape[:2]
-    y, x = np.mgrid[0:height, 0:across]
-    way = ends[1] - ends[0]
-    length = max(float(np.linalg.norm(way)), 1e-9)
-    along = ((x - ends[0, 0]) * way[0] + (y - ends[0, 1]) * way[1]) / length
-    aside = np.abs((x - ends[0, 0]) * way[1] - (y - ends[0, 1]) * way[0]) / length
-    dashed = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
-    _paint(image, (aside < width / 2) & (along > 0) & (along < length) & dashed)
-
-
-def _ring(image: Array, centre: Array, radius: float, width: float) -> None:
-    height, across = image.shape[:2]
-    y, x = np.mgrid[0:height, 0:across]
-    away = np.hypot(x - centre[0], y - centre[1])
-    white = np.abs(away - radius) < width
-    image[white] = [1.0, 1.0, 1.0, 1.0]
-    _paint(image, np.abs(away - radius) < 0.6 * width)
-
-
-def _paint(image: Array, where: NDArray[np.bool_]) -> None:
-    image[where] = [*rgb(SIGNAL), 1.0]
 
 
 def _reduced(image: Array) -> NDArray[np.uint8]:
