@@ -228,7 +228,7 @@ def test_a_slanted_triangle_is_as_near_as_its_plane():
 def test_a_finding_is_shown_in_red_and_the_overview_of_a_sound_design_is_not(derive_design):
     def red(image):
         r, g, b = (image[..., k].astype(int) for k in range(3))
-        return ((r > 90) & (r > 2.2 * g) & (r > 2.2 * b) & (image[..., 3] > 200)).sum()
+        return ((r > 90) & (r > 2.2 * g) & (r > 2.2 * b) & (b > 0.6 * g) & (image[..., 3] > 200)).sum()
 
     design = derive_design(FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml")
     image = pixels(Artist(Scene(design)).finding(0))

@@ -138,6 +138,7 @@ def _finding(finding: Finding, focus: Focus) -> dict[str, Any]:
         "place": focus.place,
         "motion": focus.movement,
         "time": focus.time,
+        "meeting": focus.meeting,
     }
 
 

@@ -112,6 +112,10 @@ class State {
     const bodies = finding.joints.flatMap((name) => this.scene.joints.find((joint) => joint.name === name).bodies);
     const parts = this.scene.parts.map((_, n) => n).filter((n) => finding.parts.includes(this.scene.parts[n].name) || bodies.includes(this.scene.parts[n].body));
     if (parts.length) this.focus = new Set(parts);
+    // of two parts that meet the larger one would hide the place
+    const size = (n) => (this.scene.parts[n].mesh < 0 ? 0 : V.length(this.scene.meshes[this.scene.parts[n].mesh].size));
+    const meeting = finding.meeting.map((name) => this.scene.parts.findIndex((part) => part.name === name)).sort((a, b) => size(b) - size(a));
+    if (meeting.length > 1) this.focus.delete(meeting[0]);
     for (const n of parts) this.hidden.delete(n);
     this.fit(parts);
     if (finding.place && parts.length) {
