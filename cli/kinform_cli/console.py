@@ -1,7 +1,7 @@
 """Where the command writes: results to stdout; progress, summaries, warnings and errors to stderr.
 
 Knows about terminals, colour and closed pipes. On a terminal lines wrap to its width; off a terminal
-nothing is wrapped or cut, so that tables can be searched, unless COLUMNS says how wide it shall be. Names that a user chose are never read as
+nothing is wrapped or cut, so that tables can be searched. Names that a user chose are never read as
 markup.
 """
 
@@ -56,7 +56,7 @@ def _console(stream: IO[str]) -> Console:
 
     return Patient(
         file=stream,
-        width=None if stream.isatty() or os.environ.get("COLUMNS", "").isdecimal() else _UNBOUNDED,
+        width=None if stream.isatty() else _UNBOUNDED,
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         markup=False,
         highlight=False,

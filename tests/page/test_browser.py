@@ -279,16 +279,21 @@ def test_collisions_are_marked_on_the_slider_and_in_the_view(browser, collisions
 def test_a_finding_of_parts_that_meet_is_shown_where_they_do(browser, collisions, colliding):
     browser.open(collisions)
     codes = [finding.code for finding in colliding.report.findings]
-    press(browser, f"button[data-finding='{codes.index('KF412')}']")
+
+    def show(code):
+        browser.run(f"document.querySelector('button[data-finding=\"{codes.index(code)}\"]').click()")
+        browser.settle()
+
+    show("KF412")
     clock = browser.run("document.getElementById('clock').textContent")
     lower = np.degrees(colliding.simulation.ranges[0].lower.value)
     assert clock == f"{lower:.1f}°".replace("-", "−")
     assert "housing and outer_gimbal meet" in browser.run("document.getElementById('spots').textContent")
-    press(browser, f"button[data-finding='{codes.index('KF505')}']")
+    show("KF505")
     assert browser.run("document.getElementById('motion').selectedOptions[0].textContent").startswith(
         "Simulated motion"
     )
-    press(browser, f"button[data-finding='{codes.index('KF207')}']")
+    show("KF207")
     assert browser.run("document.getElementById('spots').children.length") == 0
 
 
