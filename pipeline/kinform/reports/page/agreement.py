@@ -15,6 +15,7 @@ from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
+from kinform.reports.page.asked import asked
 from kinform.reports.page.words import axis, contact, joint_sentence, place
 
 __all__ = ["MARKS", "Row", "rows"]
@@ -134,14 +135,10 @@ class _Table:
             return Row(row.name, row.form, row.behaviour, row.function, "not stated", row.findings)
         return row
 
-    def _requirement(self, asked: Requirement) -> Row:
-        """What is asked for as the manifest has it, and what was found where it does not hold."""
-        found = [f.found for f in self.findings if asked.name in f.subject and f.severity != "note" and f.found]
-        values = [
-            f"{key.replace('_', ' ')} {_shown(value)}" for key, value in asked.values.items() if value is not None
-        ]
-        function = f"{asked.kind.replace('_', ' ')}: {', '.join(values)}"
-        row = self._row(asked.name, "", "; ".join(found), function, (asked.name,), True)
+    def _requirement(self, wanted: Requirement) -> Row:
+        """What is asked for, and what was found where it does not hold."""
+        found = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
+        row = self._row(wanted.name, "", "; ".join(found), asked(self.design.assembly, wanted), (wanted.name,), True)
         return replace(row, behaviour="met") if row.mark == "agrees" else row
 
     def _motion(self) -> Row:
@@ -205,18 +202,6 @@ class _Table:
         if joint.range is not None:
             text += f", range {_limits(joint, self.units)}"
         return text
-
-
-def _shown(value: object) -> str:
-    """A value of the manifest in short."""
-    if isinstance(value, dict):
-        return " ".join(f"{key.replace('_', ' ')} {_shown(item)}" for key, item in value.items() if item is not None)
-    if isinstance(value, list | tuple):
-        if any(isinstance(item, dict | list | tuple) for item in value):
-            return words.counted(len(value), "value")
-        numbers = all(isinstance(item, int | float) for item in value)
-        return f"({', '.join(map(_shown, value))})" if numbers else " and ".join(map(_shown, value))
-    return words.number(value) if isinstance(value, float) else str(value)
 
 
 def _limits(joint: IntendedJoint, units: str) -> str:
