@@ -2,8 +2,8 @@
 
 In `docs/seeker.md` every `console` block is run as it stands, in the folder of `fixtures/seeker` that the comment
 above it names (`<!-- in FOLDER -->`), on a copy of the fixtures that lasts for the whole page; what a command prints is put
-below it, and its exit code where that is not 0. `<!-- picture FOLDER/FILE -->` takes a file that a command wrote to
-`docs/images`. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make demo` prints.
+below it, and its exit code where that is not 0. `<!-- picture FOLDER/FILE as NAME -->` takes a file that a command wrote
+to `docs/images`. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make demo` prints.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent
 __all__ = ["demo", "readme", "story"]
 
 _BLOCK = re.compile(r"(<!-- in (?P<folder>\S+) -->\n```console\n)(?P<body>.*?)(```\n)", re.DOTALL)
-_PICTURE = re.compile(r"<!-- picture (?P<file>\S+) -->")
+_PICTURE = re.compile(r"<!-- picture (?P<file>\S+) as (?P<name>\S+) -->")
 _DEMO = re.compile(r"(<!-- demo -->\n```\n).*?(```\n<!-- /demo -->)", re.DOTALL)
 _SHELL = re.compile(r"[|&;<>$`*?]")
 _TERMINALS = ("COLUMNS", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "KINFORM_DEBUG", "KINFORM_CATALOG")
@@ -37,7 +37,7 @@ def story(text: str, work: Path) -> tuple[str, dict[str, bytes]]:
     shutil.copytree(ROOT / "fixtures" / "seeker", home)
     with _kinform(work) as environment:
         made = _BLOCK.sub(lambda m: m[1] + _run_all(m["body"], home / m["folder"], environment) + m[4], text)
-    return made, {Path(m["file"]).name: (home / m["file"]).read_bytes() for m in _PICTURE.finditer(text)}
+    return made, {m["name"]: (home / m["file"]).read_bytes() for m in _PICTURE.finditer(text)}
 
 
 def _run_all(body: str, folder: Path, environment: dict[str, str]) -> str:
@@ -116,6 +116,9 @@ def _write() -> None:
         page.write_text(text, encoding="utf-8")
         images = ROOT / "docs" / "images"
         images.mkdir(exist_ok=True)
+        for old in images.iterdir():
+            if old.name not in pictures:
+                old.unlink()
         for name, content in pictures.items():
             (images / name).write_bytes(content)
         page = ROOT / "README.md"

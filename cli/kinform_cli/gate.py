@@ -66,7 +66,8 @@ def show(
     run = None
     if outcome is not None:
         run = {"account": outcome.account, "reused": outcome.reused, "recomputed": outcome.recomputed}
-        for sentence in outcome.recomputed:
+        afresh = outcome.account.startswith("no earlier results")
+        for sentence in () if afresh else outcome.recomputed:
             console.say(f"computed: {sentence}")
         console.say(outcome.account)
     report = design.report

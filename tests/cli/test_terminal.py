@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import os
 import pty
 import re
 import struct
 import subprocess
 import sys
+from dataclasses import replace
 from fcntl import ioctl
 from termios import TIOCSWINSZ
 
@@ -15,11 +17,13 @@ import numpy as np
 import pytest
 from commands import environment
 from known import FIXTURES
+from rich.console import Console
 
-from kinform import results
+from kinform import results, stages
 from kinform_cli.sparks import BLOCKS, PLAIN, spark
+from kinform_cli.tables import stacked
 from kinform_cli.text import Lengths
-from kinform_cli.views import series
+from kinform_cli.views import assembly, mass, series
 
 SEEKER = FIXTURES / "seeker/5_complete/seeker.toml"
 
@@ -53,7 +57,7 @@ def on_a_terminal(tmp_path, derive_design):
     return show
 
 
-@pytest.mark.parametrize("topic", ["assembly", "simulation"])
+@pytest.mark.parametrize("topic", ["assembly", "contacts", "joints", "mobility", "mass", "simulation", "findings"])
 def test_nothing_is_wider_than_the_terminal_or_coloured(on_a_terminal, topic):
     lines = on_a_terminal(topic)
     assert max(map(len, lines)) <= 80
@@ -85,6 +89,43 @@ def test_what_the_bearings_carry_is_a_series(on_a_terminal):
     for joint in ("base~gimbal", "gimbal~payload"):
         assert any(line.startswith(f"{joint} |F| N ") for line in lines)
         assert any(line.startswith(f"{joint} |τ| N·m ") for line in lines)
+
+
+def test_contacts_that_do_not_fit_are_listed_by_pairs_of_parts(on_a_terminal):
+    lines = on_a_terminal("contacts", columns=70)
+    assert max(map(len, lines)) <= 70
+    at = lines.index("yaw_motor/bearing  yaw_motor/rotor")
+    assert lines[at + 1].split()[:2] == ["#", "surface"]
+    assert lines.count("yaw_motor/bearing  yaw_motor/rotor") == 1
+
+
+def test_lines_that_do_not_fit_go_on_indented():
+    console = Console(width=40, file=io.StringIO(), color_system=None)
+    console.print(stacked("  base and gimbal: " + "word " * 12, "short"))
+    lines = [line.rstrip() for line in console.file.getvalue().splitlines()]
+    assert max(map(len, lines)) <= 40
+    assert lines[0].startswith("  base and gimbal: word")
+    assert all(line.startswith("    word") for line in lines[1:-1]) and len(lines) > 3
+    assert lines[-1] == "short"
+
+
+def test_masses_that_are_not_known_are_no_rows_of_dashes(derive_design):
+    design = derive_design(FIXTURES / "pairs/planar_block/planar_block.toml")
+    parts = tuple(replace(part, material=None, density=None) for part in design.assembly.parts)
+    bare = stages.mass(replace(design, assembly=replace(design.assembly, parts=parts), mass=None))
+    console = Console(width=200, file=io.StringIO(), color_system=None)
+    console.print(mass.render(bare))
+    text = console.file.getvalue()
+    assert "Mass of parts: none is known" in text
+    assert "block, table: no density is stated" in text
+
+
+def test_a_part_is_marked_as_ground_only_where_one_is_stated(derive_design):
+    design = derive_design(SEEKER)
+    stated = replace(design, assembly=replace(design.assembly, ground=None, groups=()))
+    console = Console(width=200, file=io.StringIO(), color_system=None)
+    console.print(assembly.render(stated))
+    assert "(ground)" not in console.file.getvalue()
 
 
 def test_a_narrow_terminal_gets_blocks_and_no_cut_names(on_a_terminal):

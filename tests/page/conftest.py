@@ -35,6 +35,18 @@ def nasty(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def colliding(derive_design, tmp_path_factory):
+    """The seeker whose gimbal runs into its housing during the scan."""
+    folder = tmp_path_factory.mktemp("colliding") / "seeker"
+    shutil.copytree(FIXTURES / "seeker" / "4_gimbal" / "gimbal_hits_housing", folder)
+    manifest = folder / "seeker.toml"
+    text = manifest.read_text()
+    assert "amplitude = 30," in text
+    manifest.write_text(text.replace("amplitude = 30,", "amplitude = 34,"))
+    return derive_design(manifest)
+
+
+@pytest.fixture(scope="session")
 def page_of():
     """The page of a design, made once."""
     known = {}
@@ -47,9 +59,9 @@ def page_of():
     return made
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
-    """A browser for the tests of one file."""
+    """A browser for all tests."""
     if program() is None:
         pytest.skip("no Chromium: the page is not opened in a browser")
     opened = Browser()

@@ -28,6 +28,14 @@ def overlaps(derive_design, page_of, tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def collisions(colliding, page_of, tmp_path_factory):
+    """The page of a seeker whose gimbal runs into the housing."""
+    path = tmp_path_factory.mktemp("page") / "collisions.html"
+    path.write_text(page_of(colliding), encoding="utf-8")
+    return path
+
+
 @pytest.fixture
 def shown(browser, seeker):
     """The seeker, freshly opened."""
@@ -227,6 +235,61 @@ def test_an_overlap_is_red_and_its_finding_leads_to_it(browser, overlaps):
     assert browser.said == []
 
 
+def reds(browser):
+    """Pixels of the canvas that are as red as what collides."""
+    image = drawn(browser).astype(int)
+    r, g, b = (image[..., k] for k in range(3))
+    return ((r > 1.35 * g) & (r > 1.35 * b)).sum()
+
+
+def test_collisions_are_marked_on_the_slider_and_in_the_view(browser, collisions, colliding):
+    (found,) = colliding.simulation.collisions
+    browser.said.clear()
+    browser.open(collisions)
+    layer(browser, "joints", False)
+    before = reds(browser)
+    (tick,) = browser.run("[...document.querySelectorAll('#marks .collision')].map((m) => [m.title, m.style.left])")
+    assert "housing and outer_gimbal collide" in tick[0]
+    assert float(tick[1].rstrip("%")) == pytest.approx(100 * found.time / 2.0, abs=0.01)
+    assert browser.run("document.getElementById('spots').children.length") == 0
+    press(browser, "#mark-list .collision")
+    assert browser.run("document.getElementById('clock').textContent") == f"{found.time:.2f} s"
+    assert "housing and outer_gimbal collide" in browser.run("document.getElementById('spots').textContent")
+    assert "collide" in browser.run("document.getElementById('time').getAttribute('aria-valuetext')")
+    assert reds(browser) > before + 200
+    browser.run("document.getElementById('time').focus()")
+    browser.key("Home")
+    browser.settle()
+    assert browser.run("document.getElementById('clock').textContent") == "0.00 s"
+    assert reds(browser) == before
+    assert browser.run("document.querySelectorAll('.plot line.event').length") > 0
+    browser.run("document.querySelector('#mark-list .collision').focus()")
+    browser.key(" ")
+    assert browser.run("document.getElementById('clock').textContent") == f"{found.time:.2f} s"
+    assert browser.said == []
+
+
+def test_a_finding_of_parts_that_meet_is_shown_where_they_do(browser, collisions, colliding):
+    browser.open(collisions)
+    codes = [finding.code for finding in colliding.report.findings]
+
+    def show(code):
+        browser.run(f"document.querySelector('button[data-finding=\"{codes.index(code)}\"]').click()")
+        browser.settle()
+
+    show("KF412")
+    clock = browser.run("document.getElementById('clock').textContent")
+    lower = np.degrees(colliding.simulation.ranges[0].lower.value)
+    assert clock == f"{lower:.1f}°".replace("-", "−")
+    assert "housing and outer_gimbal meet" in browser.run("document.getElementById('spots').textContent")
+    show("KF505")
+    assert browser.run("document.getElementById('motion').selectedOptions[0].textContent").startswith(
+        "Simulated motion"
+    )
+    show("KF207")
+    assert browser.run("document.getElementById('spots').children.length") == 0
+
+
 def test_names_that_are_programs_do_nothing(browser, nasty, page_of, tmp_path):
     path = tmp_path / "nasty.html"
     path.write_text(page_of(nasty), encoding="utf-8")
@@ -271,11 +334,14 @@ def test_without_webgl_the_picture_stays_and_the_page_says_why(browser, seeker):
     assert browser.said == []
 
 
+@pytest.mark.parametrize("which", ["overlaps", "collisions"])
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-def test_the_page_is_accessible(browser, overlaps, dark):
+def test_the_page_is_accessible(browser, request, which, dark):
     program = (npm("axe-core") / "axe.min.js").read_text(encoding="utf-8")
     browser.dark(dark)
-    browser.open(overlaps)
+    browser.open(request.getfixturevalue(which))
+    for mark in ("#mark-list button", "#graph .link"):
+        browser.run(f"document.querySelector({mark!r})?.dispatchEvent(new MouseEvent('click', {{bubbles: true}}))")
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
     for tab in ("tab-joints", "tab-parts", "tab-graph"):
         browser.run(f"document.getElementById({tab!r}).click()")

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import struct
 import subprocess
-import zlib
 from importlib.resources import files
 
 import linkages
@@ -17,6 +15,7 @@ from devices import Z
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from known import FIXTURES
+from pictures import pixels
 
 from kinform import stages
 from kinform.reports.page import Scene
@@ -178,24 +177,6 @@ def test_a_long_curve_is_thinned_but_keeps_its_peaks_and_its_gaps():
 # ---- pictures
 
 
-def pixels(data):
-    """A PNG as numbers, by the format's own rules."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, packed, size = 8, b"", None
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at : at + 8])
-        body = data[at + 8 : at + 8 + length]
-        assert struct.unpack(">I", data[at + 8 + length : at + 12 + length])[0] == zlib.crc32(kind + body)
-        size = struct.unpack(">IIBBBBB", body) if kind == b"IHDR" else size
-        packed += body if kind == b"IDAT" else b""
-        at += 12 + length
-    width, height, _, colour, *_ = size
-    depth = {2: 3, 6: 4}[colour]
-    rows = np.frombuffer(zlib.decompress(packed), np.uint8).reshape(height, 1 + width * depth)
-    assert (rows[:, 0] == 1).all()
-    return np.cumsum(rows[:, 1:].reshape(height, width, depth), axis=1, dtype=np.uint8)
-
-
 def test_a_png_holds_its_pixels():
     image = np.random.default_rng(1).integers(0, 256, (13, 17, 4), dtype=np.uint8)
     assert (pixels(png(image)) == image).all()
@@ -228,7 +209,7 @@ def test_a_slanted_triangle_is_as_near_as_its_plane():
 def test_a_finding_is_shown_in_red_and_the_overview_of_a_sound_design_is_not(derive_design):
     def red(image):
         r, g, b = (image[..., k].astype(int) for k in range(3))
-        return ((r > 90) & (r > 2.2 * g) & (r > 2.2 * b) & (image[..., 3] > 200)).sum()
+        return ((r > 90) & (r > 2.2 * g) & (r > 2.2 * b) & (b > 0.6 * g) & (image[..., 3] > 200)).sum()
 
     design = derive_design(FIXTURES / "broken" / "seeker_gimbal_overlaps" / "seeker_gimbal_overlaps.toml")
     image = pixels(Artist(Scene(design)).finding(0))

@@ -13,7 +13,7 @@ from markup import NASTY, read
 
 from kinform import results, stages
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.reports.page import Scene, page, summary
+from kinform.reports.page import Scene, facts, page, summary
 from kinform.reports.page.agreement import rows
 
 SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
@@ -44,7 +44,7 @@ def test_the_summary_for_pull_requests_shows_names_as_they_are(nasty):
 
 def test_nothing_comes_from_elsewhere_and_one_program_may_run(derive_design, page_of):
     text = page_of(derive_design(SEEKER))
-    assert not re.search(r"https?://|@import|url\(", text)
+    assert not re.search(r"https?://|@import|url\((?!#)", text)
     found = read(text)
     (policy,) = (a["content"] for tag, a in found.elements if a.get("http-equiv") == "Content-Security-Policy")
     assert policy.startswith("default-src 'none'")
@@ -72,6 +72,38 @@ def test_a_consistent_design_agrees_in_every_row_that_states_something(derive_de
     assert {row.name for row in table} >= {"mobility of the whole", "yaw", "pitch", "motion"}
     assert {row.mark for row in table if row.function} == {"agrees"}
     assert not any(row.findings for row in table)
+
+
+def test_a_requirement_says_what_is_asked_and_what_was_found(colliding):
+    table = {row.name: row for row in rows(colliding)}
+    assert table["room to move"].function == "clear: between housing and outer_gimbal, over ranges, distance 0 mm"
+    assert (table["room to move"].behaviour, table["room to move"].mark) == ("collision", "disagrees")
+    assert table["payload in balance"].function == "balance: of payload, joint pitch, limit 0.0002 kg·m"
+    assert table["payload in balance"].behaviour == "met"
+    assert "half angle 18°" in table["field of view"].function
+
+
+def test_joints_list_the_ranges_that_were_found_and_what_stops_them(colliding):
+    (yaw, _) = facts.joints(colliding)
+    said = dict(yaw.facts)["range"]
+    assert said.startswith("lower: -31.") and "housing and outer_gimbal meet" in said
+    assert dict(facts.joints(replace(colliding, simulation=None))[0].facts)["range"] == "not looked for"
+
+
+def test_the_moment_of_a_collision_is_where_its_parts_touch(colliding):
+    scene = Scene(colliding)
+    (found,) = colliding.simulation.collisions
+    (run, *_) = scene.movements
+    (mark,) = run.marks
+    assert (mark.time, mark.parts) == (found.time, found.parts)
+    codes = [finding.code for finding in colliding.report.findings]
+    focus = scene.focuses[codes.index("KF505")]
+    assert (focus.movement, focus.time, focus.meeting) == (0, found.time, found.parts)
+    # both ways to the first contact, along the run and along the joint, lead to the same pose
+    other = scene.focuses[codes.index("KF412")]
+    yaw = [scene.movements[k].at(t)["gimbal"] for k, t in ((0, found.time), (other.movement, other.time))]
+    assert np.abs(yaw[0] - yaw[1]).max() < 2e-3
+    assert np.linalg.norm(focus.place - other.place) < 1e-3
 
 
 def test_a_disagreement_is_marked_where_it_is_and_nowhere_else(derive_design):

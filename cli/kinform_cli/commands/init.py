@@ -64,12 +64,13 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
-    name = None if output is None or len(meshes) == 1 else output.stem
+    name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
     text = form.init_manifest(
         meshes, units=units, name=name, relative_to=folder, fastened=_fastened if suggest else _doubted
     )
     if output is None:
         console.emit(text)
+        console.say("printed only: add -o NAME.toml to write it, then: kinform run NAME.toml -o NAME.h5")
         return
     files.write_text(output, text)
     console.say(f"{output}: {count(text.count('[[part]]'), 'part')}{_proposed(text)}")

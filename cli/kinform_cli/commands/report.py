@@ -50,7 +50,7 @@ def report(
         text = page(design, scene)
         drawn = {} if png is None else pictures(scene)
     files.write_text(output, text)
-    console.say(f"{output}: {len(text.encode()) / 1e6:.2g} MB")
+    console.say(f"{output}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
     if png is not None:
         for name, data in drawn.items():
             files.write_bytes(png / name, data)

@@ -74,6 +74,7 @@ def run(
         if output is None:
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
         files.check_text_output(depfile, inputs=[*sources, output])
+    first = output is not None and not output.exists()
     import kinform
 
     with Working("run") as working:
@@ -88,4 +89,10 @@ def run(
         )
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))
-    raise typer.Exit(show_run(outcome, format, fail_on, sources[0].parent if manifest else None))
+    code = show_run(outcome, format, fail_on, sources[0].parent if manifest else None)
+    if output is None:
+        console.say("nothing was kept: add -o F.h5, and `kinform show` and `kinform report` can look at the results")
+    elif first:
+        page = output.with_suffix(".html")
+        console.say(f"next: kinform report {output} -o {page}   (one page to look at), or: kinform show {output}")
+    raise typer.Exit(code)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
 from kinform.model.assembly import Assembly, Part, Subassembly
 from kinform.model.design import Design
+from kinform_cli.tables import stacked
 from kinform_cli.text import count, number
 
 __all__ = ["render"]
@@ -29,7 +30,7 @@ def render(design: Design) -> RenderableType:
     if assembly.notes:
         items.append(Text("\nNotes", style="bold"))
         items += [f"  {note}" for note in assembly.notes]
-    return Group(*items)
+    return stacked(*items)
 
 
 def _tree(assembly: Assembly) -> Tree:
@@ -44,7 +45,7 @@ def _tree(assembly: Assembly) -> Tree:
         facts = _describe(part)
         if part.name in group_of:
             facts += f"; in {group_of[part.name]}"
-        if assembly.ground in (part.name, group_of.get(part.name)):
+        if assembly.ground is not None and assembly.ground in (part.name, group_of.get(part.name)):
             facts += " (ground)"
         _branch(branches, folder, files).add(Text.assemble(leaf, (f"  {facts}", "dim")))
     return tree

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 
 from kinform.model.contacts import Contacts
 from kinform.model.design import Design
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count
 
 __all__ = ["render"]
@@ -25,7 +25,7 @@ def render(design: Design) -> RenderableType:
     many = count(len(contacts.patches), "contact patch", "contact patches")
     title = f"{many} between {count(pairs, 'pair')} of parts"
     numeric = (f"area {unit}²", f"gap {unit}", "#")
-    rows = Rows("#", "part", "part", "surface", *numeric[:2], "fit", title=title, right=numeric, keys=3)
+    rows = Rows("#", "part", "part", "surface", *numeric[:2], "fit", title=title, right=numeric, keys=3, shared=(1, 2))
     for index, patch in enumerate(contacts.patches):
         kind = f"{patch.kind}, one side" if patch.one_sided else patch.kind
         rows.add(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
@@ -51,4 +51,4 @@ def render(design: Design) -> RenderableType:
         for hint in contacts.suggestions:
             hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.confidence, hint.evidence)
         items.append(hints)
-    return Group(*items)
+    return stacked(*items)

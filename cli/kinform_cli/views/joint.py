@@ -3,13 +3,13 @@ make it another."""
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.kinematics import Insight, insight
 from kinform.model.design import Design
 from kinform.model.kinematics import Release
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count, number, vector
 from kinform_cli.views.joints import blockers, sentence
 
@@ -35,7 +35,7 @@ def render(design: Design, name: str) -> RenderableType:
         items.append(Text(f"\nWays out of contact{many}", style="bold"))
         items += [f"  {_way(release, lengths)}" for release in joint.releases]
     items += _alternatives(found)
-    return Group(*items)
+    return stacked(*items)
 
 
 def _patches(found: Insight, lengths: Lengths) -> Rows:

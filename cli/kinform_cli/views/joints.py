@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform_cli.notes import ground_note
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count, number, vector
 
 __all__ = ["blockers", "leaves", "render", "sentence"]
@@ -56,7 +56,7 @@ def render(design: Design) -> RenderableType:
     note = ground_note(design)
     if note is not None:
         items.append(note)
-    return Group(*items)
+    return stacked(*items)
 
 
 MOST_WAYS = 3

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 
 from kinform.kinematics import Motions
 from kinform.model.design import Design
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.json_views import mobility_counts
 from kinform.reports.motions import follower_rates, freedom_text
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
 __all__ = ["render"]
@@ -58,7 +58,7 @@ def render(design: Design) -> RenderableType:
         items += ["", _freedoms(design)]
     if mobility.redundancies:
         items += ["", _redundancies(design)]
-    return Group(*items)
+    return stacked(*items)
 
 
 def _certified(mobility: Mobility) -> str:

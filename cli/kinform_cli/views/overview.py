@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
+from kinform_cli.tables import stacked
 from kinform_cli.text import count
 from kinform_cli.views import assembly, joints, mass, mobility, simulation
 from kinform_cli.views.topics import TOPICS
@@ -34,4 +35,4 @@ def render(design: Design) -> RenderableType:
     missing = dict.fromkeys(topic.command for topic in TOPICS.values() if not topic.known(design))
     if missing:
         items.append(Text(f"Not computed yet: kinform {', '.join(missing)}", style="yellow"))
-    return Group(*items)
+    return stacked(*items)

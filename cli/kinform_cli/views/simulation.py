@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count, degrees, number
 from kinform_cli.views import series
 
@@ -45,7 +45,7 @@ def render(design: Design) -> RenderableType:
     items += _ranges(run, lengths) + _collisions(run, lengths)
     items += [f"assumed: {sentence}" for sentence in run.assumptions]
     items += [f"failed: {subject}: {message}" for subject, message in run.failures]
-    return Group(*items)
+    return stacked(*items)
 
 
 _NUMBERS = ("start", "end", "lowest", "highest", "fastest")

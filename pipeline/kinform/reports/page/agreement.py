@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kinform.consistency import Comparison, compare, words
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
-from kinform.model.function import IntendedJoint
+from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
+from kinform.reports.page.asked import asked
 from kinform.reports.page.words import axis, contact, joint_sentence, place
 
 __all__ = ["MARKS", "Row", "rows"]
@@ -78,7 +79,7 @@ class _Table:
         if self.design.simulation is not None and self.design.simulation.status != "not requested":
             yield self._motion()
         for requirement in sorted(self.design.assembly.function.requirements, key=lambda r: r.name):
-            yield self._row(requirement.name, "", "", f"requirement: {requirement.kind}", (requirement.name,), True)
+            yield self._requirement(requirement)
 
     def rest(self) -> Iterator[Row]:
         """A row for each finding that no other row has."""
@@ -133,6 +134,12 @@ class _Table:
         if row.mark == "not decided" and joint.status != "ambiguous":
             return Row(row.name, row.form, row.behaviour, row.function, "not stated", row.findings)
         return row
+
+    def _requirement(self, wanted: Requirement) -> Row:
+        """What is asked for, and what was found where it does not hold."""
+        found = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
+        row = self._row(wanted.name, "", "; ".join(found), asked(self.design.assembly, wanted), (wanted.name,), True)
+        return replace(row, behaviour="met") if row.mark == "agrees" else row
 
     def _motion(self) -> Row:
         run = self.design.simulation

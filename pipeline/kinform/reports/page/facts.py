@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 
 from kinform.consistency import explain, words
+from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint
-from kinform.reports.page.scene import wanted_names
+from kinform.reports.page.subjects import wanted_names
 from kinform.reports.page.words import assumption, joint_sentence, patch_words, place
 from kinform.reports.words import where
 
@@ -114,7 +115,7 @@ def _why(code: str) -> str:
 
 def joints(design: Design) -> list[JointFacts]:
     """All joints in their order."""
-    kinematics = design.kinematics
+    kinematics = design.ranged
     if kinematics is None:
         return []
     wanted = wanted_names(design)
@@ -133,11 +134,8 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
         free, rest = [v for v in values if v < tolerances.free], [v for v in values if v >= tolerances.free]
         text = f"{words.counted(len(free), 'freedom')} below {tolerances.free:g}"
         facts.append(("singular values", text + (f"; the smallest other is {rest[0]:.3g}" if rest else "")))
-    if joint.range_status == "found":
-        ends = [_value(joint, v, units) for v in (joint.range_lower, joint.range_upper)]
-        facts.append(("range", " to ".join(ends)))
-    elif joint.freedoms:
-        facts.append(("range", "not found yet" if joint.range_status == "unknown" else joint.range_status))
+    if joint.freedoms:
+        facts.append(("range", _range(design, joint)))
     if joint.held is not None:
         leaving = "; ".join(way.words for way in joint.releases[:4])
         facts.append(("held by contact", "yes" if joint.held else f"no: {leaving}" if leaving else "no"))
@@ -154,10 +152,26 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
     )  # fmt: skip
 
 
-def _value(joint: Joint, value: float | None, units: str) -> str:
-    if value is None or not math.isfinite(value):
-        return "free"
-    return words.length(value, units) if joint.type == "prismatic" else words.angle(value, 4)
+def _range(design: Design, joint: Joint) -> str:
+    """How far the joint goes to both sides, and what stops it there."""
+    found = () if design.simulation is None else design.simulation.ranges or ()
+    known = next((item for item in found if item.joint == joint.name), None)
+    if known is None:
+        return "not looked for"
+    if known.status == "unbounded":
+        return "unbounded: nothing stops it"
+    sides = [f"{side}: {_end(known, end, design)}" for side, end in (("lower", known.lower), ("upper", known.upper))]
+    return "; ".join(sides)
+
+
+def _end(known: JointRange, end: RangeEnd, design: Design) -> str:
+    if end.status == "unknown":
+        return f"not known, {end.reason}" if end.reason else "not known"
+    if end.value is None or not math.isfinite(end.value):
+        return "nothing stops it"
+    value = words.length(end.value, design.assembly.units) if known.slides else words.angle(end.value, 4)
+    stopped = f"{' and '.join(end.parts)} meet" if end.parts else end.reason
+    return f"{value} ({stopped})" if stopped else value
 
 
 def assumed(design: Design) -> list[Assumed]:

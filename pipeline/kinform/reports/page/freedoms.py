@@ -7,6 +7,7 @@ Gauss–Newton steps with the driver held. What does not close is not shown furt
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +18,14 @@ from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 
-__all__ = ["FRAMES", "Showing", "freedom_motions"]
+__all__ = ["Showing", "Span", "freedom_motions"]
 
 Array = NDArray[np.float64]
 
-FRAMES = 33
-"""Poses from one end of a motion to the other; odd, with the pose of the meshes in the middle."""
+FRAMES, FINEST = 16, np.radians(3.0)
+"""Steps to each side of the pose of the meshes; more where a turn would take larger ones (rad) than this."""
+FULL = 2.0 * np.pi
+"""rad: no turn is shown further."""
 TURN, SLIDE = np.radians(28.0), 0.14
 """Greatest turn (rad), and greatest slide as a share of the assembly's size, of the driver."""
 CLOSED = 1e-5
@@ -43,24 +46,36 @@ class Showing:
     bodies: tuple[str, ...]
     """What moves."""
     poses: Array
-    """(FRAMES, B, 4, 4) motion of each body from where the meshes are, in the world."""
+    """(F, B, 4, 4) motion of each body from where the meshes are, in the world."""
+    shares: Array
+    """(F,) of the way, from −1 through 0, the pose of the meshes, to 1."""
     note: str
     """How far it can be trusted; empty where the loops stay closed."""
+    ends: tuple[float, float] = (0.0, 0.0)
+    """Values of the driver at −1 and 1 (rad or m)."""
 
 
-def freedom_motions(kinematics: Kinematics, size: float) -> list[Showing]:
-    """Each freedom of the assembly of this size (m) as a motion."""
+@dataclass(frozen=True)
+class Span:
+    """Values of a joint (rad or m) between which it is shown; None: kinform chooses."""
+
+    lower: float | None = None
+    upper: float | None = None
+
+
+def freedom_motions(kinematics: Kinematics, size: float, spans: Mapping[str, Span] | None = None) -> list[Showing]:
+    """Each freedom of the assembly of this size (m) as a motion; `spans` of joints by name."""
     freedoms = kinematics.mobility.freedoms
     if not len(freedoms):
         return []
-    linkage = _Linkage(kinematics, size)
+    linkage = _Linkage(kinematics, size, spans or {})
     rates = linkage.rates(freedoms)
     led = [found for freedom in kinematics.mobility.named if (found := linkage.led(freedom)) is not None]
     if led:
-        out = [linkage.shown(own, driver, size) for own, driver in led[:MOST]]
+        out = [linkage.shown(own, driver) for own, driver in led[:MOST]]
         return out + _loose(kinematics, freedoms, len(led), rates, size)[: MOST - len(out)]
     drivers, mixes = _drivers(rates, linkage.turning, size)
-    out = [linkage.shown(mix @ rates, driver, size) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST]]
+    out = [linkage.shown(mix @ rates, driver) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST]]
     return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: MOST - len(out)]
 
 
@@ -85,10 +100,11 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
     for mix in still:
         twists = np.einsum("m,mbi->bi", mix, freedoms)
         extent = max(float(np.abs(twists[:, 3:]).max()) / size, float(np.abs(twists[:, :3]).max()), 1e-300)
-        poses = np.array([[displacement(t * SLIDE * s / extent) for t in twists] for s in np.linspace(-1, 1, FRAMES)])
+        shares = np.linspace(-1.0, 1.0, 2 * FRAMES + 1)
+        poses = np.array([[displacement(t * SLIDE * s / extent) for t in twists] for s in shares])
         turns = bool(np.abs(twists[:, :3]).max() * size > np.abs(twists[:, 3:]).max())
         note = "no joint connects what moves to ground"
-        shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, note))
+        shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, shares, note))
     return shown
 
 
@@ -100,9 +116,10 @@ def _moving(kinematics: Kinematics, poses: Array, size: float) -> tuple[str, ...
 class _Linkage:
     """Bodies on a spanning tree of joints, each joint a chain of its twists."""
 
-    def __init__(self, kinematics: Kinematics, size: float):
+    def __init__(self, kinematics: Kinematics, size: float, spans: Mapping[str, Span]):
         self.kinematics = kinematics
         self.size = size
+        self.spans = spans
         number = {body.name: k for k, body in enumerate(kinematics.bodies)}
         self.joints: list[Joint] = [j for j in kinematics.joints if len(j.twists) == j.freedoms]
         self.edges = [(number[j.bodies[0]], number[j.bodies[1]]) for j in self.joints]
@@ -138,17 +155,34 @@ class _Linkage:
                 driver = at if driver is None else driver
         return None if driver is None else (rates, driver)
 
-    def shown(self, rates: Array, driver: int, size: float) -> Showing:
-        """The motion that the driver leads, as far to both sides as the loops close."""
-        turns = bool(self.turning[driver])
-        reach = (TURN if turns else SLIDE * size) / abs(float(rates[driver]))
-        reach = min(reach, 1.4 * TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300))
-        steps = np.linspace(0.0, reach, FRAMES // 2 + 1)
-        sides = [self._followed(rates, driver, sign * steps) for sign in (-1.0, 1.0)]
-        note = next((note for _, note in sides if note), "")
-        poses = np.concatenate([sides[0][0][:0:-1], sides[1][0]])
+    def shown(self, rates: Array, driver: int) -> Showing:
+        """The motion that the driver leads, as far to both sides as its span says and the loops close."""
+        rates = rates / rates[driver]
         joint = self.joints[self.owner[driver]]
-        return Showing(joint.name, turns, _moving(self.kinematics, poses, size), poses, note)
+        turns = bool(self.turning[driver])
+        span = self.spans.get(joint.name, Span())
+        poses, shares, note, ends = [], [], "", []
+        for sign, end in ((-1.0, span.lower), (1.0, span.upper)):
+            reach = self._reach(rates, turns, end)
+            many = max(FRAMES, int(np.ceil(reach / FINEST))) if turns else FRAMES
+            steps = np.linspace(0.0, 1.0, many + 1)
+            found, why = self._followed(rates, driver, sign * reach * steps)
+            note = note or why
+            poses.append(found)
+            shares.append(sign * steps)
+            ends.append(sign * reach)
+        every = np.concatenate([poses[0][:0:-1], poses[1]])
+        return Showing(
+            joint.name, turns, _moving(self.kinematics, every, self.size), every,
+            np.concatenate([shares[0][:0:-1], shares[1]]), note, (ends[0], ends[1]),
+        )  # fmt: skip
+
+    def _reach(self, rates: Array, turns: bool, end: float | None) -> float:
+        """How far the driver goes to one side (rad or m, positive)."""
+        if end is not None:
+            return float(min(abs(end), FULL if turns else self.size))
+        reach = float(TURN if turns else SLIDE * self.size)
+        return float(min(reach, 1.4 * TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300)))
 
     def _followed(self, rates: Array, driver: int, steps: Array) -> tuple[Array, str]:
         """Poses (S, B, 4, 4) at the driver's steps; the last closed pose again where loops do not close."""

@@ -6,17 +6,18 @@ marked by a ring, overlaps red. The background is transparent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.reports.page.colours import OVERLAP, SIGNAL, rgb
+from kinform.reports.page.colours import OVERLAP, rgb
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.png import png
 from kinform.reports.page.raster import AXES, Buffers, View, rasterise, view_of
-from kinform.reports.page.scene import Scene, subjects
+from kinform.reports.page.scene import Scene
+from kinform.reports.page.strokes import dashed, polyline, ring, strokes_of
 
 __all__ = ["Artist"]
 
@@ -27,6 +28,10 @@ FINER = 2
 """Pixels of the drawing to a pixel of the picture, each way."""
 FAINT = 0.22
 """Weight of what a finding is not about."""
+GLASS = 0.35
+"""Weight of a part that stands before the place where it meets another."""
+TINT = 0.4
+"""Share of red in parts that meet."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,64 +55,84 @@ class Artist:
         self.known: dict[str, _Item] = {}
 
     def overview(self, width: int = 960, height: int = 600) -> bytes:
-        """The whole assembly, with overlaps in red, as PNG."""
+        """The whole assembly with the axes of its joints, overlaps in red, as PNG."""
         items = self._items([part.name for part in self.scene.design.assembly.parts])
-        if not items:
+        signs = [
+            stroke @ AXES.T for joint in self.scene.joints for stroke in strokes_of(joint, *self.scene.placed(joint))
+        ]
+        if not items and not signs:
             return png(np.zeros((height, width, 4), np.uint8))
-        view = view_of(_cloud(items), FINER * width, FINER * height)
+        places = np.concatenate([*signs, *(item.vertices for item in items)])
+        view = view_of(places, FINER * width, FINER * height, 1.08 if items else 1.5)
         image = _drawn(view, items)
         red = self._red(lambda parts: True)
         if red:
             image = _over(_drawn(view, red), image, 0.75)
+        for stroke in signs:
+            polyline(image, view.project(stroke)[:, :2], 2.0 * FINER)
         return png(_reduced(image))
 
     def finding(self, index: int, width: int = 480, height: int = 320) -> bytes:
         """What a finding is about, as PNG."""
-        scene = self.scene
-        report = scene.design.report
-        assert report is not None
-        finding = report.findings[index]
-        parts, joints = subjects(scene.design, finding.subject)
-        ends = {body for joint in scene.joints if joint.name in joints for body in joint.bodies}
-        parts += [p for body in scene.bodies if body.name in ends for p in body.parts if p not in parts]
+        scene, focus = self.scene, self.scene.focuses[index]
+        moved = scene.movements[focus.movement].at(focus.time) if focus.movement >= 0 else {}
+        ends = {body for joint in scene.joints if joint.name in focus.joints for body in joint.bodies}
+        parts = [*focus.parts, *(p for body in scene.bodies if body.name in ends for p in body.parts)]
         names = [part.name for part in scene.design.assembly.parts]
         chosen, rest = [n for n in names if n in parts], [n for n in names if n not in parts]
         if not chosen:
             chosen, rest = names, []
-        items, others = self._items(chosen), self._items(rest)
+        items, others = self._items(chosen, moved, focus.meeting), self._items(rest, moved)
         if not items:
             return png(np.zeros((height, width, 4), np.uint8))
         view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
-        place = None if finding.place is None else AXES @ np.array(finding.place)
+        place = None if focus.place is None else AXES @ focus.place
         if place is not None:
             view = replace(view, target=0.6 * view.target + 0.4 * place, scale=1.12 * view.scale)
-        image = _drawn(view, items)
+        covers = [_covers(view, item, place) for item in items] if focus.meeting and place is not None else []
+        before = [item for item, hides in zip(items, covers, strict=False) if hides]
+        if before and len(before) < len(items):
+            behind = [item for item, hides in zip(items, covers, strict=True) if not hides]
+            image = _over(_drawn(view, before), _drawn(view, behind), GLASS)
+        else:
+            image = _drawn(view, items)
         if others:
             image = _over(image, _drawn(view, others), 1.0, FAINT)
-        red = self._red(lambda both: set(both) <= set(chosen))
+        red = self._red(lambda both: not moved and set(both) <= set(chosen))
         if red:
             image = _over(_drawn(view, red), image, 0.8)
         for joint in scene.joints:
-            if joint.name in joints and joint.axis is not None:
+            if joint.name in focus.joints and joint.axis is not None and not moved:
                 point, size = scene.placed(joint)
                 ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
-                _stroke(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
+                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
         if place is not None:
-            _ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
+            ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
         return png(_reduced(image))
 
-    def _items(self, names: Sequence[str]) -> list[_Item]:
+    def _items(
+        self, names: Sequence[str], moved: Mapping[str, Array] | None = None, meeting: Sequence[str] = ()
+    ) -> list[_Item]:
+        """Parts in the colours of their bodies, those that meet in red; `moved` are displacements of bodies."""
         wanted = set(names)
         out = []
         for part in self.scene.design.assembly.parts:
             if part.mesh is None or part.name not in wanted or not len(part.mesh.faces):
                 continue
-            if part.name not in self.known:
+            body = self.scene.body_index[part.name]
+            colour = rgb(self.scene.colours[body])
+            if part.name in meeting:
+                colour = tuple((1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP), strict=True))  # type: ignore[assignment]
+            away = (moved or {}).get(self.scene.bodies[body].name)
+            known = self.known.get(part.name) if away is None else None
+            if known is None:
                 health = part.mesh.health
                 closed = health.watertight and health.consistent_winding and health.volume > 0.0
-                colour = rgb(self.scene.colours[self.scene.body_index[part.name]])
-                self.known[part.name] = _item(self.scene.shapes[part.mesh.digest], part.X_WP, colour, closed)
-            out.append(self.known[part.name])
+                pose = part.X_WP if away is None else away @ part.X_WP
+                known = _item(self.scene.shapes[part.mesh.digest], pose, colour, closed)
+                if away is None:
+                    self.known[part.name] = known
+            out.append(replace(known, colour=colour))
         return out
 
     def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
@@ -135,6 +160,17 @@ def _cloud(items: list[_Item]) -> Array:
     return np.concatenate([item.vertices for item in items])
 
 
+def _covers(view: View, item: _Item, place: Array) -> bool:
+    """Whether the item stands between the eye and the place, given in the axes of the eye."""
+    projected = view.project(item.vertices)
+    buffers = rasterise(view, projected[_within(view, projected, item.faces)])
+    x, y, near = view.project(place[None])[0]
+    column, row = int(x), int(y)
+    if not (0 <= column < view.width and 0 <= row < view.height) or buffers.facet[row, column] < 0:
+        return False
+    return bool(buffers.near[row, column] > near + 6.0 / view.scale)
+
+
 def _within(view: View, projected: Array, faces: Ints) -> Ints:
     """Those of the faces that may cover the middle of a pixel of the picture."""
     a, b, c = faces.T
@@ -151,6 +187,8 @@ def _drawn(view: View, items: list[_Item]) -> Array:
     """(height, width, 4) of 0 … 1, colours not multiplied by their weight."""
     projected = [view.project(item.vertices) for item in items]
     kept = [_within(view, places, item.faces) for places, item in zip(projected, items, strict=True)]
+    if not items:
+        return np.zeros((view.height, view.width, 4))
     starts = np.cumsum([0, *(len(item.vertices) for item in items)])
     faces = np.concatenate([own + start for own, start in zip(kept, starts, strict=False)])
     owner = np.repeat(np.arange(len(items)), [len(own) for own in kept])
@@ -224,30 +262,6 @@ def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array
     whole = a + b * (1.0 - a)
     colour = (front[..., :3] * a + back[..., :3] * b * (1.0 - a)) / np.maximum(whole, 1e-9)
     return np.concatenate([colour, whole], axis=2)
-
-
-def _stroke(image: Array, ends: Array, width: float) -> None:
-    height, across = image.shape[:2]
-    y, x = np.mgrid[0:height, 0:across]
-    way = ends[1] - ends[0]
-    length = max(float(np.linalg.norm(way)), 1e-9)
-    along = ((x - ends[0, 0]) * way[0] + (y - ends[0, 1]) * way[1]) / length
-    aside = np.abs((x - ends[0, 0]) * way[1] - (y - ends[0, 1]) * way[0]) / length
-    dashed = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
-    _paint(image, (aside < width / 2) & (along > 0) & (along < length) & dashed)
-
-
-def _ring(image: Array, centre: Array, radius: float, width: float) -> None:
-    height, across = image.shape[:2]
-    y, x = np.mgrid[0:height, 0:across]
-    away = np.hypot(x - centre[0], y - centre[1])
-    white = np.abs(away - radius) < width
-    image[white] = [1.0, 1.0, 1.0, 1.0]
-    _paint(image, np.abs(away - radius) < 0.6 * width)
-
-
-def _paint(image: Array, where: NDArray[np.bool_]) -> None:
-    image[where] = [*rgb(SIGNAL), 1.0]
 
 
 def _reduced(image: Array) -> NDArray[np.uint8]:

@@ -18,7 +18,7 @@ from kinform.function import resolve
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.json_views import coordinates
-from kinform.reports.page.scene import wanted_names
+from kinform.reports.page.subjects import wanted_names
 
 __all__ = ["Plot", "Series", "drawn", "plots"]
 
@@ -30,6 +30,8 @@ MOST_COLUMNS = 300
 """Columns of a curve; in each the least and the greatest value are kept."""
 MOST = 48
 """Plots of one group."""
+MOST_EVENTS = 40
+"""Collisions that are marked in a plot."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +64,12 @@ def plots(design: Design) -> list[tuple[str, list[str], str]]:
         ("Reactions in the joints", _reactions(run, titles)),
         ("Energy", _energy(run)),
     ]
+    events = [(item.time, f"{item.parts[0]} and {item.parts[1]} collide") for item in run.collisions or ()]
     out = []
     for heading, found in groups:
         if found:
             left = f"{len(found) - MOST} more are in the results file." if len(found) > MOST else ""
-            out.append((heading, [drawn(plot, run.time) for plot in found[:MOST]], left))
+            out.append((heading, [drawn(plot, run.time, events) for plot in found[:MOST]], left))
     return out
 
 
@@ -77,16 +80,33 @@ def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plo
         scale, shown = _scale(unit, design.assembly.units, metres)
         values = run.joint_position[:, column] * scale
         limits: list[tuple[str, float]] = []
-        if "." not in name and kind in ("revolute", "prismatic") and design.kinematics is not None:
-            found = next((j for j in design.kinematics.joints if j.name == name), None)
+        if "." not in name and kind in ("revolute", "prismatic") and design.ranged is not None:
+            found = next((j for j in design.ranged.joints if j.name == name), None)
             if found is not None:
                 ends = [("found", found.range_lower, found.range_upper)] if found.range_status == "found" else []
                 wanted = _required(design, name)
                 ends += [("required", *wanted)] if wanted is not None else []
                 for word, low, high in ends:
                     limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
-        out.append(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits)))
+        out.append(_near(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits))))
     return out
+
+
+def _near(plot: Plot) -> Plot:
+    """The plot without the limits found that are so far from the curve that it would be flat; they are named."""
+    every = [
+        v for s in plot.series for v in (float(np.nanmin(s.values)), float(np.nanmax(s.values))) if math.isfinite(v)
+    ]
+    every += [value for label, value in plot.limits if not label.startswith("found")]
+    if not every:
+        return plot
+    low, high = min(every), max(every)
+    room = max(high - low, 1e-12)
+    near = tuple(limit for limit in plot.limits if low - room <= limit[1] <= high + room)
+    far = "".join(
+        f", {label} {_number(value)}{plot.unit} not shown" for label, value in plot.limits if (label, value) not in near
+    )
+    return replace(plot, title=plot.title + far, limits=near)
 
 
 def _required(design: Design, name: str) -> tuple[float, float] | None:
@@ -152,8 +172,8 @@ def _scale(unit: str, units: str, metres: float) -> tuple[float, str]:
     return (1.0 / metres, units) if unit == "m" else (1.0, "")
 
 
-def drawn(plot: Plot, time: Array) -> str:
-    """The plot as SVG; the viewer moves its cursor."""
+def drawn(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) -> str:
+    """The plot as SVG, with upright lines for events (s, what happens); the viewer moves its cursor."""
     ticks = _ticks(plot)
     low, high = ticks[0], ticks[-1]
     start, end = float(time[0]), float(time[-1])
@@ -178,7 +198,15 @@ def drawn(plot: Plot, time: Array) -> str:
         parts.append(f'<line class="limit" x1="{LEFT}" x2="{RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
         inside = at + (11.0 if at < (TOP + BOTTOM) / 2 else -4.0)
         text = escape(f"{label} {_number(value)}{plot.unit}")
-        parts.append(f'<text class="tick" x="{RIGHT}" y="{inside:.1f}" text-anchor="end">{text}</text>')
+        side, anchor = (LEFT + 4.0, "start") if label.startswith("found") else (RIGHT, "end")
+        parts.append(f'<text class="tick" x="{side}" y="{inside:.1f}" text-anchor="{anchor}">{text}</text>')
+    for moment, text in events[:MOST_EVENTS]:
+        at = float(x(np.array(moment)))
+        parts.append(
+            f'<line class="event" x1="{at:.1f}" x2="{at:.1f}" y1="{TOP}" y2="{BOTTOM}"/>'
+            f'<text class="tick event-sign" x="{at:.1f}" y="{TOP - 2}" text-anchor="middle">✕'
+            f"<title>{escape(text)}</title></text>"
+        )
     for k, series in enumerate(plot.series):
         parts.append(f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>')
     if len(plot.series) > 1:
@@ -189,7 +217,7 @@ def drawn(plot: Plot, time: Array) -> str:
                 f'<text class="tick" x="{at + 23}" y="{HEIGHT + 12}">{escape(series.label)}</text>'
             )
     parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{TOP}" y2="{BOTTOM}"/>')
-    spoken = escape(_spoken(plot, start, end), quote=True)
+    spoken = escape(_spoken(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
         f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
@@ -197,7 +225,7 @@ def drawn(plot: Plot, time: Array) -> str:
     )
 
 
-def _spoken(plot: Plot, start: float, end: float) -> str:
+def _spoken(plot: Plot, start: float, end: float, events: Sequence[tuple[float, str]]) -> str:
     texts = []
     for series in plot.series:
         known = series.values[np.isfinite(series.values)]
@@ -205,7 +233,8 @@ def _spoken(plot: Plot, start: float, end: float) -> str:
             name = f"{series.label}: " if series.label else ""
             texts.append(f"{name}{_number(float(known.min()))} to {_number(float(known.max()))} {plot.unit}")
     limits = "".join(f", {label} {_number(value)} {plot.unit}" for label, value in plot.limits)
-    return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}"
+    told = "".join(f", at {_number(moment)} s {text}" for moment, text in events[:MOST_EVENTS])
+    return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}{told}"
 
 
 def _ticks(plot: Plot) -> list[float]:

@@ -17,9 +17,10 @@ from markupsafe import Markup
 
 from kinform._version import __version__
 from kinform.model.design import Design
+from kinform.reports.graph import graph_legend, graph_panel
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.colours import FITS
-from kinform.reports.page.drawing import graph_drawing
+from kinform.reports.page.embedded import packed
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plots
 from kinform.reports.page.scene import Scene
@@ -34,7 +35,7 @@ MOST_PICTURES = 24
 def page(design: Design, scene: Scene | None = None) -> str:
     """The report of a design as HTML; `scene` where it was made already."""
     scene = scene or Scene(design)
-    packed, blob = scene.packed()
+    embedded, blob = packed(scene)
     program = _asset_program()
     digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii")
     found = facts.findings(design)
@@ -58,15 +59,16 @@ def page(design: Design, scene: Scene | None = None) -> str:
         ],
         facets=sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None),
         fits=FITS,
-        has_overlaps=bool(packed["overlaps"]),
-        motions=packed["motions"],
-        graph=Markup(graph_drawing(design.kinematics, scene.colours) if design.kinematics is not None else ""),
+        has_overlaps=bool(embedded["overlaps"]),
+        motions=embedded["motions"],
+        graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
+        legend=[] if design.kinematics is None else graph_legend(design.kinematics),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plots(design)],
         overview=Markup(_data(artist.overview(800, 500))),
         style=Markup(_asset("page.css")),
         program=Markup(program),
         digest=digest,
-        scene=Markup(json.dumps(packed, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")),
+        scene=Markup(json.dumps(embedded, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")),
         blob=Markup(blob),
     )
 

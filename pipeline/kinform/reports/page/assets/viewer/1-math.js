@@ -29,6 +29,13 @@ const M = {
   },
   translation: (t) => [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, t[0], t[1], t[2], 1],
   point: (m, p) => [0, 1, 2].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]),
+  scaling: (s) => [s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, 0, 0, 0, 1],
+  // The inverse of a rotation and a translation.
+  rigidInverse: (m) => {
+    const t = [m[12], m[13], m[14]];
+    const back = [0, 1, 2].map((k) => -V.dot([m[4 * k], m[4 * k + 1], m[4 * k + 2]], t));
+    return [m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0, back[0], back[1], back[2], 1];
+  },
   direction: (m, d) => [0, 1, 2].map((r) => m[r] * d[0] + m[4 + r] * d[1] + m[8 + r] * d[2]),
   pose: (p, q) => {
     const [w, x, y, z] = q;

@@ -14,6 +14,11 @@ class Renderer {
     const signs = signsOf(scene.joints);
     this.signs = new Instances(gl, [0, -1, 0, 1, 1, -1, 1, 1], signs.data, [3, 3], gl.FLOAT, false);
     this.ranges = signs.ranges;
+    const star = [];
+    SIGNS.spherical(star, { point: [0, 0, 0], size: 1 });
+    SIGNS.fixed(star, { point: [0, 0, 0], size: 2.6 });
+    this.star = new Instances(gl, [0, -1, 0, 1, 1, -1, 1, 1], new Float32Array(star.flat(2)), [3, 3], gl.FLOAT, false);
+    this.starStrokes = star.length;
     this.target = new PickTarget(gl);
     this.stale = true;
   }
@@ -84,10 +89,26 @@ class Renderer {
     if (state.layers.overlaps) this.red(state, 0.4);
     if (state.layers.joints) this.strokes(state, 0.42);
     gl.depthFunc(gl.LEQUAL);
+    this.stars(state);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
     this.stale = true;
+  }
+
+  // Where parts have run into each other: seen through everything.
+  stars(state) {
+    const { gl } = this;
+    const at = this.use("stroke");
+    gl.disable(gl.DEPTH_TEST);
+    gl.uniform2f(at.screen, this.canvas.width / 2, this.canvas.height / 2);
+    gl.uniform1f(at.width, 1.5 * this.ratio);
+    for (const { place } of state.spots) {
+      gl.uniformMatrix4fv(at.model, false, M.multiply(M.translation(place), M.scaling(0.022 * state.camera.distance * Math.tan(state.camera.angle))));
+      gl.uniform4f(at.colour, ...state.theme.overlap, 1);
+      this.star.draw(0, this.starStrokes);
+    }
+    gl.enable(gl.DEPTH_TEST);
   }
 
   parts(state, list, ghost) {
@@ -98,7 +119,7 @@ class Renderer {
     for (const k of list) {
       const buffers = this.meshes[scene.parts[k].mesh];
       this.mesh(at, buffers, state.models[k]);
-      gl.uniform3fv(at.colour, state.colours[scene.parts[k].body]);
+      gl.uniform3fv(at.colour, state.colour(k));
       gl.uniform1f(at.glow, state.glow(k));
       gl.bindVertexArray(buffers.solid);
       gl.drawElements(gl.TRIANGLES, buffers.triangles, gl.UNSIGNED_INT, 0);

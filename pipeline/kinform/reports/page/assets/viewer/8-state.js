@@ -11,12 +11,30 @@ class State {
     this.time = 0;
     this.clear();
     this.hover = -1;
+    for (const motion of motions) for (const mark of motion.marks) this.pin(motion, mark);
     this.centres();
     this.place();
   }
 
   clear() {
     Object.assign(this, { part: -1, joint: -1, body: -1, finding: -1, focus: null });
+  }
+
+  // The place of a mark in the axes of the body that carries it, and the numbers of its parts.
+  pin(motion, mark) {
+    mark.numbers = new Set(mark.parts.map((name) => this.scene.parts.findIndex((part) => part.name === name)));
+    if (mark.place) mark.local = M.point(M.rigidInverse(motion.at(mark.time)[mark.body]), mark.place);
+  }
+
+  // Collisions that have happened by now: of a run in the order of time, of a freedom on this side of the meshes' pose.
+  get struck() {
+    if (!this.motion) return [];
+    const near = 0.5 / 1000 * (this.motion.end - this.motion.start);
+    return this.motion.marks.filter((mark) => {
+      if (mark.kind !== "collision") return false;
+      if (this.motion.kind === "simulation") return this.time >= mark.time - near;
+      return Math.sign(mark.time) === Math.sign(this.time) && Math.abs(this.time) >= Math.abs(mark.time) - near;
+    });
   }
 
   // Middle of each part and of each body, at the pose of the meshes.
@@ -39,6 +57,8 @@ class State {
     const poses = this.motion ? this.motion.at(this.time) : scene.bodies.map(M.identity);
     const away = this.bodyMiddles.map((c) => V.scale(V.sub(c, this.middle), 1.1 * explosion));
     this.shown = poses.map((pose, b) => M.multiply(M.translation(away[b]), pose));
+    this.spots = this.struck.filter((mark) => mark.local).map((mark) => ({ mark, place: M.point(this.shown[mark.body], mark.local) }));
+    this.colliding = new Set(this.struck.flatMap((mark) => [...mark.numbers]));
     this.models = scene.parts.map((part, k) => {
       const own = V.scale(V.sub(this.middles[k], this.bodyMiddles[part.body]), 0.9 * explosion);
       return M.multiply(M.translation(own), M.multiply(this.shown[part.body], part.pose));
@@ -52,6 +72,12 @@ class State {
     if (this.focus) return this.focus.has(k) ? (this.layers.contacts ? "ghost" : "plain") : "ghost";
     if (this.joint >= 0) return this.scene.joints[this.joint].bodies.includes(body) && !this.layers.contacts ? "plain" : "ghost";
     return "plain";
+  }
+
+  // The colour of a part: of its body, and red where it has run into another.
+  colour(k) {
+    const own = this.colours[this.scene.parts[k].body];
+    return this.colliding.has(k) ? own.map((x, i) => 0.6 * x + 0.4 * this.theme.overlap[i]) : own;
   }
 
   glow(k) {
@@ -86,6 +112,10 @@ class State {
     const bodies = finding.joints.flatMap((name) => this.scene.joints.find((joint) => joint.name === name).bodies);
     const parts = this.scene.parts.map((_, n) => n).filter((n) => finding.parts.includes(this.scene.parts[n].name) || bodies.includes(this.scene.parts[n].body));
     if (parts.length) this.focus = new Set(parts);
+    // of two parts that meet the larger one would hide the place
+    const size = (n) => (this.scene.parts[n].mesh < 0 ? 0 : V.length(this.scene.meshes[this.scene.parts[n].mesh].size));
+    const meeting = finding.meeting.map((name) => this.scene.parts.findIndex((part) => part.name === name)).sort((a, b) => size(b) - size(a));
+    if (meeting.length > 1) this.focus.delete(meeting[0]);
     for (const n of parts) this.hidden.delete(n);
     this.fit(parts);
     if (finding.place && parts.length) {

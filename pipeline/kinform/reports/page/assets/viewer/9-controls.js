@@ -24,6 +24,7 @@ class Controls {
     this.waiting = 0;
     this.state.place();
     this.renderer.draw(this.state);
+    this.label();
     const { gl } = this.renderer;
     const fault = gl.getError();
     if (fault && !gl.isContextLost()) document.body.dataset.fault = String(fault);
@@ -45,6 +46,7 @@ class Controls {
 
   choose(kind, index, focus = false) {
     const { state, state: { scene } } = this;
+    if (kind === "finding") this.present(scene.findings[index]);
     if (kind === "part") state.choosePart(index);
     else if (kind === "joint") state.chooseJoint(index);
     else if (kind === "body") state.chooseBody(index);
@@ -79,6 +81,17 @@ class Controls {
     const chosen = document.querySelector("#lists [data-chosen]");
     if (chosen) this.reveal(chosen);
     this.redraw();
+  }
+
+  // Goes to the moment of the motion at which a finding shows; findings of the pose of the meshes show there.
+  present(finding) {
+    if (!this.id("motion")) return;
+    this.play(false);
+    if (finding.motion >= 0) {
+      this.pickMotion(finding.motion, false);
+      this.go(finding.time);
+    } else if (this.state.motion) this.go(this.state.motion.kind === "simulation" ? this.state.motion.start : 0);
+    this.state.place();
   }
 
   // Scrolls the list, never the page.
@@ -330,13 +343,7 @@ class Controls {
     const { motion } = state;
     this.id("play").disabled = this.id("time").disabled = !motion;
     this.id("motion-note").textContent = motion?.note ?? "";
-    const marks = this.id("marks");
-    marks.replaceChildren(...(motion?.marks ?? []).map((mark) => {
-      const tick = document.createElement("span");
-      tick.textContent = "▲ " + mark.text;
-      tick.style.left = `${(100 * (mark.time - motion.start)) / (motion.end - motion.start)}%`;
-      return tick;
-    }));
+    this.listMarks(motion);
     if (!motion) {
       this.play(false);
       this.redraw();
@@ -347,14 +354,74 @@ class Controls {
     this.play(play);
   }
 
+  // Ticks on the slider, and a button for each that goes there.
+  listMarks(motion) {
+    const signs = { collision: "✕", end: "▲" };
+    const marks = motion?.marks ?? [];
+    const go = (mark) => { this.play(false); this.go(mark.time); };
+    this.id("marks").replaceChildren(...marks.map((mark) => {
+      const tick = document.createElement("span");
+      tick.className = mark.kind;
+      tick.textContent = signs[mark.kind];
+      tick.title = mark.text;
+      tick.style.left = `${(100 * (mark.time - motion.start)) / (motion.end - motion.start)}%`;
+      tick.addEventListener("click", () => go(mark));
+      return tick;
+    }));
+    this.id("mark-list").replaceChildren(...marks.map((mark) => {
+      const item = document.createElement("li"), button = document.createElement("button"), sign = document.createElement("span");
+      button.type = "button";
+      button.className = mark.kind;
+      sign.setAttribute("aria-hidden", "true");
+      sign.textContent = signs[mark.kind] + " ";
+      button.append(sign, mark.text);
+      button.addEventListener("click", () => go(mark));
+      item.append(button);
+      return item;
+    }));
+    this.id("mark-list").hidden = !marks.length;
+  }
+
+  // What the clock shows: seconds of a run, the value of the driving joint of a freedom.
+  moment(motion, time) {
+    if (motion.kind === "simulation") return `${time.toFixed(2)} s`;
+    if (!motion.unit) return `${Math.round(100 * time)} %`;
+    const value = Math.abs(time) * (time < 0 ? motion.ends[0] : motion.ends[1]);
+    return `${value.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−")}${motion.unit}`;
+  }
+
+  // The names of parts that have run into each other, where they did.
+  label() {
+    const { state, canvas } = this;
+    const box = this.id("spots");
+    const see = M.multiply(state.camera.projection(), state.camera.view());
+    const texts = new Map(state.spots.map(({ mark, place }) => [mark.text, place]));
+    const old = new Map([...box.children].map((child) => [child.textContent, child]));
+    for (const [text, child] of old) if (!texts.has(text)) child.remove();
+    for (const [text, place] of [...texts].slice(0, 12)) {
+      let child = old.get(text);
+      if (!child) {
+        child = document.createElement("span");
+        child.textContent = text;
+        box.append(child);
+      }
+      const [x, y, , w] = [0, 1, 2, 3].map((r) => see[r] * place[0] + see[4 + r] * place[1] + see[8 + r] * place[2] + see[12 + r]);
+      child.hidden = w <= 0;
+      const left = (0.5 + (0.5 * x) / w) * canvas.clientWidth + 16, room = canvas.clientWidth - child.offsetWidth - 8;
+      child.style.left = `${Math.max(8, Math.min(left, room))}px`;
+      child.style.top = `${Math.max(4, Math.min((0.5 - (0.5 * y) / w) * canvas.clientHeight + 10, canvas.clientHeight - 30))}px`;
+    }
+  }
+
   go(time) {
     const { state, state: { motion } } = this;
     state.time = Math.min(motion.end, Math.max(motion.start, time));
     const share = (state.time - motion.start) / (motion.end - motion.start);
     const slider = this.id("time");
     slider.value = String(Math.round(1000 * share));
-    const text = motion.kind === "simulation" ? `${state.time.toFixed(2)} s` : `${Math.round(100 * state.time)} %`;
-    slider.setAttribute("aria-valuetext", text);
+    const text = this.moment(motion, state.time);
+    const struck = state.struck.map((mark) => mark.text);
+    slider.setAttribute("aria-valuetext", [text, ...struck].join("; "));
     this.id("clock").textContent = text;
     if (motion.kind === "simulation") {
       document.querySelectorAll("svg[data-from]").forEach((plot) => {

@@ -1,0 +1,109 @@
+"""Lines on a picture: axes and freedoms of joints, rings around places."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.kinematics import Joint
+from kinform.reports.page.colours import SIGNAL, rgb
+
+__all__ = ["dashed", "polyline", "ring", "strokes_of"]
+
+Array = NDArray[np.float64]
+
+TURNING = ("revolute", "cylindrical", "screw", "planar")
+SLIDING = ("prismatic", "cylindrical", "screw")
+STEPS = 28
+"""Pieces of an arc."""
+
+
+def strokes_of(joint: Joint, point: Array, size: float) -> list[Array]:
+    """The sign of a joint at a point (3,) m and so large (m), as lines (n, 3) in the world: axis, arc, arrows, rings."""
+    if joint.type == "spherical":
+        return [_arc(point, axis, 0.8 * size, 0.0, 2.0 * np.pi) for axis in np.eye(3)]
+    out = []
+    for axis in (joint.axis, joint.axis2):
+        if axis is None or joint.type == "fixed":
+            continue
+        ends = point + 1.5 * size * np.array([-axis, axis])
+        out.append(ends)
+        if joint.type in TURNING or joint.type == "universal":
+            arc = _arc(point + 1.15 * size * axis, axis, 0.5 * size, 0.3, 5.3)
+            out += [arc, *_head(arc[-1], arc[-1] - arc[-3], 0.2 * size)]
+        if joint.type in SLIDING:
+            out += [*_head(ends[1], axis, 0.3 * size), *_head(ends[0], -axis, 0.3 * size)]
+    return out
+
+
+def _across(axis: Array) -> tuple[Array, Array]:
+    aside = np.array([0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
+    u = np.cross(aside, axis)
+    u /= np.linalg.norm(u)
+    return u, np.cross(axis, u)
+
+
+def _arc(centre: Array, axis: Array, radius: float, start: float, end: float) -> Array:
+    u, v = _across(axis)
+    angle = np.linspace(start, end, STEPS + 1)[:, None]
+    return np.asarray(centre + radius * (np.cos(angle) * u + np.sin(angle) * v))
+
+
+def _head(tip: Array, direction: Array, size: float) -> list[Array]:
+    """Two strokes of an arrow on each side of its plane."""
+    unit = direction / np.linalg.norm(direction)
+    root = tip - size * unit
+    return [np.array([root + side * 0.42 * size * w, tip]) for w in _across(unit) for side in (-1.0, 1.0)]
+
+
+def polyline(image: Array, points: Array, width: float) -> None:
+    """A line through points (n, 2) px of this width, on an image (height, width, 4)."""
+    for a, b in zip(points[:-1], points[1:], strict=True):
+        box = _box(image, np.array([a, b]), width)
+        if box is not None:
+            along, aside, length = _along(box, a, b)
+            _paint(image, box, (aside < width / 2) & (along > -width / 2) & (along < length + width / 2))
+
+
+def dashed(image: Array, ends: Array, width: float) -> None:
+    """A dashed and dotted line between two ends (2, 2) px, as axes are drawn."""
+    box = _box(image, ends, width)
+    if box is not None:
+        along, aside, length = _along(box, ends[0], ends[1])
+        on = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
+        _paint(image, box, (aside < width / 2) & (along > 0) & (along < length) & on)
+
+
+def ring(image: Array, centre: Array, radius: float, width: float) -> None:
+    """A ring with white borders."""
+    box = _box(image, np.array([centre - radius, centre + radius]), 2.0 * width)
+    if box is None:
+        return
+    away = np.abs(np.hypot(box[0] - centre[0], box[1] - centre[1]) - radius)
+    image[box[1][away < width], box[0][away < width]] = 1.0
+    _paint(image, box, away < 0.6 * width)
+
+
+Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]
+
+
+def _box(image: Array, points: Array, margin: float) -> Pixels | None:
+    """Columns and rows of the pixels around some points; None outside of the image."""
+    low = np.maximum(np.floor(points.min(axis=0) - margin).astype(int), 0)
+    high = np.minimum(np.ceil(points.max(axis=0) + margin).astype(int) + 1, [image.shape[1], image.shape[0]])
+    if (high <= low).any():
+        return None
+    rows, columns = np.mgrid[low[1] : high[1], low[0] : high[0]]
+    return columns, rows
+
+
+def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
+    """How far along and aside of the line from a to b each pixel is, and the line's length."""
+    way = b - a
+    length = max(float(np.linalg.norm(way)), 1e-9)
+    x, y = box[0] - a[0], box[1] - a[1]
+    return (x * way[0] + y * way[1]) / length, np.abs(x * way[1] - y * way[0]) / length, length
+
+
+def _paint(image: Array, box: Pixels, where: NDArray[np.bool_]) -> None:
+    image[box[1][where], box[0][where]] = [*rgb(SIGNAL), 1.0]
