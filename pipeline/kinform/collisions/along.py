@@ -105,6 +105,6 @@ def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
     for s in chosen:
         D = way.displacement(float(s))
         crossing = test.crossing(D)
-        if crossing.surfaces:
-            depths.append(test.depth(D, crossing))
+        if crossing:
+            depths.append(test.depth(D, crossing.segments()))
     return max(depths, default=0.0)
