@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
 from kinform.collisions.ranges import shapes_of
 from kinform.collisions.recorded import Nodes, course, moving_pairs
-from kinform.collisions.scan import Course, first_crossing
+from kinform.collisions.scan import first_crossing
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import Collision
 from kinform.model.contacts import Contacts

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest, Shapes
-from kinform.collisions.scan import Course
 from kinform.collisions.single import preserved
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName

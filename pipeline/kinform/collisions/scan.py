@@ -14,9 +14,10 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import NONE, Crossing, PairTest, SurfacePair
 
-__all__ = ["Course", "First", "first_crossing"]
+__all__ = ["First", "first_crossing"]
 
 Array = NDArray[np.float64]
 
@@ -28,16 +29,8 @@ RESOLUTION = 4e-3
 
 TOGETHER = 8.0
 """Surfaces that come to cross within so many chord errors of travel belong to one collision."""
-
-
-@dataclass(frozen=True, eq=False)
-class Course:
-    """How the second body of a pair moves relative to the first, over a parameter s."""
-
-    displacement: Callable[[float], Array]
-    """(4, 4) of the world at the meshes' pose, at s."""
-    travel: Callable[[float], float]
-    """m that no point has travelled more than, up to s: it grows with s."""
+RISE = 0.02
+"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,10 +96,12 @@ class _Search:
         self.since: dict[SurfacePair, tuple[float, float] | None] = {}
         """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.tried = 0
+        self._start = 0.0
         self._known: dict[float, _State] = {}
 
     def begin(self, start: float) -> None:
         """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
+        self._start = start
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
@@ -134,7 +129,7 @@ class _Search:
     def goes_in(self, s: float, end: float, step: float) -> bool:
         """Whether the faces that pass each other at s are inside the parts a step later."""
         nearest = self.state(s).nearest
-        further = self._after(s, step, end)
+        further = self.course.when(self.course.travel(s) + step, s, end)
         way = self.course.travel(further) - self.course.travel(s)
         return self.test.inside(self.course.displacement(further), *nearest, 0.4 * way)
 
@@ -161,17 +156,6 @@ class _Search:
         segments = crossing.segments(pairs)
         return self.test.depth(self.course.displacement(s), segments, crossing.slack) > crossing.slack
 
-    def _after(self, s: float, way: float, end: float) -> float:
-        """The parameter after s by which points have travelled `way` (m), no more than `end`."""
-        goal = self.course.travel(s) + way
-        if self.course.travel(end) <= goal:
-            return end
-        low, high = s, end
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if self.course.travel(middle) < goal else (low, middle)
-        return high
-
     def located(self, left: float, right: float, fine: float, resolution: float) -> First:
         """Where what is too deep at `right` began: with the surfaces that came to cross last, as far as these alone are
         too deep. Facets of mates may have crossed by chord errors long before."""
@@ -187,7 +171,23 @@ class _Search:
             newest = frozenset(pair for pair, step in known.items() if step is not None and step >= earliest)
             if self._deep(right, newest):
                 return self._narrow(*earliest, fine, partial(self._crosses, newest))
-        return self._narrow(left, right, fine, self.too_deep)
+        return self._rise(right, fine, resolution)
+
+    def _rise(self, right: float, fine: float, step: float) -> First:
+        """Where surfaces that have crossed since the start began to go deeper into each other, up to `right`."""
+        low, least = right, self._depth(right)
+        while low > self._start:
+            before = self.course.when(self.course.travel(low) - step, self._start, low)
+            depth = self._depth(before)
+            if depth >= least:
+                break
+            low, least = before, depth
+        least += RISE * self.state(right).crossing.slack
+        return self._narrow(low, right, fine, lambda s: self._depth(s) > least)
+
+    def _depth(self, s: float) -> float:
+        crossing = self.state(s).crossing
+        return self.test.depth(self.course.displacement(s), crossing.segments()) if crossing else 0.0
 
     def _crosses(self, pairs: Collection[SurfacePair], s: float) -> bool:
         return not self.state(s).crossing.shared.keys().isdisjoint(pairs)
