@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
+from kinform.contacts.boxes import together
 from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -40,6 +41,8 @@ MIDDLES = 96
 """Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
 """Of those that are, at which the depth is measured."""
+SPHERES = 96
+"""Spheres about the facets of a part."""
 MOST = 200_000
 """Crossing facets that one question may return."""
 
@@ -79,6 +82,7 @@ class Shapes:
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
+    _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     _patches: dict[tuple[str, str], list[int]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
 
@@ -151,6 +155,13 @@ class Shapes:
         if key not in self._models:
             self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
         return self._models[key]
+
+    def spheres(self, name: str) -> tuple[Array, Array]:
+        """Middles (k, 3) and radii (k,) m of spheres that hold the facets of a part, part frame."""
+        mesh = self.mesh(name)
+        if mesh.digest not in self._spheres:
+            self._spheres[mesh.digest] = _spheres(mesh)
+        return self._spheres[mesh.digest]
 
     def patches(self, first: str, second: str) -> list[int]:
         """Indices of the patches between two parts, in either order."""
@@ -314,6 +325,19 @@ class PairTest:
             if away is not None:
                 out |= (away.reshape(-1, 2) <= slack).all(axis=1)
         return out
+
+
+def _spheres(mesh: Mesh) -> tuple[Array, Array]:
+    """About facets that lie together."""
+    corners = mesh.vertices[mesh.faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    order = together(low, high)
+    starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
+    low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+    middle = 0.5 * (low + high)
+    rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
+    away = np.linalg.norm(corners[order] - middle[rank, None], axis=2).max(axis=1)
+    return middle, np.maximum.reduceat(away, starts)
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:

@@ -29,6 +29,8 @@ RESOLUTION = 4e-3
 
 TOGETHER = 8.0
 """Surfaces that come to cross within so many chord errors of travel belong to one collision."""
+OVERLAPPING = 5.0
+"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 
@@ -59,7 +61,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
         if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
             left = search.pass_(left, stack.pop())
             continue
-        if way > resolution and right - left > fine:
+        if way > (OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
             if search.tried > WORK:
                 return First(None, None, None, search.overlaps, left)
             stack.append(0.5 * (left + right))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import heapq
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.collisions.coarse import clear_until
+from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PRESERVED, PairTest, Shapes
 from kinform.collisions.scan import first_crossing
@@ -59,9 +60,9 @@ class _Candidate:
         speed = math.hypot(radius, along) if self._turning else 1.0
         return Course(lambda s: displacement(sign * s * self._twist), lambda s: speed * s)
 
-    def clear(self, sign: int, start: float, end: float) -> float:
-        """How far the two parts are certainly apart."""
-        return clear_until(self._shapes, *self.names, self.course(sign), start, end)
+    def wholes(self) -> Wholes:
+        """The parts with all their facets."""
+        return Wholes(self._shapes, *self.names)
 
     @cached_property
     def test(self) -> tuple[PairTest, float] | None:
@@ -146,14 +147,11 @@ def _end(
     candidates: Sequence[_Candidate], twist: Array, sign: int, limit: float, start: float
 ) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out."""
-    best: tuple[float, PairTest, Array] | None = None
     reach, left_out = limit, []
+    best: tuple[float, PairTest, Array] | None = None
     exhausted: tuple[float, Pair] | None = None
     turning = float(twist[:3] @ twist[:3]) > 0.25
-    waiting = [(item.clear(sign, start, limit), item.names, item) for item in candidates]
-    for free, _, candidate in sorted(waiting, key=lambda entry: entry[:2]):
-        if free >= reach:
-            break
+    for candidate, free in _in_order(candidates, sign, start, lambda: reach):
         if candidate.test is None:
             continue
         test, radius = candidate.test
@@ -173,6 +171,30 @@ def _end(
         few = ", ".join(" and ".join(pair) for pair in sorted(left_out)[:3])
         return RangeEnd("unknown", reason=f"overlap from the start: {few}"), left_out
     return RangeEnd("unbounded"), left_out
+
+
+def _in_order(
+    candidates: Sequence[_Candidate], sign: int, start: float, reach: Callable[[], float]
+) -> Iterator[tuple[_Candidate, float]]:
+    """Pairs that come near each other before `reach`, which may shrink, with how far they are certainly apart: those that
+    come near first are first, and those that touch from the start, which are slow to follow, last."""
+    touching, waiting = [], []
+    for n, candidate in enumerate(candidates):
+        wholes, course = candidate.wholes(), candidate.course(sign)
+        if wholes.touch(course.displacement(start)):
+            touching.append(candidate)
+        else:
+            waiting.append((start, n, wholes, course))
+    while waiting and waiting[0][0] < reach():
+        s, n, wholes, course = heapq.heappop(waiting)
+        s, short = wholes.step(course, s, reach())
+        if short:
+            yield candidates[n], s
+        elif s < reach():
+            heapq.heappush(waiting, (s, n, wholes, course))
+    for candidate in touching:
+        if start < reach():
+            yield candidate, start
 
 
 def _guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:

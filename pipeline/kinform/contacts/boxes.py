@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FacetBoxes", "FlatBoxes", "facet_boxes"]
+__all__ = ["FacetBoxes", "FlatBoxes", "facet_boxes", "together"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,7 +43,7 @@ class FacetBoxes:
                 meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
             return np.flatnonzero(meets)
         if self._order is None:
-            self._order = _together(self.low, self.high)
+            self._order = together(self.low, self.high)
             self._starts = np.arange(0, len(self.low), _CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
             self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
@@ -91,7 +91,7 @@ class FlatBoxes:
         return np.asarray((rank * side + cell[..., 0] + 1) * side + cell[..., 1] + 1)
 
 
-def _together(low: Array, high: Array) -> Ints:
+def together(low: Array, high: Array) -> Ints:
     """An order in which neighbours are of like size and lie together: by octave of size, then along a Z-curve."""
     count, dimensions = low.shape
     if count == 0:
