@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from scipy.spatial.transform import Rotation, Slerp
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
 from kinform.collisions.ranges import shapes_of
-from kinform.collisions.recorded import Nodes, course, moving_pairs
+from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import Collision
@@ -41,7 +42,8 @@ def along(
 ) -> tuple[tuple[Collision, ...], tuple[tuple[str, str, str], ...]]:
     """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
 
-    Second: pairs of which that is not known, and why: they overlap from the start, roll or mesh, or stay too close.
+    Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh
+    and overlap where they do.
     Between output times bodies move evenly. Empty for runs without poses.
     """
     if len(simulation.time) < 2 or not len(simulation.body_names):
@@ -49,23 +51,27 @@ def along(
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     names = list(simulation.body_names)
     nodes = _nodes(simulation)
-    pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
-    untested = [(a, b, "they roll or mesh") for a, b in rolling]
+    pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
+    untested: list[tuple[str, str, str]] = []
     out = []
     end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
-    for done, (test, a, b) in enumerate(pairs):
+    for done, item in enumerate(pairs):
         if progress is not None:
             progress(done, len(pairs))
-        way = course(test, a, b, nodes)
-        found = first_crossing(test, way, end, TIME * step, start=float(simulation.time[0]))
+        test = item.test
+        found = first_crossing(test, item.course, end, TIME * step, start=item.free)
         first, second = test.part_names
         if found.overlaps:
             untested.append((first, second, "they overlap from the start"))
         if found.exhausted is not None:
             untested.append((first, second, f"they stay too close to be followed after t = {found.exhausted:.6g} s"))
         if found.hit is not None and found.place is not None:
-            place = (nodes.between(found.hit)[a] @ np.append(found.place, 1.0))[:3]
-            depth = _depth(test, way, simulation.time, found.hit)
+            if item.rolls:
+                reason = f"they roll or mesh, and overlap by more than chord errors at t = {found.hit:.6g} s"
+                untested.append((first, second, reason))
+                continue
+            place = (nodes.between(found.hit)[item.first] @ np.append(found.place, 1.0))[:3]
+            depth = _depth(test, item.course, simulation.time, found.hit)
             out.append(Collision(test.part_names, found.hit, place, depth))
     if progress is not None:
         progress(len(pairs), len(pairs))
@@ -95,7 +101,8 @@ def _nodes(simulation: Simulation) -> Nodes:
         out[:, 3, 3] = 1.0
         return out
 
-    return Nodes(time, displacements, between)
+    # pairs halve the same steps: most poses are asked for by several
+    return Nodes(time, displacements, lru_cache(maxsize=None)(between))
 
 
 def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:

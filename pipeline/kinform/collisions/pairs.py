@@ -37,7 +37,7 @@ SAMPLES = 32
 """Ends of crossing segments between which the depth is looked for."""
 GRID = 12
 """Points along the side of a facet that are asked whether they are inside the other part."""
-MIDDLES = 96
+MIDDLES = 64
 """Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
 """Of those that are, at which the depth is measured."""
@@ -211,15 +211,6 @@ class PairTest:
     def _own(self, patch: Patch) -> SurfacePair:
         a, b = patch.surfaces
         return (a, b) if patch.parts[0] == self.names[0] else (b, a)
-
-    def corners(self, which: int) -> Array:
-        """(8, 3) corners of the box of the facets of a part that count, in the world at the pose of the meshes."""
-        mesh = self._meshes[which]
-        points = mesh.vertices[np.unique(mesh.faces[self.facets[which]])]
-        low, high = points.min(axis=0), points.max(axis=0)
-        bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
-        X = self.X_WA if which == 0 else self.X_WB
-        return np.asarray(np.where(bits, high, low) @ X[:3, :3].T + X[:3, 3])
 
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""

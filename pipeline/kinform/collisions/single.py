@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -82,6 +82,9 @@ class _Candidate:
         return test, min(profile.radius(own) for profile, own in zip(self._profiles, facets, strict=True))
 
 
+_Entry = tuple[_Candidate, float]
+
+
 def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequence[str]) -> JointRange:
     """The range of a joint with the parts that rest and those that move (the side of its second body)."""
     twist = joint_twist(joint)
@@ -151,18 +154,21 @@ def _end(
     best: tuple[float, PairTest, Array] | None = None
     exhausted: tuple[float, Pair] | None = None
     turning = float(twist[:3] @ twist[:3]) > 0.25
-    for candidate, free in _in_order(candidates, sign, start, lambda: reach):
-        if candidate.test is None:
-            continue
-        test, radius = candidate.test
-        fine = ANGLE if turning else LENGTH * test.size
-        found = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
-        if found.overlaps:
-            left_out.append(test.part_names)
-        if found.exhausted is not None and (exhausted is None or found.exhausted < exhausted[0]):
-            exhausted = (found.exhausted, test.part_names)
-        if found.at is not None and found.place is not None:
-            reach, best = found.at, (found.at, test, found.place)
+    order = _in_order(candidates, sign, start, limit)
+    entry = next(order, None)
+    while entry is not None:
+        candidate, free = entry
+        if candidate.test is not None:
+            test, radius = candidate.test
+            fine = ANGLE if turning else LENGTH * test.size
+            found = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
+            if found.overlaps:
+                left_out.append(test.part_names)
+            if found.exhausted is not None and (exhausted is None or found.exhausted < exhausted[0]):
+                exhausted = (found.exhausted, test.part_names)
+            if found.at is not None and found.place is not None:
+                reach, best = found.at, (found.at, test, found.place)
+        entry = _following(order, reach)
     if exhausted is not None and exhausted[0] < reach:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
@@ -173,11 +179,18 @@ def _end(
     return RangeEnd("unbounded"), left_out
 
 
+def _following(order: Generator[_Entry, float, None], reach: float) -> _Entry | None:
+    try:
+        return order.send(reach)
+    except StopIteration:
+        return None
+
+
 def _in_order(
-    candidates: Sequence[_Candidate], sign: int, start: float, reach: Callable[[], float]
-) -> Iterator[tuple[_Candidate, float]]:
-    """Pairs that come near each other before `reach`, which may shrink, with how far they are certainly apart: those that
-    come near first are first, and those that touch from the start, which are slow to follow, last."""
+    candidates: Sequence[_Candidate], sign: int, start: float, reach: float
+) -> Generator[_Entry, float, None]:
+    """Pairs that come near each other before `reach`, with how far they are certainly apart: those that come near first
+    are first, and those that touch from the start, which are slow to follow, last. It is told how `reach` shrinks."""
     touching, waiting = [], []
     for n, candidate in enumerate(candidates):
         wholes, course = candidate.wholes(), candidate.course(sign)
@@ -185,16 +198,16 @@ def _in_order(
             touching.append(candidate)
         else:
             waiting.append((start, n, wholes, course))
-    while waiting and waiting[0][0] < reach():
+    while waiting and waiting[0][0] < reach:
         s, n, wholes, course = heapq.heappop(waiting)
-        s, short = wholes.step(course, s, reach())
+        s, short = wholes.step(course, s, reach)
         if short:
-            yield candidates[n], s
-        elif s < reach():
+            reach = yield candidates[n], s
+        elif s < reach:
             heapq.heappush(waiting, (s, n, wholes, course))
     for candidate in touching:
-        if start < reach():
-            yield candidate, start
+        if start < reach:
+            reach = yield candidate, start
 
 
 def _guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
