@@ -94,6 +94,9 @@ def _nodes(simulation: Simulation) -> Nodes:
 
     def between(s: float) -> Array:
         out = np.zeros((displacements.shape[1], 4, 4))
+        n = int(np.searchsorted(time, s))
+        if n < len(time) and time[n] == s:
+            return np.asarray(displacements[n])
         n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
         share = (s - time[n]) / (time[n + 1] - time[n])
         out[:, :3, :3] = [turn(s).as_matrix() for turn in turns]

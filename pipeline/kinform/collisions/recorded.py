@@ -144,4 +144,4 @@ def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
         poses = nodes.between(s)
         return np.asarray(np.linalg.solve(poses[first], poses[second]))
 
-    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)))
+    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)), nodes.s)

@@ -64,13 +64,13 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
         if way > (OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
             if search.tried > WORK:
                 return First(None, None, None, search.overlaps, left)
-            stack.append(0.5 * (left + right))
+            stack.append(course.middle(left, right))
             continue
         if search.too_deep(right):
             return search.located(left, right, fine, resolution)
         if search.through(left, right):
             if right - left > fine:
-                stack.append(0.5 * (left + right))
+                stack.append(course.middle(left, right))
                 continue
             if search.goes_in(left, end, resolution):
                 return search.flat(left, right)
