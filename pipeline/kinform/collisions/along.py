@@ -28,8 +28,10 @@ Progress = Callable[[int, int], None]
 
 TIME = 1e-4
 """Share of the time between two outputs to which a first contact is found."""
+SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
 DEPTHS = 12
-"""Output times after the first contact at which the depth is measured."""
+"""Output times after the first contact at which the depth is measured, besides that at once after it."""
 
 
 def along(
@@ -72,6 +74,9 @@ def along(
                 continue
             place = (nodes.between(found.hit)[item.first] @ np.append(found.place, 1.0))[:3]
             depth = _depth(test, item.course, simulation.time, found.hit)
+            if depth <= SAME * found.before + test.scrape:
+                untested.append((first, second, "they overlap from the start, and again later"))
+                continue
             out.append(Collision(test.part_names, found.hit, place, depth))
     if progress is not None:
         progress(len(pairs), len(pairs))

@@ -189,7 +189,8 @@ class PairTest:
         self._slacks = [
             patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + 1e-6 * self.size for patch in mates
         ]
-        self._scrape = shapes.allowed(first, second).length
+        self.scrape = shapes.allowed(first, second).length
+        """m: less deep, parts scrape, as mates may."""
         self._bare = {pair for pair, patch in zip(self._mates, mates, strict=True) if patch.kind in _SHAPELESS}
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
@@ -274,7 +275,7 @@ class PairTest:
         pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
-        slack = self._scrape
+        slack = self.scrape
         for pair in sorted({(int(a), int(b)) for a, b in pairs}):
             own = segments[(pairs == pair).all(axis=1)]
             own = own[~self._along_mate(pair, own)]

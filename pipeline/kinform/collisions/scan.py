@@ -45,6 +45,8 @@ class First:
     place: Array | None
     overlaps: bool = False
     exhausted: float | None = None
+    before: float = 0.0
+    """m: how deep the parts overlapped at the start, before they parted."""
 
 
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
@@ -99,6 +101,8 @@ class _Search:
         """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.tried = 0
         self._start = 0.0
+        self.before = 0.0
+        """m: overlap at the start."""
         self._known: dict[float, _State] = {}
 
     def begin(self, start: float) -> None:
@@ -107,6 +111,7 @@ class _Search:
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
+        self.before = self._depth(start) if self.overlaps else 0.0
 
     def state(self, s: float) -> _State:
         if s not in self._known:
@@ -139,7 +144,7 @@ class _Search:
         """Where faces meet flat."""
         f, g = self.state(left).nearest
         place = self.test.middle(self.course.displacement(right), f, g)
-        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3])
+        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
 
     def pass_(self, left: float, right: float) -> float:
         """Go on from `right`: parts that overlapped from the start and have parted count from there."""
@@ -204,4 +209,4 @@ class _Search:
             else:
                 left = middle
         at = np.append(self.state(right).crossing.segments().mean(axis=(0, 1)), 1.0)
-        return First(left, right, (self.test.X_WA @ at)[:3])
+        return First(left, right, (self.test.X_WA @ at)[:3], before=self.before)
