@@ -15,10 +15,10 @@ from kinform.consistency import check
 from kinform.model.function import Law
 
 
-def found(X=None, **solids):
+def found(X=None, scale=1e-3, **solids):
     """Ranges of the joints of solids (mm), all under one pose."""
     X = np.eye(4) if X is None else X
-    made = assembly(*(part(name, solid, X) for name, solid in solids.items()), ground=None)
+    made = assembly(*(part(name, solid, X, scale) for name, solid in solids.items()), ground=None)
     known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, known)
     derived = kinematics.derive(made, known, touching)
@@ -56,6 +56,27 @@ def test_a_lever_goes_from_peg_to_peg(seed):
     assert place[:2] == pytest.approx([0.032, 0.012], abs=2e-4)
 
 
+@pytest.mark.parametrize(("scale", "segments"), [(1e-3, 64), (1e-3, 96), (2e-2, 64), (2e-4, 80)])
+def test_a_pin_meets_a_wall_at_the_same_angle_whatever_the_size_and_the_facets(scale, segments):
+    plate = box(-50, 62, -50, 50, -5, 0) + rod(5, -1, 11, segments) + rod(8, 10, 13, segments)
+    wall = box(12, 60, 15, 20, 12, 20) + box(55, 60, 15, 20, -1, 20)
+    lever = box(-8, 40, -4, 4, 0, 10) + rod(9, 0, 10, segments) - rod(5.02, -1, 11, segments, 3.0)
+    lever += rod(3, 9, 16, segments).translate((25, 0, 0))
+    (item,), derived = found(scale=scale, base=plate + wall, lever=lever)
+    _, upper = ends(derived.joints[0], np.array([0, 0, 1.0]), item)
+    assert degrees(upper.value) == pytest.approx(degrees(asin(12 / 25)), abs=0.02)
+
+
+def test_what_only_scrapes_is_passed_and_the_stop_behind_it_is_where_it_is():
+    rail = box(-60, 60, -15, 15, -5, 0) + box(-60, 60, -15, -10, -1, 10) + box(-60, 60, 10, 15, -1, 10)
+    bump = box(40, 42, -5, 5, -1, 0.04)
+    (item,), _ = found(rail=rail + bump + box(50, 55, -11, 11, -1, 10), slider=box(-10, 25, -10, 10, 0, 8))
+    assert item.upper.value == pytest.approx(0.025, abs=2e-6)
+    bump = box(40, 42, -5, 5, -1, 0.4)
+    (item,), _ = found(rail=rail + bump + box(50, 55, -11, 11, -1, 10), slider=box(-10, 25, -10, 10, 0, 8))
+    assert item.upper.value == pytest.approx(0.015, abs=2e-6)
+
+
 @pytest.mark.parametrize(
     ("stops", "expected"), [((-50, 50), (-0.040, 0.025)), ((-50, None), (-0.040, None)), ((None, None), (None, None))]
 )
@@ -91,6 +112,16 @@ def test_the_gimbal_goes_until_its_motor_meets_the_back_of_the_housing(seeker):
     assert yaw.upper.parts == ("housing", "pitch_motor/stator")
     assert pitch.status == "unbounded"
     assert seeker.simulation.collisions == ()
+
+
+def test_the_twin_whose_arm_is_too_long_is_stopped_by_the_arm(derive_design):
+    design = stages.simulate(derive_design(FIXTURES / "seeker" / "4_gimbal" / "gimbal_hits_housing" / "seeker.toml"))
+    yaw, pitch = design.simulation.ranges
+    assert degrees(yaw.lower.value) == pytest.approx(-degrees(atan2(54, 14) - acos(40 / hypot(14, 54))), abs=0.05)
+    assert yaw.lower.parts == ("housing", "outer_gimbal")
+    assert degrees(yaw.upper.value) == pytest.approx(degrees(REACH - pi / 2 - atan2(11, 50)), abs=0.05)
+    assert pitch.status == "unbounded"
+    assert [f.code for f in check(design).findings if f.code in ("KF412", "KF505", "KF904")] == ["KF412"]
 
 
 def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seeker):

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
+from kinform.model.collisions import JointRange
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform_cli.notes import ground_note
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, count, number, vector
+from kinform_cli.text import Lengths, count, degrees, number, vector
 
 __all__ = ["blockers", "leaves", "render", "sentence"]
 
@@ -25,6 +26,8 @@ def render(design: Design) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
     kinematics, lengths = _known(design), Lengths.of(design.assembly)
     title = f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
+    run = design.simulation
+    ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
     rows = Rows(
         "name",
         "type",
@@ -32,6 +35,7 @@ def render(design: Design) -> RenderableType:
         f"point {lengths.unit}",
         "free",
         "status",
+        *(["range"] if ranges else []),
         "evidence",
         title=title,
         right=["free"],
@@ -44,6 +48,7 @@ def render(design: Design) -> RenderableType:
             lengths.point(joint.point),
             str(joint.freedoms),
             joint.status,
+            *([_range(ranges.get(joint.name), lengths)] if ranges else []),
             ", ".join(joint.evidence),
         )
     items: list[RenderableType] = [rows]
@@ -57,6 +62,17 @@ def render(design: Design) -> RenderableType:
     if note is not None:
         items.append(note)
     return stacked(*items)
+
+
+def _range(found: JointRange | None, lengths: Lengths) -> str:
+    """How far a joint goes from the pose of the meshes; `show … simulation` says what stops it."""
+    if found is None:
+        return ""
+    if found.lower.status == found.upper.status != "found":
+        return found.status
+    say = lengths.place if found.slides else degrees
+    unit = f" {lengths.unit}" if found.slides else ""
+    return " to ".join(e.status if e.value is None else say(e.value) + unit for e in (found.lower, found.upper))
 
 
 MOST_WAYS = 3

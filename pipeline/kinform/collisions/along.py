@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
 from kinform.collisions.ranges import shapes_of
-from kinform.collisions.recorded import Nodes, course, moving_pairs
-from kinform.collisions.scan import Course, first_crossing
+from kinform.collisions.recorded import Nodes, moving_pairs
+from kinform.collisions.scan import first_crossing
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import Collision
 from kinform.model.contacts import Contacts
@@ -26,8 +28,10 @@ Progress = Callable[[int, int], None]
 
 TIME = 1e-4
 """Share of the time between two outputs to which a first contact is found."""
+SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
 DEPTHS = 12
-"""Output times after the first contact at which the depth is measured."""
+"""Output times after the first contact at which the depth is measured, besides that at once after it."""
 
 
 def along(
@@ -40,7 +44,8 @@ def along(
 ) -> tuple[tuple[Collision, ...], tuple[tuple[str, str, str], ...]]:
     """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
 
-    Second: pairs of which that is not known, and why: they overlap from the start, roll or mesh, or stay too close.
+    Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh
+    and overlap where they do.
     Between output times bodies move evenly. Empty for runs without poses.
     """
     if len(simulation.time) < 2 or not len(simulation.body_names):
@@ -48,23 +53,30 @@ def along(
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
     names = list(simulation.body_names)
     nodes = _nodes(simulation)
-    pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
-    untested = [(a, b, "they roll or mesh") for a, b in rolling]
+    pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
+    untested: list[tuple[str, str, str]] = []
     out = []
     end, step = float(simulation.time[-1]), float(np.diff(simulation.time).min())
-    for done, (test, a, b) in enumerate(pairs):
+    for done, item in enumerate(pairs):
         if progress is not None:
             progress(done, len(pairs))
-        way = course(test, a, b, nodes)
-        found = first_crossing(test, way, end, TIME * step, start=float(simulation.time[0]))
+        test = item.test
+        found = first_crossing(test, item.course, end, TIME * step, start=item.free)
         first, second = test.part_names
         if found.overlaps:
             untested.append((first, second, "they overlap from the start"))
         if found.exhausted is not None:
             untested.append((first, second, f"they stay too close to be followed after t = {found.exhausted:.6g} s"))
         if found.hit is not None and found.place is not None:
-            place = (nodes.between(found.hit)[a] @ np.append(found.place, 1.0))[:3]
-            depth = _depth(test, way, simulation.time, found.hit)
+            if item.rolls:
+                reason = f"they roll or mesh, and overlap by more than chord errors at t = {found.hit:.6g} s"
+                untested.append((first, second, reason))
+                continue
+            place = (nodes.between(found.hit)[item.first] @ np.append(found.place, 1.0))[:3]
+            depth = _depth(test, item.course, simulation.time, found.hit)
+            if depth <= SAME * found.before + test.scrape:
+                untested.append((first, second, "they overlap from the start, and again later"))
+                continue
             out.append(Collision(test.part_names, found.hit, place, depth))
     if progress is not None:
         progress(len(pairs), len(pairs))
@@ -87,6 +99,9 @@ def _nodes(simulation: Simulation) -> Nodes:
 
     def between(s: float) -> Array:
         out = np.zeros((displacements.shape[1], 4, 4))
+        n = int(np.searchsorted(time, s))
+        if n < len(time) and time[n] == s:
+            return np.asarray(displacements[n])
         n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
         share = (s - time[n]) / (time[n + 1] - time[n])
         out[:, :3, :3] = [turn(s).as_matrix() for turn in turns]
@@ -94,7 +109,8 @@ def _nodes(simulation: Simulation) -> Nodes:
         out[:, 3, 3] = 1.0
         return out
 
-    return Nodes(time, displacements, between)
+    # pairs halve the same steps: most poses are asked for by several
+    return Nodes(time, displacements, lru_cache(maxsize=None)(between))
 
 
 def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
@@ -105,6 +121,6 @@ def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
     for s in chosen:
         D = way.displacement(float(s))
         crossing = test.crossing(D)
-        if crossing.surfaces:
-            depths.append(test.depth(D, crossing))
+        if crossing:
+            depths.append(test.depth(D, crossing.segments()))
     return max(depths, default=0.0)

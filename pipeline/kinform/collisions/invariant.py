@@ -18,7 +18,7 @@ from kinform.kinematics.screws import cross, perpendicular
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-__all__ = ["Allowed", "Extent", "extents", "sliding_on_themselves"]
+__all__ = ["Allowed", "OwnMotions", "Slippage"]
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -33,31 +33,69 @@ class Allowed:
 
 
 @dataclass(frozen=True, eq=False)
-class Extent:
+class _Extent:
     """Middle (s, 3) and radius (s,) m of the facets of each surface of a mesh, part frame."""
 
     middle: Array
     radius: Array
 
 
-def extents(mesh: Mesh, surfaces: MeshSurfaces) -> Extent:
+def _extents(mesh: Mesh, surfaces: MeshSurfaces) -> _Extent:
     """Where the facets of each surface are."""
     count = len(surfaces.surfaces)
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     corners = mesh.vertices[mesh.faces]
     np.minimum.at(low, surfaces.labels, corners.min(axis=1))
     np.maximum.at(high, surfaces.labels, corners.max(axis=1))
-    return Extent(0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1))
+    return _Extent(0.5 * (low + high), 0.5 * np.linalg.norm(high - low, axis=1))
 
 
-def sliding_on_themselves(surfaces: MeshSurfaces, extent: Extent, twists: Array, allowed: Allowed) -> Flags:
-    """(s,) which surfaces of a mesh every motion of `twists` (k, 6) (part frame, ω; v at its origin) maps onto themselves."""
-    out = np.zeros(len(surfaces.surfaces), dtype=bool)
-    for n, surface in enumerate(surfaces.surfaces):
-        own = _own_motions(surface)
-        if len(own):
-            out[n] = _contains(own, twists, extent.middle[n], float(extent.radius[n]), allowed)
-    return out
+@dataclass(frozen=True, eq=False)
+class Slippage:
+    """What the motions that map each surface of a mesh onto itself leave over of some twists."""
+
+    speed: Array
+    """(s, k) m per unit of a twist that points of a surface leave it by; inf where no motion maps it onto itself."""
+    radius: Array
+    """(s,) m."""
+    turns: Flags
+    """(k,) whether a twist turns."""
+
+    def within(self, allowed: Allowed) -> Flags:
+        """(s,) which surfaces all twists map onto themselves, but for what is allowed."""
+        limit = np.where(self.turns, allowed.length + allowed.angle * self.radius[:, None], allowed.angle)
+        return np.asarray((self.speed <= limit).all(axis=1))
+
+
+class OwnMotions:
+    """The motions that map each surface of a mesh onto itself; part frame."""
+
+    def __init__(self, mesh: Mesh, surfaces: MeshSurfaces):
+        self._extent = _extents(mesh, surfaces)
+        own = [_own_motions(surface) for surface in surfaces.surfaces]
+        counts = np.array([len(motions) for motions in own], dtype=np.int64)
+        self._bases: list[tuple[NDArray[np.int64], Array]] = []
+        for count in sorted(set(counts[counts > 0].tolist())):
+            members = np.flatnonzero(counts == count)
+            twists = self._at(np.stack([own[n] for n in members]), members)
+            self._bases.append((members, np.linalg.qr(np.swapaxes(twists, 1, 2))[0]))
+
+    def slippage(self, twists: Array) -> Slippage:
+        """Of unit twists (k, 6) (ω; v at the part's origin)."""
+        speed = np.full((len(self._extent.radius), len(twists)), np.inf)
+        for members, basis in self._bases:
+            wanted = self._at(np.broadcast_to(twists, (len(members), *twists.shape)), members)
+            rest = wanted - (wanted @ basis) @ np.swapaxes(basis, 1, 2)
+            speed[members] = np.linalg.norm(rest[..., :3], axis=2) + np.linalg.norm(rest[..., 3:], axis=2)
+        return Slippage(speed, self._extent.radius, np.linalg.norm(twists[:, :3], axis=1) > 0.0)
+
+    def _at(self, twists: Array, members: NDArray[np.int64]) -> Array:
+        """Twists (n, k, 6) as velocities (m/s) of surfaces: of the rim by the turn, and of the middle."""
+        omega = twists[..., :3]
+        size = np.maximum(self._extent.radius[members], 1e-9)[:, None, None]
+        return np.concatenate(
+            [size * omega, twists[..., 3:] + cross(omega, self._extent.middle[members, None])], axis=2
+        )
 
 
 def _own_motions(surface: Surface) -> Array:
@@ -79,20 +117,3 @@ def _own_motions(surface: Surface) -> Array:
     if surface.kind == "helicoid":
         return (turn + surface.pitch / (2.0 * np.pi) * slide)[None]
     return np.zeros((0, 6))
-
-
-def _contains(own: Array, twists: Array, middle: Array, radius: float, allowed: Allowed) -> bool:
-    """Whether each twist is a combination of `own` but for what is allowed over the surface."""
-    size = max(radius, 1e-9)
-    base, wanted = _at(own, middle, size), _at(twists, middle, size)
-    rest = wanted - np.linalg.lstsq(base.T, wanted.T, rcond=None)[0].T @ base
-    speeds = np.linalg.norm(rest[:, :3], axis=1) + np.linalg.norm(rest[:, 3:], axis=1)
-    turning = np.linalg.norm(twists[:, :3], axis=1) > 0.0
-    limit = np.where(turning, allowed.length + allowed.angle * radius, allowed.angle)
-    return bool(np.all(speeds <= limit))
-
-
-def _at(twists: Array, middle: Array, size: float) -> Array:
-    """Twists as velocities (m/s): of the rim by the turn, and of the middle."""
-    omega = twists[:, :3]
-    return np.hstack([size * omega, twists[:, 3:] + cross(omega, np.broadcast_to(middle, omega.shape))])

@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.pairs import Shapes
-from kinform.collisions.recorded import Nodes, course, moving_pairs
+from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
 from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
@@ -87,10 +88,12 @@ class _Linkage:
 
     def closed(self, q: Array) -> Array | None:
         """The nearest coordinates at which the loops close."""
+        left = math.inf
         for _ in range(12):
             found = self.system.close(q[None])
             residual = found.residual[0]
-            if np.abs(residual).max() < 1e-12:
+            before, left = left, float(np.abs(residual).max())
+            if left < 1e-12 or (left < CLOSED and left > 0.5 * before):
                 return q
             q = np.asarray(q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0], float)
         return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
@@ -184,20 +187,24 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
         found = linkage.closed(np.asarray(guess, float))
         return np.asarray(guess, float) if found is None else found
 
-    nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), lambda x: linkage.poses(at(x)))
-    pairs, rolling = moving_pairs(shapes, names, kinematics.joints, nodes)
+    # pairs halve the same steps: most poses are asked for by several
+    between = lru_cache(maxsize=None)(lambda x: linkage.poses(at(x)))
+    nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), between)
     end, why, place = float(s[-1]), path.why, None
     parts: tuple[PartName, ...] = ()
-    left_out = set(rolling)
-    for test, a, b in pairs:
-        found = first_crossing(test, course(test, a, b, nodes), end, 1e-3)
-        if found.overlaps:
+    left_out = set()
+    for item in sorted(moving_pairs(shapes, names, kinematics.joints, nodes), key=lambda item: -item.free):
+        test = item.test
+        if item.free >= end:
+            continue
+        found = first_crossing(test, item.course, end, 1e-3, start=item.free)
+        if found.overlaps or (item.rolls and found.at is not None):
             left_out.add(test.part_names)
         if found.exhausted is not None:
             end, why, parts, place = found.exhausted, f"{' and '.join(test.names)} stay too close", (), None
-        elif found.at is not None and found.place is not None:
+        elif found.at is not None and found.place is not None and not item.rolls:
             end, why, parts = found.at, "", test.part_names
-            place = (nodes.between(found.at)[a] @ np.append(found.place, 1.0))[:3]
+            place = (nodes.between(found.at)[item.first] @ np.append(found.place, 1.0))[:3]
     q = np.concatenate([path.q[: int(end) + 1], at(end)[None]])
     return _Travelled(q, why, parts, place, tuple(sorted(left_out)))
 

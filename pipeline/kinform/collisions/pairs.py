@@ -7,7 +7,7 @@ points lie on a mating surface to within the errors of the pair, are no collisio
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import fcl
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
-from kinform.collisions.invariant import Allowed, Extent, extents, sliding_on_themselves
+from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
+from kinform.contacts.boxes import together
 from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -32,14 +33,16 @@ SurfacePair = tuple[int, int]
 
 PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
-SAMPLES = 16
+SAMPLES = 32
 """Ends of crossing segments between which the depth is looked for."""
 GRID = 12
 """Points along the side of a facet that are asked whether they are inside the other part."""
-LEAST = 2e-5
-"""Share of the smaller part's diagonal that counts as no depth: what vertices may be off their surfaces."""
+MIDDLES = 64
+"""Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
-"""Places between them that are asked whether they are inside both parts, the deepest first."""
+"""Of those that are, at which the depth is measured."""
+SPHERES = 96
+"""Spheres about the facets of a part."""
 MOST = 200_000
 """Crossing facets that one question may return."""
 
@@ -48,14 +51,21 @@ MOST = 200_000
 class Crossing:
     """Facets that cross at one pose."""
 
-    surfaces: frozenset[SurfacePair]
-    segments: Array
-    """(n, 2, 3) m, shared by the facets that cross, in the frame of the first part."""
+    shared: Mapping[SurfacePair, Array]
+    """(n, 2, 3) m, segments that the facets of two surfaces which cross share, in the frame of the first part."""
     slack: float
-    """m: chord errors of the surfaces that cross; less deep, it may be no crossing of what the facets stand for."""
+    """m: what mates may overlap, and chord errors of the surfaces that cross: less deep, the parts may just scrape."""
+
+    def __bool__(self) -> bool:
+        return bool(self.shared)
+
+    def segments(self, pairs: Collection[SurfacePair] | None = None) -> Array:
+        """(n, 2, 3) m: those of some pairs of surfaces, or all."""
+        chosen = [own for pair, own in self.shared.items() if pairs is None or pair in pairs]
+        return np.concatenate(chosen) if chosen else np.zeros((0, 2, 3))
 
 
-NONE = Crossing(frozenset(), np.zeros((0, 2, 3)), 0.0)
+NONE = Crossing({}, 0.0)
 
 
 @dataclass
@@ -67,11 +77,12 @@ class Shapes:
     contacts: Contacts | None
     body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
     """Parts of each body that have a mesh."""
-    _extents: dict[str, Extent] = field(default_factory=dict)
-    _invariant: dict[tuple[str, bytes, Allowed], Flags] = field(default_factory=dict)
+    _own: dict[str, OwnMotions] = field(default_factory=dict)
+    _slippage: dict[tuple[str, bytes], Slippage] = field(default_factory=dict)
     _borders: dict[str, list[set[int]]] = field(default_factory=dict)
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
+    _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     _patches: dict[tuple[str, str], list[int]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
 
@@ -99,20 +110,16 @@ class Shapes:
 
     def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
-        key = (name, twists.tobytes(), allowed)
-        if key not in self._invariant:
-            self._invariant[key] = self._find_invariant(name, twists, allowed)
-        return self._invariant[key]
-
-    def _find_invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
-        mesh, surfaces = self.mesh(name), self.surfaces_of(name)
-        if mesh.digest not in self._extents:
-            self._extents[mesh.digest] = extents(mesh, surfaces)
-        X = self.part(name).X_WP
-        omega = twists[:, :3] @ X[:3, :3]
-        moment = (twists[:, 3:] + cross(twists[:, :3], np.broadcast_to(X[:3, 3], omega.shape))) @ X[:3, :3]
-        local = np.hstack([omega, moment])
-        return sliding_on_themselves(surfaces, self._extents[mesh.digest], local, allowed)
+        key = (name, twists.tobytes())
+        if key not in self._slippage:
+            mesh = self.mesh(name)
+            if mesh.digest not in self._own:
+                self._own[mesh.digest] = OwnMotions(mesh, self.surfaces_of(name))
+            X = self.part(name).X_WP
+            omega = twists[:, :3] @ X[:3, :3]
+            moment = (twists[:, 3:] + cross(twists[:, :3], np.broadcast_to(X[:3, 3], omega.shape))) @ X[:3, :3]
+            self._slippage[key] = self._own[mesh.digest].slippage(np.hstack([omega, moment]))
+        return self._slippage[key].within(allowed)
 
     def borders(self, name: str) -> list[set[int]]:
         """For each surface of a part, the surfaces that share an edge with it, and itself."""
@@ -142,10 +149,19 @@ class Shapes:
     def model(self, name: str, facets: Ints | None = None) -> fcl.BVHModel:
         """FCL's model of some facets of a part (m, part frame)."""
         mesh = self.mesh(name)
-        key = (mesh.digest, b"" if facets is None else facets.tobytes())
+        if facets is None or len(facets) == len(mesh.faces):
+            return self.index(name).bvh
+        key = (mesh.digest, facets.tobytes())
         if key not in self._models:
-            self._models[key] = partial_model(mesh.vertices, mesh.faces if facets is None else mesh.faces[facets])
+            self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
         return self._models[key]
+
+    def spheres(self, name: str) -> tuple[Array, Array]:
+        """Middles (k, 3) and radii (k,) m of spheres that hold the facets of a part, part frame."""
+        mesh = self.mesh(name)
+        if mesh.digest not in self._spheres:
+            self._spheres[mesh.digest] = _spheres(mesh)
+        return self._spheres[mesh.digest]
 
     def patches(self, first: str, second: str) -> list[int]:
         """Indices of the patches between two parts, in either order."""
@@ -173,6 +189,8 @@ class PairTest:
         self._slacks = [
             patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + 1e-6 * self.size for patch in mates
         ]
+        self.scrape = shapes.allowed(first, second).length
+        """m: less deep, parts scrape, as mates may."""
         self._bare = {pair for pair, patch in zip(self._mates, mates, strict=True) if patch.kind in _SHAPELESS}
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
@@ -194,15 +212,6 @@ class PairTest:
     def _own(self, patch: Patch) -> SurfacePair:
         a, b = patch.surfaces
         return (a, b) if patch.parts[0] == self.names[0] else (b, a)
-
-    def corners(self, which: int) -> Array:
-        """(8, 3) corners of the box of the facets of a part that count, in the world at the pose of the meshes."""
-        mesh = self._meshes[which]
-        points = mesh.vertices[np.unique(mesh.faces[self.facets[which]])]
-        low, high = points.min(axis=0), points.max(axis=0)
-        bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
-        X = self.X_WA if which == 0 else self.X_WB
-        return np.asarray(np.where(bits, high, low) @ X[:3, :3].T + X[:3, 3])
 
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
@@ -266,33 +275,35 @@ class PairTest:
         pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
-        slack = LEAST * self.size
+        slack = self.scrape
         for pair in sorted({(int(a), int(b)) for a, b in pairs}):
             own = segments[(pairs == pair).all(axis=1)]
             own = own[~self._along_mate(pair, own)]
             if len(own):
                 out[pair] = own
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
-        return Crossing(frozenset(out), np.concatenate(list(out.values())), slack) if out else NONE
+        return Crossing(out, slack) if out else NONE
 
-    def depth(self, D: Array, crossing: Crossing, least: float = 0.0) -> float:
-        """m: how deep the parts go into each other between the places where they cross; 0 where it is not above `least`."""
-        points = crossing.segments.reshape(-1, 3)
+    def depth(self, D: Array, segments: Array, least: float = 0.0) -> float:
+        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross; 0 where it is not above
+        `least`."""
+        points = segments.reshape(-1, 3)
         points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)
+        order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
+        # of near ones and far ones: parts may be thin, or deep in each other
+        order = order[np.unique(np.linspace(0, len(order) - 1, MIDDLES).astype(int))] if len(order) else order
+        a, b = a[order], b[order]
         middles = 0.5 * (points[a] + points[b])
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
         other = (middles - X[:3, 3]) @ X[:3, :3]
         own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        away, _ = own.whole().depths(middles)
-        away_other, _ = far.whole().depths(other)
-        total = away + away_other
-        for n in np.argsort(-total, kind="stable")[:INSIDE]:
-            if total[n] <= least:
-                break
-            if own.contains(middles[n : n + 1])[0] and far.contains(other[n : n + 1])[0]:
-                return float(total[n])
-        return 0.0
+        inside = np.flatnonzero(own.contains(middles))
+        inside = inside[far.contains(other[inside])]
+        inside = inside[np.unique(np.linspace(0, len(inside) - 1, INSIDE).astype(int))] if len(inside) else inside
+        total = own.whole().depths(middles[inside])[0] + far.whole().depths(other[inside])[0]
+        deepest = float(total.max(initial=0.0))
+        return deepest if deepest > least else 0.0
 
     def _along_mate(self, pair: SurfacePair, segments: Array) -> Flags:
         """(n,) which segments (n, 2, 3) lie on a mate that both surfaces belong to or border."""
@@ -306,6 +317,19 @@ class PairTest:
             if away is not None:
                 out |= (away.reshape(-1, 2) <= slack).all(axis=1)
         return out
+
+
+def _spheres(mesh: Mesh) -> tuple[Array, Array]:
+    """About facets that lie together."""
+    corners = mesh.vertices[mesh.faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    order = together(low, high)
+    starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
+    low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+    middle = 0.5 * (low + high)
+    rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
+    away = np.linalg.norm(corners[order] - middle[rank, None], axis=2).max(axis=1)
+    return middle, np.maximum.reduceat(away, starts)
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:

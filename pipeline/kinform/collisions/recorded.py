@@ -8,18 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.collisions.coarse import Wholes
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest, Shapes
-from kinform.collisions.scan import Course
 from kinform.collisions.single import preserved
 from kinform.model.kinematics import Joint
-from kinform.model.names import PartName
 
-__all__ = ["HIGHER", "Nodes", "course", "moving_pairs"]
+__all__ = ["HIGHER", "Moving", "Nodes", "moving_pairs"]
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 HIGHER = ("point", "line")
-"""Patches whose place on the parts changes as they move: such pairs are not tested."""
+"""Patches whose place on the parts changes as they move."""
 LOWER = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
 SLACK = 1.05
@@ -36,14 +37,24 @@ class Nodes:
     between: Callable[[float], Array]
 
 
-def moving_pairs(
-    shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], nodes: Nodes
-) -> tuple[list[tuple[PairTest, int, int]], list[tuple[PartName, PartName]]]:
-    """Pairs of parts of bodies (`names`, in the order of the poses) that move relative to each other and may come near,
-    with their bodies; and pairs that cannot be tested, as they roll or mesh."""
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """Two parts of bodies `first` and `second` (places in the order of the poses) that a motion may bring together."""
+
+    test: PairTest
+    first: int
+    second: int
+    course: Course
+    free: float
+    """Up to where they are certainly apart."""
+    rolls: bool
+    """Whether the place on the parts where they touch changes as they move: rollers, cams, teeth."""
+
+
+def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], nodes: Nodes) -> list[Moving]:
+    """Pairs of parts of bodies (`names`, in the order of the poses) that move relative to each other and come near."""
     joined = {frozenset(map(str, joint.bodies)): joint for joint in joints}
-    out: list[tuple[PairTest, int, int]] = []
-    rolling: list[tuple[PartName, PartName]] = []
+    out: list[Moving] = []
     for a, first in enumerate(names):
         for b in range(a + 1, len(names)):
             second = names[b]
@@ -52,12 +63,45 @@ def moving_pairs(
                 continue
             joint = joined.get(frozenset((first, second)))
             for one, other in _parts(shapes, first, second):
-                found = _test(shapes, joint, one, other, relative)
-                if found is not None:
-                    out.append((found, a, b))
-                elif joint is not None and joint.type not in LOWER:
-                    rolling.append((PartName(min(one, other)), PartName(max(one, other))))
-    return out, sorted(rolling)
+                moving = _moving(shapes, joint, (one, other), (a, b), nodes, relative)
+                if moving is not None:
+                    out.append(moving)
+    return out
+
+
+def _moving(
+    shapes: Shapes, joint: Joint | None, names: tuple[str, str], bodies: tuple[int, int], nodes: Nodes, relative: Array
+) -> Moving | None:
+    steps = _steps(relative, *(_corners(shapes, name) for name in names))
+    if steps is None:
+        return None
+    course = _course(bodies, nodes, steps)
+    free = Wholes(shapes, *names).clear_until(course, float(nodes.s[0]), float(nodes.s[-1]))
+    if free >= nodes.s[-1]:
+        return None
+    test, rolls = _test(shapes, joint, *names)
+    if test.empty:
+        return None
+    steps = _steps(relative, *(_corners(shapes, name, own) for name, own in zip(names, test.facets, strict=True)))
+    return None if steps is None else Moving(test, *bodies, _course(bodies, nodes, steps), free, rolls)
+
+
+def _steps(relative: Array, fixed: Array, moved: Array) -> Array | None:
+    """(T-1,) m that the corners (8, 3) of a box move between displacements (T, 4, 4); None where it stays out of another."""
+    places = np.einsum("tij,nj->tni", relative[:, :3, :3], moved) + relative[:, None, :3, 3]
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=2).max(axis=1)
+    low, high, margin = fixed.min(axis=0), fixed.max(axis=0), np.append(steps, 0.0)[:, None]
+    near = (places.min(axis=1) - margin <= high) & (places.max(axis=1) + margin >= low)
+    return np.asarray(steps) if near.all(axis=1).any() else None
+
+
+def _corners(shapes: Shapes, name: str, facets: Ints | None = None) -> Array:
+    """(8, 3) corners of the box of a part, or of some of its facets, in the world."""
+    mesh, X = shapes.mesh(name), shapes.part(name).X_WP
+    points = mesh.vertices if facets is None else mesh.vertices[np.unique(mesh.faces[facets])]
+    bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
+    corners = np.where(bits, points.max(axis=0), points.min(axis=0))
+    return np.asarray(corners @ X[:3, :3].T + X[:3, 3])
 
 
 def _parts(shapes: Shapes, first: str, second: str) -> Iterator[tuple[str, str]]:
@@ -66,14 +110,14 @@ def _parts(shapes: Shapes, first: str, second: str) -> Iterator[tuple[str, str]]
             yield one, other
 
 
-def _test(shapes: Shapes, joint: Joint | None, one: str, other: str, relative: Array) -> PairTest | None:
-    """The pair with the facets that count; None where none can meet, or it cannot be tested."""
+def _test(shapes: Shapes, joint: Joint | None, one: str, other: str) -> tuple[PairTest, bool]:
+    """The pair with the facets that count, and whether they roll or mesh."""
     patches = [shapes.contacts.patches[k] for k in shapes.patches(one, other)] if shapes.contacts is not None else []
-    twists = np.zeros((0, 6))
+    twists, rolls = np.zeros((0, 6)), False
     if joint is not None and joint.type != "fixed":
-        if joint.type not in LOWER or any(patch.kind in HIGHER for patch in patches):
-            return None
-        twists = _units(joint.twists)
+        rolls = joint.type not in LOWER or any(patch.kind in HIGHER for patch in patches)
+        if joint.type in LOWER:
+            twists = _units(joint.twists)
     facets = []
     for name in (one, other):
         labels = shapes.surfaces_of(name).labels
@@ -81,21 +125,8 @@ def _test(shapes: Shapes, joint: Joint | None, one: str, other: str, relative: A
         if len(twists):
             keep = ~shapes.invariant(name, twists, shapes.allowed(one, other))[labels]
         facets.append(np.flatnonzero(keep))
-    if not all(map(len, facets)):
-        return None
     mates = [patch for patch in patches if len(twists) and preserved(patch, twists)]
-    test = PairTest(shapes, one, other, (facets[0], facets[1]), mates)
-    return test if _near(test, relative) else None
-
-
-def _near(test: PairTest, relative: Array) -> bool:
-    """Whether the boxes of the facets come near each other at any of the poses."""
-    fixed, moved = test.corners(0), test.corners(1)
-    low, high = fixed.min(axis=0), fixed.max(axis=0)
-    places = np.einsum("tij,nj->tni", relative[:, :3, :3], moved) + relative[:, None, :3, 3]
-    steps = np.linalg.norm(np.diff(places, axis=0), axis=2).max(axis=1, initial=0.0) if len(places) > 1 else np.zeros(0)
-    margin = np.append(steps, 0.0)[:, None]
-    return bool(np.any(((places.min(axis=1) - margin <= high) & (places.max(axis=1) + margin >= low)).all(axis=1)))
+    return PairTest(shapes, one, other, (facets[0], facets[1]), mates), rolls
 
 
 def _units(twists: Array) -> Array:
@@ -104,14 +135,13 @@ def _units(twists: Array) -> Array:
     return np.asarray(twists / np.where(turning > 1e-12, turning, np.maximum(sliding, 1e-300))[:, None])
 
 
-def course(test: PairTest, a: int, b: int, nodes: Nodes) -> Course:
-    """How the second body of a pair moves relative to the first."""
-    relative = np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b])
-    places = np.einsum("tij,nj->tni", relative[:, :3, :3], test.corners(1)) + relative[:, None, :3, 3]
-    way = np.concatenate([[0.0], SLACK * np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=2).max(axis=1))])
+def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
+    """How the second body of a pair moves relative to the first; no point of it further between poses than `steps` (m)."""
+    way = np.concatenate([[0.0], SLACK * np.cumsum(steps)])
+    first, second = bodies
 
     def displacement(s: float) -> Array:
         poses = nodes.between(s)
-        return np.asarray(np.linalg.solve(poses[a], poses[b]))
+        return np.asarray(np.linalg.solve(poses[first], poses[second]))
 
-    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)))
+    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)), nodes.s)

@@ -7,16 +7,17 @@ a resolution. What happens within the resolution, free at both ends, is a graze 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.collisions.pairs import NONE, Crossing, PairTest
+from kinform.collisions.course import Course
+from kinform.collisions.pairs import NONE, Crossing, PairTest, SurfacePair
 
-__all__ = ["Course", "First", "first_crossing"]
+__all__ = ["First", "first_crossing"]
 
 Array = NDArray[np.float64]
 
@@ -26,14 +27,12 @@ RESOLUTION = 4e-3
 """Share of the smaller part's diagonal that a part may travel unseen where others are in touch."""
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
-    """How the second body of a pair moves relative to the first, over a parameter s."""
-
-    displacement: Callable[[float], Array]
-    """(4, 4) of the world at the meshes' pose, at s."""
-    travel: Callable[[float], float]
-    """m that no point has travelled more than, up to s: it grows with s."""
+TOGETHER = 8.0
+"""Surfaces that come to cross within so many chord errors of travel belong to one collision."""
+OVERLAPPING = 5.0
+"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
+RISE = 0.02
+"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +45,8 @@ class First:
     place: Array | None
     overlaps: bool = False
     exhausted: float | None = None
+    before: float = 0.0
+    """m: how deep the parts overlapped at the start, before they parted."""
 
 
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
@@ -54,33 +55,28 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
         return First(None, None, None)
     resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
     search = _Search(test, course)
-    search.muted = bool(search.state(start).crossing.surfaces)
-    search.overlaps = search.muted and (test.overlapping or search.too_deep(start))
+    search.begin(start)
     left, stack = start, [end]
     while stack:
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
         if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
-            left = stack.pop()
-            search.pass_(left)
+            left = search.pass_(left, stack.pop())
             continue
-        if way > resolution and right - left > fine:
+        if way > (OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
             if search.tried > WORK:
                 return First(None, None, None, search.overlaps, left)
-            stack.append(0.5 * (left + right))
+            stack.append(course.middle(left, right))
             continue
-        if search.crosses(right):
-            if search.muted or search.real(right, end, resolution):
-                return search.narrow(left, right, fine)
-            search.muted = True
+        if search.too_deep(right):
+            return search.located(left, right, fine, resolution)
         if search.through(left, right):
             if right - left > fine:
-                stack.append(0.5 * (left + right))
+                stack.append(course.middle(left, right))
                 continue
             if search.goes_in(left, end, resolution):
                 return search.flat(left, right)
-        left = stack.pop()
-        search.pass_(left)
+        left = search.pass_(left, stack.pop())
     return First(None, None, None, search.overlaps)
 
 
@@ -99,11 +95,23 @@ class _State:
 class _Search:
     def __init__(self, test: PairTest, course: Course):
         self.test, self.course = test, course
-        self.muted = False
-        """Overlapping since the start, or by no more than chord errors."""
         self.overlaps = False
+        """Overlapping since the start, by more than chord errors."""
+        self.since: dict[SurfacePair, tuple[float, float] | None] = {}
+        """Surfaces that cross, and the step in which they began to; None: at the start."""
         self.tried = 0
+        self._start = 0.0
+        self.before = 0.0
+        """m: overlap at the start."""
         self._known: dict[float, _State] = {}
+
+    def begin(self, start: float) -> None:
+        """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
+        self._start = start
+        crossing = self.state(start).crossing
+        self.since = dict.fromkeys(crossing.shared)
+        self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
+        self.before = self._depth(start) if self.overlaps else 0.0
 
     def state(self, s: float) -> _State:
         if s not in self._known:
@@ -113,15 +121,10 @@ class _Search:
             self._known[s] = _State(distance, nearest, None if distance > 0.0 else partial(self.test.crossing, D))
         return self._known[s]
 
-    def crosses(self, s: float) -> bool:
-        if not self.muted:
-            return bool(self.state(s).crossing.surfaces)
-        return not self.overlaps and self.too_deep(s)
-
     def through(self, left: float, right: float) -> bool:
         """Whether faces that are parallel may have passed through each other, crossing nowhere."""
         before, after = self.state(left), self.state(right)
-        if self.muted or (before.distance <= 0.0 and after.distance <= 0.0):
+        if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
         nearest = before.nearest if before.distance > 0.0 else after.nearest
         heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]
@@ -133,7 +136,7 @@ class _Search:
     def goes_in(self, s: float, end: float, step: float) -> bool:
         """Whether the faces that pass each other at s are inside the parts a step later."""
         nearest = self.state(s).nearest
-        further = self._after(s, step, end)
+        further = self.course.when(self.course.travel(s) + step, s, end)
         way = self.course.travel(further) - self.course.travel(s)
         return self.test.inside(self.course.displacement(further), *nearest, 0.4 * way)
 
@@ -141,53 +144,69 @@ class _Search:
         """Where faces meet flat."""
         f, g = self.state(left).nearest
         place = self.test.middle(self.course.displacement(right), f, g)
-        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3])
+        return First(left, right, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
 
-    def pass_(self, s: float) -> None:
-        """Parts that overlapped so far, and have parted at s, count from here on."""
-        self.muted = self.muted and bool(self.state(s).crossing.surfaces)
-        self.overlaps = self.overlaps and self.muted
-        self._known = {key: state for key, state in self._known.items() if key >= s}
+    def pass_(self, left: float, right: float) -> float:
+        """Go on from `right`: parts that overlapped from the start and have parted count from there."""
+        crossing = self.state(right).crossing
+        self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
+        self.overlaps = self.overlaps and bool(crossing)
+        self._known = {key: state for key, state in self._known.items() if key >= right}
+        return right
 
     def too_deep(self, s: float) -> bool:
-        """Whether the parts go deeper into each other at s than chord errors explain."""
+        """Whether the parts go deeper into each other at s than chord errors explain, and did not from the start."""
+        return not self.overlaps and bool(self.state(s).crossing) and self._deep(s, None)
+
+    def _deep(self, s: float, pairs: Collection[SurfacePair] | None) -> bool:
         crossing = self.state(s).crossing
-        if not crossing.surfaces:
-            return False
-        if crossing.slack <= 0.0:
-            return True
-        return self.test.depth(self.course.displacement(s), crossing, crossing.slack) > crossing.slack
+        segments = crossing.segments(pairs)
+        return self.test.depth(self.course.displacement(s), segments, crossing.slack) > crossing.slack
 
-    def real(self, s: float, end: float, step: float) -> bool:
-        """Whether what crosses at s comes to be deeper than chord errors before it parts, or before the end."""
-        while self.state(s).crossing.surfaces:
-            if self.too_deep(s):
-                return True
-            further = self._after(s, step, end)
-            if further <= s:
-                return False
-            s = further
-        return False
+    def located(self, left: float, right: float, fine: float, resolution: float) -> First:
+        """Where what is too deep at `right` began: with the surfaces that came to cross last, as far as these alone are
+        too deep. Facets of mates may have crossed by chord errors long before."""
+        crossing = self.state(right).crossing
+        for pair in crossing.shared:
+            self.since.setdefault(pair, (left, right))
+        known = {pair: self.since[pair] for pair in crossing.shared}
+        began = sorted({step for step in known.values() if step is not None}, reverse=True)
+        near = TOGETHER * crossing.slack + 2.0 * resolution
+        for earliest, before in zip(began, [*began[1:], None], strict=True):
+            if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
+                continue
+            newest = frozenset(pair for pair, step in known.items() if step is not None and step >= earliest)
+            if self._deep(right, newest):
+                return self._narrow(*earliest, fine, partial(self._crosses, newest))
+        return self._rise(right, fine, resolution)
 
-    def _after(self, s: float, way: float, end: float) -> float:
-        """The parameter after s by which points have travelled `way` (m), no more than `end`."""
-        goal = self.course.travel(s) + way
-        if self.course.travel(end) <= goal:
-            return end
-        low, high = s, end
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if self.course.travel(middle) < goal else (low, middle)
-        return high
+    def _rise(self, right: float, fine: float, step: float) -> First:
+        """Where surfaces that have crossed since the start began to go deeper into each other, up to `right`."""
+        low, least = right, self._depth(right)
+        while low > self._start:
+            before = self.course.when(self.course.travel(low) - step, self._start, low)
+            depth = self._depth(before)
+            if depth >= least:
+                break
+            low, least = before, depth
+        least += RISE * self.state(right).crossing.slack
+        return self._narrow(low, right, fine, lambda s: self._depth(s) > least)
 
-    def narrow(self, left: float, right: float, fine: float) -> First:
+    def _depth(self, s: float) -> float:
+        crossing = self.state(s).crossing
+        return self.test.depth(self.course.displacement(s), crossing.segments()) if crossing else 0.0
+
+    def _crosses(self, pairs: Collection[SurfacePair], s: float) -> bool:
+        return not self.state(s).crossing.shared.keys().isdisjoint(pairs)
+
+    def _narrow(self, left: float, right: float, fine: float, met: Callable[[float], bool]) -> First:
         while right - left > fine:
             middle = 0.5 * (left + right)
             if middle in (left, right):
                 break
-            if self.crosses(middle):
+            if met(middle):
                 right = middle
             else:
                 left = middle
-        at = np.append(self.state(right).crossing.segments.mean(axis=(0, 1)), 1.0)
-        return First(left, right, (self.test.X_WA @ at)[:3])
+        at = np.append(self.state(right).crossing.segments().mean(axis=(0, 1)), 1.0)
+        return First(left, right, (self.test.X_WA @ at)[:3], before=self.before)

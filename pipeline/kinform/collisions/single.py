@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import heapq
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Generator, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.collisions.coarse import Wholes
+from kinform.collisions.course import Course
 from kinform.collisions.pairs import PRESERVED, PairTest, Shapes
-from kinform.collisions.scan import Course, first_crossing
-from kinform.collisions.sweeps import largest_radius, meeting
+from kinform.collisions.scan import first_crossing
+from kinform.collisions.sweeps import Profile, meeting
 from kinform.kinematics.displacements import displacement
 from kinform.kinematics.screws import cross
 from kinform.model.collisions import JointRange, RangeEnd
@@ -24,7 +27,7 @@ __all__ = ["drive_alone", "guide", "joint_twist", "preserved"]
 Array = NDArray[np.float64]
 Pair = tuple[PartName, PartName]
 
-ANGLE = math.radians(2e-4)
+ANGLE = math.radians(2e-5)
 """rad: to which a stop of a turn is found."""
 LENGTH = 1e-5
 """To which a stop of a slide is found, relative to the size of the smaller part."""
@@ -42,19 +45,51 @@ def preserved(patch: Patch, twists: Array) -> bool:
     return True
 
 
-@dataclass(frozen=True, eq=False)
 class _Candidate:
     """A pair of parts that the motion could bring together, the second part being the one that moves."""
 
-    test: PairTest
-    speed: float
-    """m per unit of s that a point where they meet could travel."""
+    def __init__(self, shapes: Shapes, names: Pair, profiles: tuple[Profile, Profile], twist: Array):
+        self.names, self._shapes, self._profiles, self._twist = names, shapes, profiles, twist
+        self._turning = float(twist[:3] @ twist[:3]) > 0.25
+
+    def course(self, sign: int, radius: float | None = None) -> Course:
+        """The motion to one side, for points no further from the axis than `radius` (m), by default all that can meet."""
+        if radius is None:
+            radius = min(profile.largest for profile in self._profiles)
+        along = float(abs(self._twist[:3] @ self._twist[3:]))
+        speed = math.hypot(radius, along) if self._turning else 1.0
+        return Course(lambda s: displacement(sign * s * self._twist), lambda s: speed * s)
+
+    def wholes(self) -> Wholes:
+        """The parts with all their facets."""
+        return Wholes(self._shapes, *self.names)
+
+    @cached_property
+    def test(self) -> tuple[PairTest, float] | None:
+        """With the facets that can meet, and how far these are from the axis at most; None where none can."""
+        shapes, twists, (first, second) = self._shapes, self._twist[None], self.names
+        allowed = shapes.allowed(first, second)
+        kept = []
+        for name in self.names:
+            slides = shapes.invariant(name, twists, allowed)
+            kept.append(np.flatnonzero(~slides[shapes.surfaces_of(name).labels]))
+        margin = 1e-6 * min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
+        facets = meeting(*self._profiles, kept[0], kept[1], margin)
+        if not (len(facets[0]) and len(facets[1])):
+            return None
+        patches = [shapes.contacts.patches[k] for k in shapes.patches(first, second)] if shapes.contacts else []
+        test = PairTest(shapes, first, second, facets, [p for p in patches if preserved(p, twists)])
+        return test, min(profile.radius(own) for profile, own in zip(self._profiles, facets, strict=True))
+
+
+_Entry = tuple[_Candidate, float]
 
 
 def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequence[str]) -> JointRange:
     """The range of a joint with the parts that rest and those that move (the side of its second body)."""
     twist = joint_twist(joint)
-    candidates = list(_candidates(shapes, twist, still, moving))
+    profiles = {name: _profile(shapes, name, twist) for name in (*still, *moving)}
+    candidates = _candidates(shapes, profiles, twist, still, moving)
     below, above = guide(shapes, joint, twist)
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
@@ -62,7 +97,7 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
         most = 2.0 * math.pi * TURNS
         below, above = max(below, -most), min(above, most)
     else:
-        reach = _clear(shapes, twist, still, moving)
+        reach = _clear(list(profiles.values()))
         below, above = max(below, -reach), min(above, reach)
     ends = {sign: _end(candidates, twist, sign, abs(limit), 0.0) for sign, limit in ((-1, below), (1, above))}
     if joint.type == "revolute":
@@ -93,60 +128,86 @@ def _leaving(end: RangeEnd, joint: Joint, limit: float) -> RangeEnd:
     return RangeEnd("unbounded", reason="leaves its guide", leaves=limit)
 
 
-def _candidates(shapes: Shapes, twist: Array, still: Sequence[str], moving: Sequence[str]) -> Iterator[_Candidate]:
-    twists = twist[None]
-    for first in still:
-        for second in moving:
-            allowed = shapes.allowed(first, second)
-            kept, triangles = [], []
-            for name in (first, second):
-                slides = shapes.invariant(name, twists, allowed)
-                mesh, surfaces, X = shapes.mesh(name), shapes.surfaces_of(name), shapes.part(name).X_WP
-                own = np.flatnonzero(~slides[surfaces.labels])
-                kept.append(own)
-                triangles.append((mesh.vertices @ X[:3, :3].T + X[:3, 3])[mesh.faces[own]])
-            if not all(map(len, kept)):
-                continue
-            margin = 1e-6 * min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
-            near = meeting(triangles[0], triangles[1], twist, margin)
-            facets = (kept[0][near[0]], kept[1][near[1]])
-            if not (len(facets[0]) and len(facets[1])):
-                continue
-            patches = [shapes.contacts.patches[k] for k in shapes.patches(first, second)] if shapes.contacts else []
-            test = PairTest(shapes, first, second, facets, [p for p in patches if preserved(p, twists)])
-            radius = min(largest_radius(t[n], twist) for t, n in zip(triangles, near, strict=True))
-            turning = float(twist[:3] @ twist[:3]) > 0.25
-            along = float(abs(twist[:3] @ twist[3:])) if turning else 1.0
-            yield _Candidate(test, math.hypot(radius, along) if turning else 1.0)
+def _profile(shapes: Shapes, name: str, twist: Array) -> Profile:
+    mesh, X = shapes.mesh(name), shapes.part(name).X_WP
+    return Profile(mesh.vertices @ X[:3, :3].T + X[:3, 3], mesh.faces, twist)
+
+
+def _candidates(
+    shapes: Shapes, profiles: dict[str, Profile], twist: Array, still: Sequence[str], moving: Sequence[str]
+) -> list[_Candidate]:
+    """Pairs whose parts sweep over places of each other."""
+    bounds = {name: profile.bounds for name, profile in profiles.items()}
+    return [
+        _Candidate(shapes, (PartName(first), PartName(second)), (profiles[first], profiles[second]), twist)
+        for first in still
+        for second in moving
+        if np.all(bounds[first][0] <= bounds[second][1]) and np.all(bounds[second][0] <= bounds[first][1])
+    ]
 
 
 def _end(
     candidates: Sequence[_Candidate], twist: Array, sign: int, limit: float, start: float
 ) -> tuple[RangeEnd, list[Pair]]:
     """How far one side goes, up to `limit`; and the pairs of which something was left out."""
+    reach, left_out = limit, []
     best: tuple[float, PairTest, Array] | None = None
-    reach, left_out, exhausted = limit, [], None
+    exhausted: tuple[float, Pair] | None = None
     turning = float(twist[:3] @ twist[:3]) > 0.25
-    for candidate in candidates:
-        course = Course(lambda s: displacement(sign * s * twist), lambda s, speed=candidate.speed: speed * s)  # type: ignore[misc]
-        fine = ANGLE if turning else LENGTH * candidate.test.size
-        if reach <= start:
-            break
-        found = first_crossing(candidate.test, course, reach, fine, start=start)
-        if found.overlaps:
-            left_out.append(candidate.test.part_names)
-        if found.exhausted is not None:
-            exhausted = candidate.test.part_names
-        if found.at is not None and found.place is not None:
-            reach, best = found.at, (found.at, candidate.test, found.place)
-    if exhausted is not None:
-        return RangeEnd("unknown", reason=f"{' and '.join(exhausted)} stay too close to be followed"), left_out
+    order = _in_order(candidates, sign, start, limit)
+    entry = next(order, None)
+    while entry is not None:
+        candidate, free = entry
+        if candidate.test is not None:
+            test, radius = candidate.test
+            fine = ANGLE if turning else LENGTH * test.size
+            found = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
+            if found.overlaps:
+                left_out.append(test.part_names)
+            if found.exhausted is not None and (exhausted is None or found.exhausted < exhausted[0]):
+                exhausted = (found.exhausted, test.part_names)
+            if found.at is not None and found.place is not None:
+                reach, best = found.at, (found.at, test, found.place)
+        entry = _following(order, reach)
+    if exhausted is not None and exhausted[0] < reach:
+        return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
     if best is not None:
         return RangeEnd("found", sign * best[0], best[1].part_names, best[2]), left_out
     if left_out:
         few = ", ".join(" and ".join(pair) for pair in sorted(left_out)[:3])
         return RangeEnd("unknown", reason=f"overlap from the start: {few}"), left_out
     return RangeEnd("unbounded"), left_out
+
+
+def _following(order: Generator[_Entry, float, None], reach: float) -> _Entry | None:
+    try:
+        return order.send(reach)
+    except StopIteration:
+        return None
+
+
+def _in_order(
+    candidates: Sequence[_Candidate], sign: int, start: float, reach: float
+) -> Generator[_Entry, float, None]:
+    """Pairs that come near each other before `reach`, with how far they are certainly apart: those that come near first
+    are first, and those that touch from the start, which are slow to follow, last. It is told how `reach` shrinks."""
+    touching, waiting = [], []
+    for n, candidate in enumerate(candidates):
+        wholes, course = candidate.wholes(), candidate.course(sign)
+        if wholes.touch(course.displacement(start)):
+            touching.append(candidate)
+        else:
+            waiting.append((start, n, wholes, course))
+    while waiting and waiting[0][0] < reach:
+        s, n, wholes, course = heapq.heappop(waiting)
+        s, short = wholes.step(course, s, reach)
+        if short:
+            reach = yield candidates[n], s
+        elif s < reach:
+            heapq.heappush(waiting, (s, n, wholes, course))
+    for candidate in touching:
+        if start < reach:
+            reach = yield candidate, start
 
 
 def guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
@@ -179,11 +240,7 @@ def _span(shapes: Shapes, name: str, surface: int, axis: Array) -> tuple[float, 
     return float(heights.min()), float(heights.max())
 
 
-def _clear(shapes: Shapes, twist: Array, still: Sequence[str], moving: Sequence[str]) -> float:
+def _clear(profiles: Sequence[Profile]) -> float:
     """m of a slide after which nothing is left in its way."""
-    low, high = np.inf, -np.inf
-    for name in (*still, *moving):
-        mesh, X = shapes.mesh(name), shapes.part(name).X_WP
-        heights = (mesh.vertices @ X[:3, :3].T + X[:3, 3]) @ twist[3:]
-        low, high = min(low, float(heights.min())), max(high, float(heights.max()))
-    return max(high - low, 0.0)
+    spans = [profile.span for profile in profiles]
+    return max(max(high for _, high in spans) - min(low for low, _ in spans), 0.0) if spans else 0.0

@@ -10,62 +10,94 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.contacts.proximity import near_boxes
-from kinform.kinematics.screws import perpendicular
+from kinform.kinematics.screws import cross, perpendicular
 
-__all__ = ["largest_radius", "meeting"]
+__all__ = ["Profile", "meeting"]
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 
-def meeting(first: Array, second: Array, twist: Array, margin: float) -> tuple[Flags, Flags]:
-    """Which triangles (n, 3, 3) and (m, 3, 3) of the world can meet when the second move along the unit twist (6,)."""
-    own, other = _profile(first, twist), _profile(second, twist)
-    return near_boxes(*own, *other, margin)
+class Profile:
+    """What vertices (n, 3) and facets (m, 3) of a part, in the world, keep along a unit twist (6,) (ω; v at the origin)."""
 
+    def __init__(self, vertices: Array, faces: Ints, twist: Array):
+        self._faces = faces
+        self._turning = bool(twist[:3] @ twist[:3] > 0.25)
+        axis = twist[:3] if self._turning else twist[3:]
+        across = np.stack(perpendicular(axis), axis=1)
+        away = vertices - cross(axis, twist[3:]) if self._turning else vertices
+        self._flat = away @ across
+        self._radius = np.linalg.norm(self._flat, axis=1)
+        self._heights = away @ axis
+        self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < 1e-12
+        self.largest: float = float(self._radius.max(initial=0.0))
+        """m: greatest distance from the axis of a turn."""
 
-def largest_radius(triangles: Array, twist: Array) -> float:
-    """m: greatest distance of the triangles' corners from the axis of a turning twist."""
-    across = _across(triangles.reshape(-1, 3), twist)
-    return float(np.linalg.norm(across, axis=1).max(initial=0.0))
+    @property
+    def span(self) -> tuple[float, float]:
+        """Lowest and highest place (m) along the axis."""
+        return float(self._heights.min()), float(self._heights.max())
 
-
-def _across(points: Array, twist: Array) -> Array:
-    axis = twist[:3]
-    foot = np.cross(axis, twist[3:])
-    away = points - foot
-    return np.asarray(away - (away @ axis)[:, None] * axis)
-
-
-def _profile(triangles: Array, twist: Array) -> tuple[Array, Array]:
-    """Boxes (n, 3) of what a triangle keeps: radius and height of a turn, radius of a screw, shadow of a slide."""
-    n = len(triangles)
-    low, high = np.zeros((n, 3)), np.zeros((n, 3))
-    turning = bool(twist[:3] @ twist[:3] > 0.25)
-    axis = twist[:3] if turning else twist[3:]
-    if not turning:
-        for k, direction in enumerate(perpendicular(axis)):
-            shadow = triangles @ direction
-            low[:, k], high[:, k] = shadow.min(axis=1), shadow.max(axis=1)
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """(3,) box of all `boxes`; some larger."""
+        low, high = np.zeros(3), np.zeros(3)
+        if not self._turning:
+            low[:2], high[:2] = self._flat.min(axis=0), self._flat.max(axis=0)
+        else:
+            high[0] = self.largest
+        if self._level:
+            low[1], high[1] = self.span
         return low, high
-    u, v = perpendicular(axis)
-    away = triangles - np.cross(axis, twist[3:])
-    flat = np.stack([away @ u, away @ v], axis=-1)
-    high[:, 0] = np.linalg.norm(flat, axis=2).max(axis=1)
-    low[:, 0] = _nearest(flat)
-    if abs(float(twist[:3] @ twist[3:])) < 1e-12:
-        heights = away @ axis
-        low[:, 1], high[:, 1] = heights.min(axis=1), heights.max(axis=1)
-    return low, high
+
+    def boxes(self, facets: Ints) -> tuple[Array, Array]:
+        """Boxes (n, 3) of what facets keep: radius and height of a turn, radius of a screw, shadow of a slide."""
+        corners = self._faces[facets]
+        low, high = np.zeros((len(facets), 3)), np.zeros((len(facets), 3))
+        if not self._turning:
+            for k in range(2):
+                low[:, k], high[:, k] = _span(self._flat[:, k], corners)
+            return low, high
+        high[:, 0] = _span(self._radius, corners)[1]
+        low[:, 0] = _nearest(self._flat[corners])
+        if self._level:
+            low[:, 1], high[:, 1] = _span(self._heights, corners)
+        return low, high
+
+    def radius(self, facets: Ints) -> float:
+        """m: greatest distance of some facets from the axis of a turn."""
+        return float(self._radius[self._faces[facets]].max(initial=0.0))
+
+
+def meeting(first: Profile, second: Profile, own: Ints, other: Ints, margin: float) -> tuple[Ints, Ints]:
+    """Which of the facets `own` of one part and `other` of another can meet when the second moves along the twist."""
+    boxes = [first.boxes(own), second.boxes(other)]
+    facets = [own, other]
+    for k in (0, 1, 0):
+        # near_boxes asks about all that it is given
+        low, high = boxes[1 - k]
+        if not len(low):
+            return own[:0], other[:0]
+        near = (boxes[k][0] <= high.max(axis=0) + margin) & (boxes[k][1] >= low.min(axis=0) - margin)
+        kept = near.all(axis=1)
+        boxes[k], facets[k] = (boxes[k][0][kept], boxes[k][1][kept]), facets[k][kept]
+    found = near_boxes(*boxes[0], *boxes[1], margin)
+    return facets[0][found[0]], facets[1][found[1]]
+
+
+def _span(values: Array, corners: Ints) -> tuple[Array, Array]:
+    """Least and greatest (n,) of values at three corners (n, 3)."""
+    a, b, c = values[corners[:, 0]], values[corners[:, 1]], values[corners[:, 2]]
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _nearest(flat: Array) -> Array:
     """(n,) distance of flat triangles (n, 3, 2) from the origin; 0 where it is inside."""
-    following = np.roll(flat, -1, axis=1)
-    side = following - flat
-    square = np.maximum(np.einsum("ijk,ijk->ij", side, side), 1e-300)
-    share = np.clip(-np.einsum("ijk,ijk->ij", flat, side) / square, 0.0, 1.0)
-    away = np.linalg.norm(flat + share[..., None] * side, axis=2).min(axis=1)
-    turn = flat[..., 0] * following[..., 1] - flat[..., 1] * following[..., 0]
+    x, y = flat[..., 0], flat[..., 1]
+    u, v = np.roll(x, -1, axis=1) - x, np.roll(y, -1, axis=1) - y
+    share = np.clip(-(u * x + v * y) / np.maximum(u * u + v * v, 1e-300), 0.0, 1.0)
+    away = np.sqrt(((x + share * u) ** 2 + (y + share * v) ** 2).min(axis=1))
+    turn = x * v - y * u
     inside = (turn > 0.0).all(axis=1) | (turn < 0.0).all(axis=1)
     return np.where(inside, 0.0, away)

@@ -24,6 +24,8 @@ class Ranged:
     upper: RangeEnd | None = None
     sign: float = 1.0
     """−1 where the designer's values run against those of kinform."""
+    left_out: tuple[tuple[str, str], ...] = ()
+    """Pairs of parts of which nothing is known, as they overlap from the start."""
     reason: str = ""
     given: bool = False
     """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
@@ -68,7 +70,7 @@ def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -
     if comparison.bodies[0].name != joint.bodies[0]:
         sign = -sign
     ends = (found.lower, found.upper) if sign > 0.0 else (found.upper, found.lower)
-    return Ranged(intended, *ends, sign=sign)
+    return Ranged(intended, *ends, sign=sign, left_out=found.left_out)
 
 
 def shown(value: float, joint: IntendedJoint, units: str) -> str:

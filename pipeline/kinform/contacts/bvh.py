@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinform.contacts.boxes import FacetBoxes, facet_boxes
+from kinform.contacts.boxes import FacetBoxes, FlatBoxes, facet_boxes
 from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
@@ -183,10 +183,21 @@ class MeshIndex:
 
         Open and inside-out meshes have an inside as far as two of three rays agree on it.
         """
+        out = np.asarray(((points >= self.low) & (points <= self.high)).all(axis=1))
+        if not out.any():
+            return out
         if self._rays is None:
             self._rays = [_Ray(self.mesh, ray) for ray in _RAYS]
-        crossings = np.stack([ray.crossings(points) for ray in self._rays])
-        return np.asarray(np.abs(np.median(crossings, axis=0)) > 0.5)
+        some = points[out]
+        crossings = np.stack([ray.crossings(some) for ray in self._rays[:2]])
+        count = crossings[0]
+        # two rays that agree are the median whatever the third says
+        doubtful = crossings[0] != crossings[1]
+        if doubtful.any():
+            third = self._rays[2].crossings(some[doubtful])
+            count[doubtful] = np.median(np.vstack([crossings[:, doubtful], third]), axis=0)
+        out[out] = np.abs(count) > 0.5
+        return out
 
 
 class _Ray:
@@ -200,20 +211,20 @@ class _Ray:
         self._vertices = mesh.vertices @ self._frame.T
         self._faces = mesh.faces
         flat = self._vertices[:, :2]
-        self._boxes = FacetBoxes(*facet_boxes((flat[mesh.faces[:, 0]], flat[mesh.faces[:, 1]], flat[mesh.faces[:, 2]])))
+        self._boxes = FlatBoxes(*facet_boxes((flat[mesh.faces[:, 0]], flat[mesh.faces[:, 1]], flat[mesh.faces[:, 2]])))
 
     def crossings(self, points: Array) -> Array:
         """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""
-        out = np.zeros(len(points))
-        for k, p in enumerate(points @ self._frame.T):
-            corners = self._vertices[self._faces[self._boxes.meeting(p[:2], p[:2])]]
-            (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ((corners[:, i] - p).T for i in range(3))
-            a, b, c = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
-            total = a + b + c
-            inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
-            height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
-            out[k] = np.sign(total[inside & (height > 0)]).sum()
-        return out
+        seen = points @ self._frame.T
+        which, facets = self._boxes.around(seen[:, :2])
+        corners = self._vertices[self._faces[facets]] - seen[which, None]
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (corners[:, i].T for i in range(3))
+        a, b, c = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
+        total = a + b + c
+        inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
+        height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
+        leaving = np.where(inside & (height > 0), np.sign(total), 0.0)
+        return np.asarray(np.bincount(which, leaving, minlength=len(points)), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

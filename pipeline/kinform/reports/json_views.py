@@ -74,7 +74,7 @@ def joint_evidence(design: Design, name: str) -> dict[str, Any]:
             "schema": "kinform/joint/1",
             "assembly": design.assembly.name,
             "units": design.assembly.units,
-            "joint": _joint(found.joint),
+            "joint": _joint(found.joint, found.joint.name in _ranged(design)),
             "patches": [
                 _fields(item, "index", "role", "share", "rows") | _fields(item.patch, *of_patch)
                 for item in found.patches
@@ -195,9 +195,10 @@ def _contacts(design: Design) -> dict[str, Any]:
 
 def _joints(design: Design) -> dict[str, Any]:
     kinematics = design.ranged or _kinematics(design)
+    computed = _ranged(design)
     return {
         "bodies": [_fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
-        "joints": [_joint(joint) for joint in kinematics.joints],
+        "joints": [_joint(joint, joint.name in computed) for joint in kinematics.joints],
         "mobility": mobility_counts(kinematics.mobility),
         "separations": [
             _fields(item, "bodies", "contacts") | {"releases": [release(way) for way in item.releases]}
@@ -207,9 +208,15 @@ def _joints(design: Design) -> dict[str, Any]:
     }
 
 
-def _joint(joint: Joint) -> dict[str, Any]:
+def _ranged(design: Design) -> set[str]:
+    """Names of the joints whose range has been computed."""
+    run = design.simulation
+    return set() if run is None or run.ranges is None else {item.joint for item in run.ranges}
+
+
+def _joint(joint: Joint, computed: bool) -> dict[str, Any]:
+    """Its range is null as long as it has not been computed: one that was computed and is not known says so."""
     of_blocker = ("parts", "patch", "area", "share", "place", "gap", "forbids")
-    unknown = joint.range_status == "unknown" and joint.range_lower is None and joint.range_upper is None
     limits = {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
     return {
         **_fields(joint, "name", "bodies", "type", "axis", "point"),
@@ -217,7 +224,7 @@ def _joint(joint: Joint) -> dict[str, Any]:
         **_fields(joint, "pitch", "freedoms"),
         **({"twists": joint.twists} if joint.type == "general" else {}),
         **_fields(joint, "evidence", "status", "reason", "motion"),
-        "range": None if unknown else limits,
+        "range": limits if computed else None,
         "patches": joint.patches,
         "blocked_by": [_fields(blocker, *of_blocker) for blocker in joint.blockers],
         "singular_values": joint.singular_values,

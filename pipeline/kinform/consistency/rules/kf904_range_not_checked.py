@@ -1,9 +1,9 @@
 """The function states the range of a joint, and how far the parts let it go is not known.
 
 A note for each stated range of which a side is not known: no such joint was found, it is one of several freedoms, its
-loops have a singular pose, or parts overlap from the start. KF412 compares what is known. Between bodies without meshes
-a range is given by the function, and there is nothing to compare it with: the rule does not apply to it, unless meshes
-elsewhere could meet.
+loops have a singular pose, or parts overlap from the start: what these do is not known. KF412 compares what is known.
+Between bodies without meshes a range is given by the function, and there is nothing to compare it with: the rule does
+not apply to it, unless meshes elsewhere could meet.
 
 Why it matters: whether the parts collide inside the range is not known.
 
@@ -58,7 +58,11 @@ def _unknown(item: Ranged) -> str:
     if item.reason:
         return item.reason
     sides = (("lower", item.lower), ("upper", item.upper))
-    return "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
+    why = "; ".join(f"{side}: {end.reason}" for side, end in sides if end is not None and end.status == "unknown")
+    if why or not item.left_out:
+        return why
+    few = ", ".join(" and ".join(pair) for pair in item.left_out[:3])
+    return f"without {few}, which overlap from the start, it is; with them it may be shorter"
 
 
 RULE = Rule("KF904", "range-not-checked", "note", __doc__, check)

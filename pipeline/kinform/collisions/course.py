@@ -1,0 +1,47 @@
+"""How the second body of a pair moves relative to the first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Course"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A motion over a parameter s."""
+
+    displacement: Callable[[float], Array]
+    """(4, 4) of the world at the meshes' pose, at s."""
+    travel: Callable[[float], float]
+    """m that no point has travelled more than, up to s: it grows with s."""
+    nodes: Array | None = None
+    """(T,) parameters, ascending, at which displacements cost little."""
+
+    def middle(self, low: float, high: float) -> float:
+        """A parameter about half way between two: a node where there is one."""
+        middle = 0.5 * (low + high)
+        if self.nodes is None:
+            return middle
+        n = int(np.searchsorted(self.nodes, middle))
+        near = [float(s) for s in self.nodes[max(n - 1, 0) : n + 1] if low < s < high]
+        return min(near, key=lambda s: abs(s - middle), default=middle)
+
+    def when(self, travel: float, low: float, high: float) -> float:
+        """About the greatest parameter between two up to which points have not travelled more than `travel` (m)."""
+        if self.travel(high) <= travel:
+            return high
+        start = low
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.travel(middle) <= travel else (low, middle)
+        if self.nodes is None:
+            return low
+        node = float(self.nodes[max(int(np.searchsorted(self.nodes, low, side="right")) - 1, 0)])
+        return node if node > start else low
