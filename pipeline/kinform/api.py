@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from kinform.errors import Problem, ResultsError, StageError
 from kinform.model.assembly import Assembly, Part
@@ -15,6 +15,9 @@ from kinform.model.findings import CheckReport, Finding
 from kinform.model.kinematics import Body, Joint, Mobility
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
+
+if TYPE_CHECKING:
+    from kinform.behaviour import Behaviour
 
 __all__ = ["Named", "Outcome", "Results", "open_results"]
 
@@ -110,6 +113,11 @@ class Results:
     def part_mass(self) -> Named[MassProperties]:
         """Mass properties of the parts, by name."""
         return Named("part", _known(self.design.mass, "mass", "mass").parts, _describe_mass)
+
+    @property
+    def behaviour(self) -> Behaviour:
+        """The port model: components with ports, joined at nodes, flat (`system`) and in systems (`nested`)."""
+        return _known(self.design.behaviour, "behaviour", "simulate")
 
     @property
     def simulation(self) -> Simulation:

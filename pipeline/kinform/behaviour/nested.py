@@ -141,7 +141,7 @@ def nest(system: System, homes: Mapping[str, str]) -> System:
                 nodes[path].append(Node(tuple(inside.pop(path)), node.size))
         (top,) = inside
         nodes[top].append(Node(tuple(inside[top]), node.size))
-    for path in sorted(paths, key=_deep, reverse=True):
+    for path in sorted(paths, key=lambda path: (-path.count("/"), path)):
         own = path.rsplit("/", 1)[-1]
         made = System(
             tuple(members[path]), tuple(nodes[path]), _called(path), own, tuple(exposed[path]), prefixed=False
