@@ -244,6 +244,8 @@ ELSEWHERE = {
     "KF412": "tests/collisions/test_ranges.py",
     "KF450": "tests/cli/test_change.py",
     "KF505": "tests/collisions/test_ranges.py",
+    "KF506": "tests/consistency/test_separating.py",
+    "KF507": "tests/consistency/test_separating.py",
 }
 """Rules with assemblies of their own in another file."""
 
