@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
 
+if TYPE_CHECKING:
+    from kinform.behaviour import Behaviour
+
 __all__ = ["Named", "Outcome", "Results", "open_results"]
 
 
@@ -112,6 +115,11 @@ class Results:
     def part_mass(self) -> Named[MassProperties]:
         """Mass properties of the parts, by name."""
         return Named("part", _known(self.design.mass, "mass", "mass").parts, _describe_mass)
+
+    @property
+    def behaviour(self) -> Behaviour:
+        """The port model: components with ports, joined at nodes, flat (`system`) and in systems (`nested`)."""
+        return _known(self.design.behaviour, "behaviour", "simulate")
 
     @property
     def simulation(self) -> Simulation:

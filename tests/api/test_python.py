@@ -116,7 +116,7 @@ def test_what_is_not_computed_names_the_command_that_computes_it(tmp_path: Path)
 
     results = kinform.Results(stages.import_(SEEKER))
     commands = {"contacts": "contacts", "joints": "joints", "bodies": "joints", "mobility": "joints", "mass": "mass",
-                "simulation": "simulate", "findings": "check"}  # fmt: skip
+                "behaviour": "simulate", "simulation": "simulate", "findings": "check"}  # fmt: skip
     for name, command in commands.items():
         with pytest.raises(kinform.StageError, match=f"kinform {command}"):
             getattr(results, name)
@@ -165,7 +165,9 @@ class TestSummary:
         assert joint["type"] == "general"
         assert np.shape(joint["twists"]) == (joint["freedoms"], 6)
 
-    @pytest.mark.parametrize("topic", ["assembly", "contacts", "joints", "mobility", "mass", "simulation", "findings"])
+    @pytest.mark.parametrize(
+        "topic", ["assembly", "contacts", "joints", "mobility", "mass", "behaviour", "simulation", "findings"]
+    )
     def test_every_topic_has_its_schema_and_is_strict_json(self, topic: str, outcome: kinform.Outcome) -> None:
         from kinform import reports
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.behaviour import Component, Constant, Model, Sine, System, count, counts, flat, nest, placed
+from kinform.behaviour.homes import homes
 from kinform.simulation import Course, simulate_system
 
 STILL = np.zeros(3)
@@ -172,3 +173,22 @@ def test_a_port_that_does_not_exist_cannot_be_exposed_or_joined():
     inner = motor()
     with pytest.raises(ValueError, match="exposed port out"):
         System(inner.components, inner.nodes, "m", exposed=(("out", ("rotor", "shaft")),))
+
+
+def test_what_acts_inside_a_sub_assembly_belongs_to_it():
+    model = Model()
+    model.ground("base")
+    model.body("a/one", 1.0, (0, 0, 0), (1, 1, 1))
+    model.body("a/b/two", 1.0, (0, 0, 0), (1, 1, 1))
+    model.joint("outer", "base", "a/one", axis=(0, 0, 1), point=(0, 0, 0))
+    model.joint("inner", "a/one", "a/b/two", axis=(0, 0, 1), point=(0, 0, 0))
+    model.motor("winding", "inner", 1.0, 0.0, 0.1)
+    model.voltage("supply", "winding", Constant(1.0))
+    model.load("push", "a/b/two", (0, 0, 0))
+    model.gear("gear", "inner", "outer", 2.0)
+    model.spring_between("cord", "a/one", "a/b/two", ((0, 0, 0), (1, 0, 0)), 1.0)
+    system = model.system()
+    found = homes(system, {body.subject: (body.subject,) for body in system.bodies})
+    assert {name: home for name, home in found.items() if home} == {
+        "a/one": "a", "a/b/two": "a/b", "inner": "a", "winding": "a", "supply": "a", "push": "a/b", "cord": "a",
+    }  # fmt: skip

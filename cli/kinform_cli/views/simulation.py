@@ -67,7 +67,7 @@ def _drives(run: Simulation) -> list[RenderableType]:
         return []
     slides = dict(zip(run.joint_names, run.joint_types, strict=True))
     columns = ("peak", "RMS", "peak power W", "work J")
-    rows = Rows("drive on", "kind", *columns, title="drives", right=columns)
+    rows = Rows("drive on", "kind", *columns, title="\ndrives", right=columns)
     for use in run.drives:
         unit = "N" if slides.get(use.joint) == "prismatic" else "N·m"
         efforts = (f"{number(value)} {unit}" for value in (use.peak, use.rms))

@@ -225,6 +225,28 @@ class System(Component):
     def _node_of(self) -> dict[tuple[str, str], Node]:
         return {port: node for node in self.nodes for port in node.ports}
 
+    @cached_property
+    def _met(self) -> dict[int, tuple[list[Ground | RigidBody], list[JointComponent]]]:
+        """Bodies and joints at each node, by its identity: a node of thousands of ports is looked through once."""
+        out: dict[int, tuple[list[Ground | RigidBody], list[JointComponent]]] = {}
+        for node in self.nodes:
+            bodies, joints = out.setdefault(id(node), ([], []))
+            for name, _ in node.ports:
+                component = self._by_name[name]
+                if isinstance(component, Ground | RigidBody):
+                    bodies.append(component)
+                elif isinstance(component, JointComponent):
+                    joints.append(component)
+        return out
+
+    def bodies_at(self, component: str, port: str) -> list[Ground | RigidBody]:
+        """Bodies and ground at the node of a port; KeyError for unknown ports."""
+        return self._met[id(self.node(component, port))][0]
+
+    def joints_at(self, component: str, port: str) -> list[JointComponent]:
+        """Joints at the node of a port, one as often as it has ports there; KeyError for unknown ports."""
+        return self._met[id(self.node(component, port))][1]
+
     def component(self, name: str) -> Component:
         """The component of that name; KeyError otherwise."""
         return self._by_name[name]
@@ -284,10 +306,10 @@ class System(Component):
 
     def body_at(self, component: str, port: str) -> Ground | RigidBody:
         """The body or ground at the node of a port; ValueError when there is not exactly one."""
-        (only,) = (c for c, _ in self.at(component, port) if isinstance(c, Ground | RigidBody))
+        (only,) = self.bodies_at(component, port)
         return only
 
     def joint_at(self, component: str, port: str) -> JointComponent:
         """The joint at the node of a port; ValueError when there is not exactly one."""
-        (only,) = (c for c, _ in self.at(component, port) if isinstance(c, JointComponent))
+        (only,) = self.joints_at(component, port)
         return only

@@ -115,7 +115,7 @@ def _meetings(system: System, component: Component) -> Iterator[str]:
         for port in ("a", "b"):
             yield from _one_body(system, component, port)
     if isinstance(component, JointComponent) and component.kind.rates:
-        others = [c for c, _ in system.at(component.name, "shaft") if isinstance(c, JointComponent)]
+        others = [c for c in system.joints_at(component.name, "shaft") if c is not component]
         if others:
             yield f"its shaft is joined with that of {_listed(others, 'joint')}: a gear of ratio 1 does that"
     if isinstance(component, LoadComponent):
@@ -134,13 +134,13 @@ def _meetings(system: System, component: Component) -> Iterator[str]:
 
 
 def _one_body(system: System, component: Component, port: str) -> Iterator[str]:
-    met = [c for c, _ in system.at(component.name, port) if isinstance(c, Ground | RigidBody)]
+    met = system.bodies_at(component.name, port)
     if len(met) != 1:
         yield f"its port {port} meets {_listed(met, 'body')}: it needs one body"
 
 
 def _one_shaft(system: System, component: Component, port: str) -> Iterator[str]:
-    met = [c for c, _ in system.at(component.name, port) if isinstance(c, JointComponent)]
+    met = system.joints_at(component.name, port)
     if len(met) != 1:
         yield f"its port {port} is on {_listed(met, 'joint')}: it needs one"
 

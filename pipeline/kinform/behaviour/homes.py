@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from kinform.behaviour.components import Component, Ground, JointComponent, RigidBody, System
+from kinform.behaviour.components import System
 
 __all__ = ["homes"]
 
@@ -22,26 +22,20 @@ def homes(system: System, parts: Mapping[str, Sequence[str]]) -> dict[str, str]:
     for body in system.bodies:
         out[body.name] = _shared(part.rpartition("/")[0] for part in parts[body.subject])
     for joint in system.joints:
-        out[joint.name] = _shared(_near(system, joint, out, Ground | RigidBody))
-    for gear in system.gears:
-        out[gear.name] = _shared(_near(system, gear, out, JointComponent))
+        out[joint.name] = _shared(out[body.name] for port in ("a", "b") for body in system.bodies_at(joint.name, port))
     for component in system.components:
         if component.name not in out and component.ports[0].name != "terminals":
-            out[component.name] = _shared(_near(system, component, out, JointComponent | Ground | RigidBody))
+            met = [
+                other.name
+                for port in component.ports
+                for other in system.bodies_at(component.name, port.name) or system.joints_at(component.name, port.name)
+            ]
+            out[component.name] = _shared(out[name] for name in met)
     for component in system.components:
-        if component.name not in out:
-            out[component.name] = _shared(_near(system, component, out, Component))
+        if component.name not in out:  # supplies of motors
+            near = [other.name for other, _ in system.at(component.name, "terminals")]
+            out[component.name] = _shared(out[name] for name in near if name in out)
     return out
-
-
-def _near(system: System, component: Component, known: Mapping[str, str], kinds: object) -> list[str]:
-    """Homes of the components of these kinds at the nodes of its ports, but not of the other things there."""
-    return [
-        known[other.name]
-        for port in component.ports
-        for other, _ in system.at(component.name, port.name)
-        if isinstance(other, kinds) and other.name in known  # type: ignore[arg-type]
-    ]
 
 
 def _shared(paths: Iterable[str]) -> str:

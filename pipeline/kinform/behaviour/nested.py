@@ -108,11 +108,12 @@ def _welded(system: System) -> System:
 def arranged(system: System, names: Sequence[str]) -> System:
     """The flat system with its components in the order of their names; nodes and ports as they are met in that order."""
     components = tuple(system.component(name) for name in names)
-    nodes: dict[Node, list[Leaf]] = {}
+    nodes: dict[int, tuple[Node, list[Leaf]]] = {}
     for component in components:
         for port in component.ports:
-            nodes.setdefault(system.node(component.name, port.name), []).append((component.name, port.name))
-    made = tuple(Node(tuple(ports), node.size) for node, ports in nodes.items())
+            node = system.node(component.name, port.name)
+            nodes.setdefault(id(node), (node, []))[1].append((component.name, port.name))
+    made = tuple(Node(tuple(ports), node.size) for node, ports in nodes.values())
     return System(components, made, system.name, system.subject, system.exposed, system.prefixed)
 
 
@@ -141,7 +142,7 @@ def nest(system: System, homes: Mapping[str, str]) -> System:
                 nodes[path].append(Node(tuple(inside.pop(path)), node.size))
         (top,) = inside
         nodes[top].append(Node(tuple(inside[top]), node.size))
-    for path in sorted(paths, key=_deep, reverse=True):
+    for path in sorted(paths, key=lambda path: (-path.count("/"), path)):
         own = path.rsplit("/", 1)[-1]
         made = System(
             tuple(members[path]), tuple(nodes[path]), _called(path), own, tuple(exposed[path]), prefixed=False

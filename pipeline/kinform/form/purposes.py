@@ -160,7 +160,7 @@ class Purposes:
         out = []
         for k, table in enumerate(function.drive if function else []):
             path = ("function", "drive", k)
-            given = table.model_dump(exclude={"joint", "kind", "law"}, exclude_none=True)
+            given = table.model_dump(exclude={"joint", "kind", "law"}, exclude_none=True, exclude_unset=True)
             law = self._law(getattr(table, "law", None), *path, "law")
             if table.kind == "dc_motor":
                 if (law is None) == (table.voltage is None):

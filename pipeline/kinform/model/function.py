@@ -86,7 +86,7 @@ class Drive:
     """motion, effort, spring, damper, servo, dc_motor."""
     law: Law | None
     parameters: dict[str, float]
-    """Further numbers of the kind (stiffness, damping, rest, kp, …, gear), in manifest units."""
+    """Further numbers of the kind (stiffness, damping, rest, kp, …, gear) that are stated, in manifest units."""
     metres_per_unit: float
     file: str
     line: int | None
