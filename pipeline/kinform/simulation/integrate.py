@@ -163,6 +163,10 @@ class _Driver:
             if run.tally[layout.STEPS] >= run.settings.steps:
                 return f"at t = {t:.6g} s {run.settings.steps} steps were used up: the model is stiff or singular"
             return ""
+        rates = np.zeros_like(run.y)
+        self.engine.derivative(run, t, run.y.copy(), rates)
+        if not np.all(np.isfinite(rates)):
+            return f"after t = {t:.6g} s forces or laws of motion are not numbers"
         if status == layout.MASSLESS:
             return f"after t = {t:.6g} s a free motion moves no mass"
         if status == layout.OPENED:
