@@ -89,17 +89,18 @@ def compiled() -> types.SimpleNamespace:
 
     digest = _digest()
     known: dict[str, Any] = {}
-    collecting, level = gc.isenabled(), numba.config.OPT
+    config: Any = numba.config
+    collecting, level = gc.isenabled(), config.OPT
     # A compiler makes much and drops little: collecting between costs a tenth of its time. The higher
     # levels of optimisation cost a quarter of it, and the result is no faster.
     gc.disable()
-    numba.config.OPT = type(level)(min(level, 1))
+    config.OPT = type(level)(min(level, 1))
     try:
         for function in _ORDER:
             name = function.__name__
             known[name] = _jit(numba, _signature(function), _renamed(function, known, digest), name)
     finally:
-        numba.config.OPT = level
+        config.OPT = level
         if collecting:
             gc.enable()
     return types.SimpleNamespace(**{name: known[name] for name in _ENTRIES})
