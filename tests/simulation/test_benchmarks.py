@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from portmodels import DOWN, SQUEEZER, bricard, four_bars, governor, pendulum, squeezer
+from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 from squeezer_equations import end
 
@@ -46,6 +47,24 @@ def test_four_bars_in_a_row_pass_their_collinear_pose(count, end, within):
     sound(run)
     np.testing.assert_allclose(place(run, "r0", [0, 1, 0])[:2], end, atol=within)
     assert any("singular pose" in note for note in run.assumptions)
+
+
+@pytest.mark.parametrize("count", [2, 10, pytest.param(40, marks=pytest.mark.slow)])
+def test_four_bars_in_a_row_move_as_the_one_freedom_that_they_share(count):
+    """All uprights turn alike and the couplers do not turn: a pendulum with the inertia of all of them."""
+    course = Course(10.0, 1.0, DOWN)
+    run = simulate_system(four_bars(count).system(), course, initial={"foot 0": (0.0, -1.0)})
+    sound(run)
+    inertia, lever = (count + 1) / 3 + count, (count + 1) / 2 + count
+
+    def falling(t, y):
+        return [y[1], -9.81 * lever / inertia * np.cos(y[0])]
+
+    exact = solve_ivp(falling, (0, 10), [np.pi / 2, -1.0], method="DOP853", rtol=1e-13, atol=1e-13, t_eval=run.time)
+    columns = [run.joint_offset[run.joint_names.index(f"foot {k}")] for k in range(count + 1)]
+    angles = np.pi / 2 + run.joint_position[:, columns]
+    np.testing.assert_allclose(angles, np.tile(exact.y[0], (count + 1, 1)).T, atol=1e-7)
+    np.testing.assert_allclose(run.joint_velocity[:, columns], np.tile(exact.y[1], (count + 1, 1)).T, atol=1e-6)
 
 
 def test_andrews_squeezer_agrees_with_its_equations_and_with_the_published_values():

@@ -33,6 +33,8 @@ PLAIN = 400
 """Steps times links that are made without the compiled functions: half a second, as long as loading them."""
 UNREADY = 8
 """Times more where they would have to be compiled first."""
+SHOWN = 60
+"""Steps from which on the whole run can be told to be longer than that."""
 LARGE = 1000
 """Rates times independent rows of the loops from which on plain functions would take too long at all."""
 STALL = 1000
@@ -110,13 +112,21 @@ class _Driver:
     def _advance(self) -> int:
         """One call of the kernel, compiled once the run has shown to be long."""
         run, tally = self.run, self.run.tally
-        if not self.engine.compiled and (tally[layout.STEPS] >= self.plain or Engine.loaded):
+        if not self.engine.compiled and (Engine.loaded or self._long()):
             self._compile()
         left = run.settings.steps - int(tally[layout.STEPS])
-        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else self.plain)
+        tally[layout.BUDGET] = (
+            1 if self.contact.holding else min(left, LOOK if self.engine.compiled else min(SHOWN, self.plain))
+        )
         tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
         self.contact.remember()
         return self.engine.advance(run)
+
+    def _long(self) -> bool:
+        """Whether the run takes so many steps that compiling pays, by those so far."""
+        run, steps = self.run, int(self.run.tally[layout.STEPS])
+        done = (run.clock[layout.NOW] - run.times[0]) / (run.times[-1] - run.times[0])
+        return steps >= self.plain or (steps >= SHOWN and steps > 1.5 * self.plain * done)
 
     def _stiff(self) -> bool:
         """Whether to go on implicitly; looked at now and then."""
@@ -155,6 +165,10 @@ class _Driver:
             if run.tally[layout.STEPS] >= run.settings.steps:
                 return f"at t = {t:.6g} s {run.settings.steps} steps were used up: the model is stiff or singular"
             return ""
+        rates = np.zeros_like(run.y)
+        self.engine.derivative(run, t, run.y.copy(), rates)
+        if not np.all(np.isfinite(rates)):
+            return f"after t = {t:.6g} s forces or laws of motion are not numbers"
         if status == layout.MASSLESS:
             return f"after t = {t:.6g} s a free motion moves no mass"
         if status == layout.OPENED:

@@ -98,7 +98,8 @@ class Run:
             self.dynamics.tables.rates(self.out[:done, k : k + n]) for k in (size, size + n, size + 2 * n)
         )
         notes = list(self.notes)
-        if self.clock[layout.MARGIN] < self.settings.doubtful:
+        passed = not stopped or self.clock[layout.TIGHTEST] < self.clock[layout.NOW] - 1e-3
+        if passed and self.clock[layout.MARGIN] < self.settings.doubtful:
             notes.append(
                 f"near t = {self.clock[layout.TIGHTEST]:.4g} s the loops pass a singular pose, where they could go "
                 "on in several ways: taken is the one that the momentum continues"

@@ -15,7 +15,7 @@ from kinform.model.simulation import Simulation
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.assemble import assemble
 from kinform.simulation.balances import imbalance
-from kinform.simulation.closure import rank_of
+from kinform.simulation.closure import factor, rank_of, settle
 from kinform.simulation.drives import uses
 from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.integrate import run_dynamic
@@ -30,6 +30,8 @@ __all__ = ["Course", "refuse", "simulate_system", "solve"]
 
 Array = NDArray[np.float64]
 Failures = tuple[tuple[str, str], ...]
+AHEAD = 0.03
+"""Of a motion (rad, or lengths) from the start that shows whether the loops bear it."""
 TRUSTED = 1e-5
 """Drift of the energy over the energy exchanged; runs at the default tolerances stay a hundred times below."""
 Progress = Callable[[int, int], None]
@@ -140,6 +142,13 @@ def solve(
         notes = (*notes, *resting(mechanism, actuation, start, settings))
         record = run_kinematic(mechanism, actuation, start, times, settings, progress)
         return publish(mechanism, record, course.level, notes, settings.free)[0]
+    stuck = _singular_start(mechanism, actuation, start, rank, settings)
+    if stuck:
+        why = (
+            "the mechanism starts in a singular pose (a dead point): its loops could go on in several ways there, "
+            "or in none; start it in another pose"
+        )
+        return refuse("the mechanism cannot start", ((stuck, why),))
     dynamics = Dynamics(mechanism, system, course.gravity, actuation, rank)
     weightless = dynamics.weightless(start.q)
     if weightless:
@@ -208,6 +217,26 @@ def _ranks(mechanism: Mechanism, actuation: Actuation, start: Start, settings: S
         "or the mechanism starts in a singular pose",
         rank,
     )
+
+
+def _singular_start(
+    mechanism: Mechanism, actuation: Actuation, start: Start, rank: int, settings: SolverSettings
+) -> str:
+    """Joints that seem free to move at the start, but tear the loops when they do; "" when none does."""
+    free = actuation.free
+    rows = mechanism.closure(mechanism.screws(mechanism.poses(start.q)))[:, free]
+    null = factor(rows, mechanism.scale[free], rank).null
+    if not mechanism.closed or not null.shape[1]:
+        return ""
+    # Each motion alone, and all at once: where branches meet, their sum lies on none.
+    for motion in (*null.T, null.sum(axis=1)):
+        step = np.zeros(mechanism.rates)
+        step[free] = AHEAD * motion / np.abs(motion / mechanism.scale[free]).max()
+        _, gap, _ = settle(mechanism, mechanism.advance(start.q, step), free, rank, settings)
+        if gap > 0.01 * AHEAD**2:
+            moving = free[np.abs(motion) > 1e-6 * np.abs(motion).max()]
+            return ", ".join(s.name for s in mechanism.slots if np.any((moving >= s.v.start) & (moving < s.v.stop)))
+    return ""
 
 
 def _driven(mechanism: Mechanism, actuation: Actuation) -> str:

@@ -55,6 +55,9 @@ from kinform.simulation.kernel.motion import place_links, twist_links
 from kinform.simulation.kernel.signals import law
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 
+TORN = 1e-4
+"""Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+
 __all__ = ["balance", "derivative", "impose", "move", "project", "reduce"]
 
 
@@ -258,6 +261,11 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
             vectors[ACC, k] = 0.0
         balance(matrix, rows, small, mode, vectors, n, rank, led)
         move(links, vectors, y)
+    for row in range(6 * len(closures) + len(nums[GEARS])):
+        # The rows that depend on the others at the start must stay closed too.
+        rest = abs(gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, row))
+        if rest > TORN:
+            size = max(size, rest)
     spare = len(rows) - 1
     for r in range(rank):
         row_of(ints, nums, work, mode[0, r], spare)
