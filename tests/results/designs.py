@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import importlib
 import struct
 import types
 import typing
@@ -52,9 +53,17 @@ def lists(item: st.SearchStrategy[Any], size: int = 3) -> st.SearchStrategy[Any]
     return st.lists(item, max_size=size).map(tuple)
 
 
+_MODEL = {
+    name: value
+    for module in ("assembly", "contacts", "findings", "kinematics", "mass", "simulation", "surfaces")
+    for name, value in vars(importlib.import_module(f"kinform.model.{module}")).items()
+}
+"""What annotations of the model name; `Design` imports it only for those who check types."""
+
+
 def of(cls: Any, **given: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Records of the class; fields that are not given are drawn by their annotation."""
-    hints = typing.get_type_hints(cls)
+    hints = typing.get_type_hints(cls, localns=_MODEL)
     fields = [field.name for field in dataclasses.fields(cls)]
     return st.builds(cls, **{name: given[name] if name in given else by_type(hints[name]) for name in fields})
 
