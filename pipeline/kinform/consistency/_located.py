@@ -45,7 +45,7 @@ def _joint(context: Context, subject: Sequence[str]) -> Joint | None:
 
 
 def _parts(context: Context, subject: Sequence[str]) -> list[Part]:
-    by_name: dict[str, Part] = {part.name: part for part in context.assembly.parts}
+    by_name = {str(part.name): part for part in context.assembly.parts}
     return [by_name[name] for name in subject if name in by_name]
 
 
