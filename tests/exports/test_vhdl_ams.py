@@ -339,7 +339,8 @@ def test_every_statement_of_a_fixture_holds_along_its_trajectory(manifest, deriv
     if found.simulation.level != "dynamic":
         found = swinging(found)
     made = export(found, "vhdl-ams")
-    if found.simulation.status != "done" or np.ptp(found.simulation.rank):
+    rank = found.simulation.rank
+    if found.simulation.status not in ("done", "stopped") or rank.max() > rank[0]:
         assert made.lost
         return
     largest, _ = worst(found, made, samples=(-1,))
