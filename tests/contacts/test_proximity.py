@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from kinform.contacts.boxes import FlatBoxes
 from kinform.contacts.proximity import near_boxes
 
 
@@ -31,3 +32,16 @@ def test_what_is_far_is_left_out():
     keep_a, keep_b = near_boxes(low, low + 0.01, low[:10], low[:10] + 0.01, 0.0)
     assert keep_a.sum() < 20
     assert keep_b.all()
+
+
+def test_boxes_on_grids_are_those_that_points_are_in():
+    rng = np.random.default_rng(5)
+    low = rng.uniform(-1.0, 1.0, (400, 2))
+    high = low + 10.0 ** rng.uniform(-6, 0.3, (400, 1)) * rng.uniform(0.0, 1.0, (400, 2))
+    points = np.concatenate([rng.uniform(-2.0, 3.0, (200, 2)), low[:40], high[40:80], 0.5 * (low + high)])
+    which, boxes = FlatBoxes(low, high).around(points)
+    inside = ((points[:, None] >= low) & (points[:, None] <= high)).all(axis=2)
+    assert set(zip(which.tolist(), boxes.tolist(), strict=True)) == set(
+        zip(*map(list, np.nonzero(inside)), strict=True)
+    )
+    assert (np.diff(which) >= 0).all()
