@@ -63,7 +63,7 @@ _MODEL = {
 
 def of(cls: Any, **given: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Records of the class; fields that are not given are drawn by their annotation."""
-    hints = typing.get_type_hints(cls, localns=_MODEL)
+    hints = typing.get_type_hints(cls, localns=_MODEL if cls is Design else None)
     fields = [field.name for field in dataclasses.fields(cls)]
     return st.builds(cls, **{name: given[name] if name in given else by_type(hints[name]) for name in fields})
 
