@@ -17,6 +17,7 @@ from hypothesis.extra import numpy as hnp
 from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.design import Design
+from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
 from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Redundancy, Release
@@ -63,6 +64,8 @@ _MODEL = {
 
 def of(cls: Any, **given: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     """Records of the class; fields that are not given are drawn by their annotation."""
+    if cls is CheckReport:
+        given = {"gone": st.none()} | given  # of a comparison with a baseline: no result, and in no file
     hints = typing.get_type_hints(cls, localns=_MODEL if cls is Design else None)
     fields = [field.name for field in dataclasses.fields(cls)]
     return st.builds(cls, **{name: given[name] if name in given else by_type(hints[name]) for name in fields})
