@@ -73,7 +73,7 @@ def test_without_a_motion_there_is_no_csv():
 @pytest.mark.parametrize("name", ALL)
 def test_reading_the_port_model_gives_an_equal_one(name):
     (data,) = export(known(name), "json").files.values()
-    system, again = model_of(known(name)).system, read(data)
+    system, again = model_of(known(name)).nested, read(data)
     assert again.nodes == system.nodes
     assert [type(c) for c in again.components] == [type(c) for c in system.components]
     for ours, theirs in zip(system.components, again.components, strict=True):

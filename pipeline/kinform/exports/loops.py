@@ -120,6 +120,8 @@ def held_rates(model: ExportModel, found: Loops, lost: list[str], remarks: list[
 def singular(model: ExportModel) -> tuple[str, ...]:
     """A sentence where the start is a singular pose: what is redundant there is not so along our run."""
     run = model.simulation
+    if model.refused:
+        return (f"a motion to compare with: ours was refused, as {model.refused}",)
     if run is None or not len(run.rank) or run.rank.max() <= run.rank[0]:
         return ()
     return (

@@ -52,6 +52,8 @@ class ExportModel:
     kinematics: Kinematics
     simulation: Simulation | None
     """Our own run, where there is one: done or stopped."""
+    refused: str
+    """Why our own simulation was refused, else ""."""
     system: System
     """Without levels."""
     nested: System
@@ -104,6 +106,7 @@ def export_model(design: Design) -> ExportModel:
     if design.ranged is None:
         raise StageError("`kinform export`", "joints")
     assembly, run = design.assembly, design.simulation
+    refused = run.reason if run is not None and run.status == "refused" else ""
     if run is not None and run.status not in ("done", "stopped"):
         run = None
     kinematics, gears = design.ranged, all(part.mesh is None for part in assembly.parts)
@@ -121,6 +124,7 @@ def export_model(design: Design) -> ExportModel:
         assembly=assembly,
         kinematics=kinematics,
         simulation=run,
+        refused=refused,
         system=behaviour.system,
         nested=behaviour.nested,
         masses=() if design.mass is None else design.mass.bodies,

@@ -35,6 +35,8 @@ def place_screw(links: Index, numbers: Table, state: Table, screws: Table, i: in
     w0, w1, w2 = turned(state, p, *three(numbers, i, AXIS))
     x0, x1, x2 = place(state, p, *three(numbers, i, POINT))
     s0, s1, s2 = turned(state, p, *three(numbers, i, SLIDE))
+    if not math.isfinite(q):
+        q = math.nan  # of infinity the sine is an error outside of compiled code
     sine, versed = math.sin(q), 1.0 - math.cos(q)
     for column in range(4):
         # Columns of the rotation, then the arm from the axis, each turned about it (Rodrigues).
