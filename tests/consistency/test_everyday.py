@@ -10,6 +10,7 @@ from fixtures.generators.writers import binary_stl
 
 from kinform import stages
 from kinform.consistency import check
+from kinform.errors import InputError
 from kinform.model.findings import Finding
 from kinform.reports.words import place
 
@@ -106,3 +107,12 @@ ratio = {ratio!r}
 def test_places_are_free_of_rounding_errors():
     finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(0.0766, -2.4e-19, 0.013))
     assert place(finding) == "(76.6, 0, 13) mm"
+
+
+def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
+    path = manifest(tmp_path, {"block": box(0, 1, 0, 1, 0, 1)}, "[simulation]\nduration = 2\nstep = 1e-9\n")
+    with pytest.raises(InputError) as caught:
+        stages.import_(path)
+    (problem,) = caught.value.problems
+    assert "2e+09 output times, and 1,000,000 are the most" in problem.message
+    assert problem.line == 10
