@@ -31,3 +31,11 @@ def test_mobility_says_what_moves_what_is_redundant_and_draws_it(kinform, result
     assert (tmp_path / "graph.dot").read_text().startswith("graph ")
     refused = kinform("show", results, "mobility", "--graph", tmp_path / "graph.png")
     assert refused.returncode == 2 and "neither in .svg nor in .dot" in refused.stderr
+
+
+def test_the_lead_of_a_screw_is_in_the_units_of_the_design(kinform, derive_design, tmp_path):
+    path = tmp_path / "screw.h5"
+    results_file.write(derive_design(FOUR_BAR.parents[2] / "pairs" / "screw_right" / "screw_right.toml"), path)
+    shown = kinform("show", path, "mobility", COLUMNS="200")
+    assert " mm a turn" in shown.stdout
+    assert " m a turn" not in shown.stdout

@@ -91,7 +91,11 @@ def _freedoms(design: Design) -> Rows:
     for freedom in kinematics.mobility.named:
         rates = follower_rates(freedom, joints, lengths.unit, lengths.metres)
         grid.add(
-            freedom_text(freedom, lambda point: f"({lengths.point(point)}) {lengths.unit}"),
+            freedom_text(
+                freedom,
+                lambda point: f"({lengths.point(point)}) {lengths.unit}",
+                lambda lead: f"{lengths.length(lead)} {lengths.unit}",
+            ),
             freedom.driver or NONE,
             _some([str(name) for name in motions.twists(freedom)]),
             _some([f"{name} {rate}" for name, rate in rates]) or NONE,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._words import counted
+from kinform.consistency._words import counted, quoted
 from kinform.function import resolve
 from kinform.model.kinematics import Kinematics
 
@@ -25,7 +25,8 @@ def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, 
         return "", ""
     if joint.type == "general" and joint.freedoms > 0:
         return "unknown", f"joint '{joint.name}' is general, with {counted(joint.freedoms, 'freedom')}"
-    return "absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}"
+    short = ("absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}")
+    return _not_joined(context, name) or short
 
 
 def _not_joined(context: Context, name: str) -> tuple[str, str] | None:
@@ -35,5 +36,9 @@ def _not_joined(context: Context, name: str) -> tuple[str, str] | None:
         return None
     for comparison in compared:
         if comparison.intended.name == name and comparison.through and comparison.right_type:
-            return "unknown", f"joint '{name}' is carried by loose parts between its bodies"
+            parts = quoted(comparison.through)
+            return "unknown", (
+                f"joint '{name}' is carried by loose parts between its bodies, beside or through {parts}: fasten what is "
+                "loose to one of them with a [[group]]"
+            )
     return None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from kinform.consistency._context import Context
 from kinform.function import resolve
@@ -68,11 +70,12 @@ def coupled_through(context: Context, kinematics: Kinematics, stated: Stated) ->
 
 def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupling, bool]] | None:
     """The fewest couplings that lead from the one joint to the other, each with whether it is taken forwards."""
+    links = (*kinematics.couplings, *_leads(kinematics))
     came: dict[str, tuple[str, Coupling, bool]] = {}
     queue = deque([first])
     while queue and second not in came:
         name = queue.popleft()
-        for coupling in kinematics.couplings:
+        for coupling in links:
             for here, there, forward in ((*coupling.joints, True), (*coupling.joints[::-1], False)):
                 if here == name and there != first and there not in came:
                     came[str(there)] = (name, coupling, forward)
@@ -85,3 +88,23 @@ def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupli
         name, coupling, forward = came[name]
         out.append((coupling, forward))
     return out[::-1]
+
+
+def _leads(kinematics: Kinematics) -> list[Coupling]:
+    """Each screw with the slide that it moves: its own value is in as fixed a ratio to that of the slide as the turn
+    beside it, where all freedoms have one ratio."""
+    types = {joint.name: joint.type for joint in kinematics.joints}
+    out = []
+    for coupling in kinematics.couplings:
+        slides = [name for name in coupling.joints if types[name] == "prismatic"]
+        if coupling.kind != "screw" or len(slides) != 1:
+            continue
+        rates = []
+        for freedom in kinematics.mobility.named:
+            moved = {name: rate for name, _, rate in freedom.drives}
+            if coupling.through in moved or slides[0] in moved:
+                rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
+        ratios = [slide / screw for slide, screw in rates if screw]
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW * abs(ratios[0]):
+            out.append(replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0]))
+    return out

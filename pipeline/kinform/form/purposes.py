@@ -31,6 +31,9 @@ from kinform.model.function import (
 
 __all__ = ["Purposes"]
 
+OUTPUTS = 1_000_000
+"""Output times of a run: more would fill the memory before anything is solved."""
+
 AXIS = ("revolute", "prismatic", "cylindrical", "planar", "screw", "universal")
 POINT = ("revolute", "cylindrical", "spherical", "screw", "universal")
 LINEAR = ("prismatic",)
@@ -350,6 +353,12 @@ class Purposes:
             return None
         if table.step > table.duration:
             self.scope.complain("the step is longer than the duration", "give a shorter step", "simulation", "step")
+        elif table.duration / table.step > OUTPUTS:
+            self.scope.complain(
+                f"the step gives {table.duration / table.step:.3g} output times, and {OUTPUTS:,} are the most",
+                "give a longer step: it is the time between outputs, and the solver chooses its own steps",
+                "simulation", "step",
+            )  # fmt: skip
         initial = tuple(
             InitialValue(
                 self.joint(name, "simulation", "initial", name), value.position, value.velocity,

@@ -20,8 +20,10 @@ def metres(point: Array) -> str:
     return "(" + ", ".join(f"{round(float(x), 6) + 0.0:.6g}" for x in point) + ") m"
 
 
-def freedom_text(freedom: Freedom, place: Callable[[Array], str]) -> str:
-    """ "crank turns about z through (0, 0, 0) m"; `place` writes points."""
+def freedom_text(
+    freedom: Freedom, place: Callable[[Array], str], lead: Callable[[float], str] = "{:.4g} m".format
+) -> str:
+    """ "crank turns about z through (0, 0, 0) m"; `place` writes points, `lead` what a screw advances."""
     axis = axis_word(freedom.axis)
     subject = str(freedom.body)
     if freedom.driver is None:
@@ -32,7 +34,7 @@ def freedom_text(freedom: Freedom, place: Callable[[Array], str]) -> str:
     if freedom.idle:
         return f"{subject} only spins {through}"
     if freedom.kind == "screw":
-        return f"{subject} screws {through}, {freedom.pitch:.4g} m a turn"
+        return f"{subject} screws {through}, {lead(freedom.pitch)} a turn"
     return f"{subject} turns {through}"
 
 

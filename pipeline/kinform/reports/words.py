@@ -33,7 +33,7 @@ def place(finding: Finding) -> str | None:
     """ "(1, 0, -20) mm", or None."""
     if finding.place is None:
         return None
-    return "(" + ", ".join(f"{1000.0 * x + 0.0:.4g}" for x in finding.place) + ") mm"
+    return "(" + ", ".join(f"{round(1000.0 * x, 9) + 0.0:.4g}" for x in finding.place) + ") mm"
 
 
 def details(finding: Finding) -> dict[str, str]:

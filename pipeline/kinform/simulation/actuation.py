@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,7 +123,7 @@ class Actuation:
             if self._led and self._led[-1][0] == q:
                 self.conflicts.append((slot.name, "two drives prescribe its motion"))
                 return
-            signal = self._followed(actor) if self._with_mass else actor.signal
+            signal = self._followed(actor, slot.kind.coordinates[0][1]) if self._with_mass else actor.signal
             self._led.append((q, v, signal, actor.name))
         elif isinstance(actor, EndStop):
             for sense, limit in ((-1, actor.lower), (1, actor.upper)):
@@ -131,14 +132,15 @@ class Actuation:
         else:
             self.actors.append(_acts(system, slot.name, q, v, actor))
 
-    def _followed(self, actor: MotionDrive) -> Signal:
+    def _followed(self, actor: MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""
         signal = smooth(actor.signal)
         deviation = getattr(signal, "deviation", None)
         if deviation is not None:
+            words = f"{math.degrees(deviation):.3g}°" if turns else f"{1e3 * deviation:.3g} mm"
             self.notes.append(
                 f"the table that drives {actor.subject} is followed by a cubic spline at rest at its ends, "
-                f"within {deviation:.3g} rad or m of the table's straight lines"
+                f"within {words} of the table's straight lines"
             )
         return signal
 

@@ -63,7 +63,8 @@ class Follower:
         still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < 1e-8
         touched = np.abs(rows[:, self.unknown]).max(axis=0, initial=0.0) > 0.0
         self._determined: Index = self.unknown[still & touched]
-        self._open: Index = self.unknown[~still & touched]
+        self.undetermined: Index = self.unknown[~still & touched]
+        """Rates of loops that the led joints leave open."""
 
     def rates(self, place: float) -> Array:
         """(n,) rates at the present pose for the led rates at `place`; least rates where loose."""
@@ -85,7 +86,7 @@ class Follower:
             carried = states_at(self.mechanism, self.q[None], v[None], np.zeros((1, len(v)))).accelerations[0]
             gap = -self.mechanism.closure_bias(carried) - rows @ a
             a[self.unknown] = factor(rows[:, self.unknown], self._scale, self.rank).solve(gap)
-            a[self._open] = np.nan
+            a[self.undetermined] = np.nan
         return a
 
     def open_rates(self, place: float) -> float:

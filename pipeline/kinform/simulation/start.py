@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,10 @@ OVERDRIVEN = (
     "drives and initial values state more than the loops leave free and contradict each other, "
     "or the mechanism starts in a singular pose (a dead point)"
 )
+
+
+LEAST = 1e-9
+"""Relative: rates above this share of the greatest are motions."""
 
 
 @dataclass(frozen=True)
@@ -113,20 +117,20 @@ def begin(
         names = ", ".join(sorted(value.name for value in moving))
         notes += (f"initial velocities of {names} play no part: without forces nothing keeps them going",)
         moving = []
-    speed = np.concatenate([actuation.led_rates(0.0), [value.velocity for value in moving]])
-    pace = Led(
-        np.concatenate([actuation.led_q, np.array([m.q for m in moving], dtype=np.int64)]),
-        np.concatenate([actuation.led, np.array([m.v for m in moving], dtype=np.int64)]),
-        lambda s: speed,
-        lambda s: speed,
-    )
-    follower = Follower(mechanism, pace, q, settings)
+    follower = Follower(mechanism, _pace(actuation, moving), q, settings)
     v = follower.rates(0.0)
-    if follower.open_rates(0.0) > settings.open * max(1.0, float(np.abs(v).max(initial=0.0))):
+    if _opens(follower, v):
         why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
-        return Start(q, v, notes, (_named(mechanism, pace.v), f"initial velocities: {why}"))
+        return Start(q, v, notes, (_named(mechanism, follower.led.v), f"initial velocities: {why}"))
+    still = [value for value in own if value.velocity == 0.0 and value.v in follower.undetermined]
+    if still:
+        # joints whose velocity is stated or left at zero stay at rest where the loops allow it
+        held = Follower(mechanism, _pace(actuation, [*moving, *still]), q, settings)
+        rates = held.rates(0.0)
+        if not held.overdriven and not _opens(held, rates):
+            follower, v = held, rates
     if coasting:
-        notes += _at_rest(mechanism, stated, led, q, v)
+        notes += _at_rest(mechanism, stated, led, q, v) + _least(mechanism, follower, v)
     return Start(q, v, notes)
 
 
@@ -142,6 +146,34 @@ def _at_rest(mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q:
         and np.array_equal(q[slot.q], mechanism.start[slot.q])
     ]
     return (f"no initial value is stated, so at rest at the pose of the meshes: {', '.join(still)}",) if still else ()
+
+
+def _pace(actuation: Actuation, moving: Sequence[Stated]) -> Led:
+    """The rates of the prescribed joints at time zero, and those that are stated."""
+    speed = np.concatenate([actuation.led_rates(0.0), [value.velocity for value in moving]])
+    return Led(
+        np.concatenate([actuation.led_q, np.array([value.q for value in moving], dtype=np.int64)]),
+        np.concatenate([actuation.led, np.array([value.v for value in moving], dtype=np.int64)]),
+        lambda s: speed,
+        lambda s: speed,
+    )
+
+
+def _opens(follower: Follower, v: Array) -> bool:
+    """Whether loops open at the rates `v`, which are the follower's."""
+    return follower.open_rates(0.0) > follower.settings.open * max(1.0, float(np.abs(v).max(initial=0.0)))
+
+
+def _least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
+    """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either side."""
+    rates = np.abs(v[follower.undetermined])
+    moving = follower.undetermined[rates > LEAST * float(rates.max(initial=0.0))]
+    if not len(moving):
+        return ()
+    return (
+        "what is stated does not decide the initial velocities of these joints of loops, so the least are taken: "
+        f"{_named(mechanism, moving)}",
+    )
 
 
 def _named(mechanism: Mechanism, rates: NDArray[np.int64]) -> str:

@@ -1,0 +1,118 @@
+"""What a newcomer's manifests meet: loose pins that carry a driven joint, screw jacks with a stated coupling."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from fixtures.generators.solids import Solid, bore, box, cut, join, rod
+from fixtures.generators.writers import binary_stl
+
+from kinform import stages
+from kinform.consistency import check
+from kinform.errors import InputError
+from kinform.model.findings import Finding
+from kinform.reports.words import place
+
+
+def manifest(folder: Path, parts: dict[str, Solid], rest: str) -> Path:
+    """A manifest in mm with the parts' meshes beside it."""
+    text = 'schema = 1\n[assembly]\nname = "everyday"\nunits = "mm"\n'
+    for name, solid in parts.items():
+        binary_stl(folder / f"{name}.stl", solid.arrays())
+        text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\n'
+    path = folder / "everyday.toml"
+    path.write_text(text + rest)
+    return path
+
+
+def checked(path: Path):
+    """The report on what the meshes say."""
+    return check(stages.joints(stages.contacts(stages.import_(path))))
+
+
+def test_a_drive_through_a_loose_pin_is_undecided_not_wrong(tmp_path):
+    bars = {
+        name: cut(box(-10, 60, -10, 10, z, z + 6), bore(3.05, z, z + 6, 48))
+        for name, z in (("base", 0.0), ("arm", 6.1))
+    }
+    pin = join(rod(5, -2.05, -0.05, 48), rod(3, -0.05, 12.15, 48), rod(5, 12.15, 14.15, 48))
+    path = manifest(
+        tmp_path, bars | {"pin": pin},
+        """
+[function]
+mobility = 1
+[[function.joint]]
+name = "swing"
+between = ["base", "arm"]
+type = "revolute"
+axis = [0, 0, 1]
+point = [0, 0, 0]
+[[function.drive]]
+joint = "swing"
+kind = "effort"
+law = {type = "constant", value = 1}
+""",
+    )  # fmt: skip
+    report = checked(path)
+    assert not [f for f in report.findings if f.code in ("KF401", "KF402", "KF409")]
+    (rule,) = (rule for rule in report.rules if rule.code == "KF409")
+    assert rule.outcome == "inconclusive"
+    assert "'pin'" in rule.reason
+    assert "[[group]]" in rule.reason
+
+
+@pytest.mark.parametrize(("ratio", "code"), [(2 / 360, None), (-2 / 360, "KF411"), (4 / 360, "KF411")])
+def test_the_coupling_of_a_screw_with_what_it_lifts(tmp_path, ratio, code):
+    """Left-handed, 2 mm a turn: as the nut turns back against the spindle, the table rises 2 mm."""
+    column = box(40, 48, -6, 6, 0, 90)
+    parts = {
+        "base": join(cut(box(-30, 60, -20, 20, -20, 0), bore(5.05, -20, 0, 64)), column),
+        "spindle": join(rod(5, -30, 30, 64), rod(8, 30, 40, 64), rod(4, 40, 50.1, 64), rod(6, 50.1, 53, 64)),
+        "table": cut(
+            box(-20, 60, -20, 20, 40.05, 50), bore(4.05, 40.05, 50, 64), box(39.95, 48.05, -6.05, 6.05, 39, 51)
+        ),
+    }
+    path = manifest(
+        tmp_path, parts,
+        f"""
+[[assume]]
+between = ["base", "spindle"]
+type = "screw"
+axis = [0, 0, 1]
+point = [0, 0, 0]
+pitch = -2
+reason = "not modelled"
+[[function.joint]]
+name = "thread"
+between = ["spindle", "base"]
+type = "screw"
+axis = [0, 0, 1]
+point = [0, 0, 0]
+pitch = -2
+[[function.joint]]
+name = "lift"
+between = ["base", "table"]
+type = "prismatic"
+axis = [0, 0, 1]
+[[function.coupling]]
+joints = ["lift", "thread"]
+ratio = {ratio!r}
+""",
+    )  # fmt: skip
+    report = checked(path)
+    assert [f.code for f in report.findings if f.code in ("KF411", "KF903")] == ([code] if code else [])
+
+
+def test_places_are_free_of_rounding_errors():
+    finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(0.0766, -2.4e-19, 0.013))
+    assert place(finding) == "(76.6, 0, 13) mm"
+
+
+def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
+    path = manifest(tmp_path, {"block": box(0, 1, 0, 1, 0, 1)}, "[simulation]\nduration = 2\nstep = 1e-9\n")
+    with pytest.raises(InputError) as caught:
+        stages.import_(path)
+    (problem,) = caught.value.problems
+    assert "2e+09 output times, and 1,000,000 are the most" in problem.message
+    assert problem.line == 10
