@@ -106,18 +106,34 @@ class Table:
         return 0.0
 
 
-class Spline:
-    """The cubic spline through a table that comes to rest at both ends, held outside.
+OVERSHOOT = 0.02
+"""Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
 
-    Its rate is continuous, so that a finite effort can follow it.
+
+class Spline:
+    """A cubic curve through a table that comes to rest at both ends, held outside.
+
+    Its rate is continuous, so that a finite effort can follow it. It is the cubic spline, whose acceleration is continuous
+    too, while that stays between the rows to within OVERSHOOT; through coarser tables the monotone curve of Fritsch and
+    Carlson (1980), which rests where the table does and never leaves its rows.
     """
 
     def __init__(self, table: Table):
-        from scipy.interpolate import CubicSpline
+        from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator
 
         self.knots = table.knots
         self._ends = (table.levels[0], table.levels[-1])
-        self.curve: Any = CubicSpline(table.knots, table.levels, bc_type="clamped")
+        levels = np.asarray(table.levels)
+        self.curve: Any = CubicSpline(table.knots, levels, bc_type="clamped")
+        between = self.curve(np.linspace(table.knots[:-1], table.knots[1:], 17))
+        low, high = np.minimum(levels[:-1], levels[1:]), np.maximum(levels[:-1], levels[1:])
+        outside = max(float((between - high).max()), float((low - between).max()))
+        self.monotone = outside > OVERSHOOT * float(levels.max() - levels.min())
+        """Whether the cubic spline would leave the rows of the table."""
+        if self.monotone:
+            slopes = PchipInterpolator(table.knots, levels).derivative()(table.knots)
+            slopes[[0, -1]] = 0.0
+            self.curve = CubicHermiteSpline(table.knots, levels, slopes)
         self._rate: Any = self.curve.derivative(1)
         self._acceleration: Any = self.curve.derivative(2)
         middles = np.linspace(table.knots[:-1], table.knots[1:], 17).ravel()

@@ -21,7 +21,7 @@ from kinform.behaviour.components import (
     VoltageSource,
 )
 from kinform.behaviour.shafts import Actor
-from kinform.behaviour.signals import Signal, smooth
+from kinform.behaviour.signals import Signal, Spline, smooth
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism import Mechanism, Slot
 
@@ -135,11 +135,12 @@ class Actuation:
     def _followed(self, actor: MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""
         signal = smooth(actor.signal)
-        deviation = getattr(signal, "deviation", None)
-        if deviation is not None:
+        if isinstance(signal, Spline):
+            deviation = signal.deviation
             words = f"{math.degrees(deviation):.3g}°" if turns else f"{1e3 * deviation:.3g} mm"
+            curve = "monotone cubic curve" if signal.monotone else "cubic spline"
             self.notes.append(
-                f"the table that drives {actor.subject} is followed by a cubic spline at rest at its ends, "
+                f"the table that drives {actor.subject} is followed by a {curve} at rest at its ends, "
                 f"within {words} of the table's straight lines"
             )
         return signal
