@@ -38,7 +38,7 @@ _ORDER = (
     signals.law, motion.place_screw, motion.place_ball, motion.place_links, motion.twist_links,
     masses.momentum, masses.heavy, masses.inertias, masses.wrenches, masses.mass_matrix, masses.cholesky,
     masses.solve_cholesky, forces.controlled, forces.drive, forces.push, forces.pace, forces.loads, forces.between,
-    loops.line_of, loops.row_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
+    loops.line_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
     equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
     crossings.alike, crossings.tip, crossings.laid,
     explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
