@@ -90,10 +90,10 @@ def hung(*drives):
     return model
 
 
-def test_a_law_that_is_not_a_number_ends_the_run_and_is_said_to_be_the_cause():
+def test_a_law_that_is_not_a_number_is_refused_and_said_to_be_the_cause():
     run = simulate_system(hung(EffortDrive("d", "d", Constant(np.nan))).system(), Course(1.0, 0.1, DOWN))
-    assert run.status != "done"
-    assert "not a number" in run.reason or "not numbers" in run.reason
+    assert run.status == "refused"
+    assert "not a finite number" in run.reason
 
 
 def test_an_undamped_spring_too_stiff_to_follow_ends_the_run_within_its_budget():
