@@ -37,9 +37,7 @@ class Engine:
         tables = run.dynamics.tables
         with _quiet(self.compiled):
             return int(
-                self._advance(
-                    tables.ints, tables.nums, tables.work, run.y, run.clock, run.tally, run.times, run.out
-                )
+                self._advance(tables.ints, tables.nums, tables.work, run.y, run.clock, run.tally, run.times, run.out)
             )
 
     def derivative(self, run: Run, t: float, y: Array, dy: Array) -> float:

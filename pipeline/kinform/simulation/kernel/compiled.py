@@ -69,8 +69,9 @@ def _renamed(function: Callable[..., Any], known: dict[str, Any], digest: str) -
 
 def _kinds() -> dict[str, Any]:
     """What the annotations of the kernel are to numba."""
-    from numba import types as nb
+    import numba
 
+    nb: Any = numba.types
     whole, real, row = nb.int64, nb.float64, nb.float64[::1]
     index, table = whole[:, ::1], real[:, ::1]
     tables = (nb.UniTuple(index, 10), nb.UniTuple(table, 12), nb.UniTuple(table, 9))
@@ -109,7 +110,9 @@ def compiled() -> types.SimpleNamespace:
         if collecting:
             gc.enable()
     made = {name: known[name].overloads[known[name].signatures[0]] for name in _ENTRIES}
-    pointers = [made[name].library.get_pointer_to_function(made[name].fndesc.llvm_cfunc_wrapper_name) for name in _POINTERS]
+    pointers = [
+        made[name].library.get_pointer_to_function(made[name].fndesc.llvm_cfunc_wrapper_name) for name in _POINTERS
+    ]
     # The entry itself: numba's dispatcher knows no type of a pointer.
     advance = partial(made["advance"].entry_point, *pointers)
     return types.SimpleNamespace(**{name: known[name] for name in _POINTERS}, advance=advance)
