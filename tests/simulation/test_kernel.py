@@ -98,7 +98,6 @@ def test_a_law_that_is_not_a_number_is_refused_by_name():
 
 def test_an_effort_that_overflows_ends_the_run_and_is_said_to_be_the_cause():
     run = simulate_system(hung(EffortDrive("d", "d", Constant(1e308))).system(), Course(1.0, 0.1, DOWN))
-    print(run.status, run.reason)
     assert run.status in ("refused", "stopped")
     assert "not a number" in run.reason or "not numbers" in run.reason
 

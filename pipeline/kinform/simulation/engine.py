@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -36,11 +37,8 @@ class Engine:
         tables = run.dynamics.tables
         with _quiet(self.compiled):
             return int(
-                self._advance(
-                    self._derivative, self._project, tables.ints, tables.nums, tables.work,
-                    run.y, run.clock, run.tally, run.times, run.out,
-                )
-            )  # fmt: skip
+                self._advance(tables.ints, tables.nums, tables.work, run.y, run.clock, run.tally, run.times, run.out)
+            )
 
     def derivative(self, run: Run, t: float, y: Array, dy: Array) -> float:
         """See `kernel.equations.derivative`."""
@@ -84,7 +82,8 @@ def ready() -> bool:
 def engine(*, compiled: bool) -> Engine:
     """The kernel's entries, compiled (from numba's cache where there is one) or not."""
     if not compiled:
-        return Engine(False, equations.derivative, equations.project, explicit.advance)
+        advance = partial(explicit.advance, equations.derivative, equations.project)
+        return Engine(False, equations.derivative, equations.project, advance)
     from kinform.simulation.kernel.compiled import compiled as functions
 
     made = functions()

@@ -92,7 +92,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     scale = np.column_stack([mechanism.scale, ~mechanism.moves[mechanism.link_of].any(axis=0)])[order.v_order]
     gears = np.hstack([mechanism.gear_v[:, order.v_order], mechanism.gear_q[:, order.q_order]])
     values, pieces = signals.tables()
-    mode = np.zeros((2, width), dtype=np.int64)
+    mode = np.zeros((3, width), dtype=np.int64)
     mode[1, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
@@ -105,7 +105,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     )  # fmt: skip
     L, size = len(mechanism.parent), nq + n + states + 1
     shapes = (
-        (L, 40), (n, 6), (n, n), (count + 1, max(n, 1)), (n, n), (n, n), (9, width), (19, size), (7, size),
+        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (9, width), (19, size), (7, size),
     )  # fmt: skip
     work = tuple(np.zeros(shape) for shape in shapes)
     work[layout.STATE][0, [0, 4, 8]] = 1.0

@@ -11,9 +11,10 @@ import gc
 import hashlib
 import inspect
 import os
+import sys
 import types
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -32,22 +33,12 @@ from kinform.simulation.kernel import (
 
 __all__ = ["compiled", "is_cached"]
 
-_TABLES = "UniTuple(i8[:, ::1], 10), UniTuple(f8[:, ::1], 12), UniTuple(f8[:, ::1], 9)"
-_TYPES = {
-    "int": "i8", "float": "f8", "bool": "b1", "Row": "f8[::1]", "Counts": "i8[::1]",
-    "Table": "f8[:, ::1]", "Index": "i8[:, ::1]",
-    "Ints": "UniTuple(i8[:, ::1], 10)", "Nums": "UniTuple(f8[:, ::1], 12)", "Work": "UniTuple(f8[:, ::1], 9)",
-    "Derivative": f"FunctionType(f8({_TABLES}, f8, f8[::1], f8[::1]))",
-    "Project": f"FunctionType(UniTuple(f8, 2)({_TABLES}, f8, f8[::1], f8))",
-}  # fmt: skip
-"""What the annotations of the kernel are to numba."""
-
 _ORDER = (
     vectors.three, vectors.put, vectors.add, vectors.cross, vectors.dot, vectors.turned, vectors.place,
     signals.law, motion.place_screw, motion.place_ball, motion.place_links, motion.twist_links,
     masses.momentum, masses.heavy, masses.inertias, masses.wrenches, masses.mass_matrix, masses.cholesky,
     masses.solve_cholesky, forces.controlled, forces.drive, forces.push, forces.pace, forces.loads, forces.between,
-    loops.line_of, loops.row_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
+    loops.line_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
     equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
     crossings.alike, crossings.tip, crossings.laid,
     explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
@@ -63,7 +54,7 @@ _ENTRIES = (*_POINTERS, "advance")
 
 def _digest() -> str:
     modules = (layout, vectors, signals, motion, masses, forces, loops, equations, crossings, explicit)
-    text = "".join(inspect.getsource(module) for module in modules) + repr(_TYPES)
+    text = "".join(inspect.getsource(module) for module in (*modules, sys.modules[__name__]))
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
@@ -76,18 +67,33 @@ def _renamed(function: Callable[..., Any], known: dict[str, Any], digest: str) -
     return made
 
 
-def _signature(function: Callable[..., Any]) -> str:
+def _kinds() -> dict[str, Any]:
+    """What the annotations of the kernel are to numba."""
+    import numba
+
+    nb: Any = numba.types
+    whole, real, row = nb.int64, nb.float64, nb.float64[::1]
+    index, table = whole[:, ::1], real[:, ::1]
+    tables = (nb.UniTuple(index, 10), nb.UniTuple(table, 12), nb.UniTuple(table, 9))
+    return {
+        "int": whole, "float": real, "bool": nb.boolean, "Row": row, "Counts": whole[::1], "Table": table,
+        "Index": index, "Ints": tables[0], "Nums": tables[1], "Work": tables[2],
+        "Derivative": nb.ExternalFunctionPointer(real(*tables, real, row, row), int),
+        "Project": nb.ExternalFunctionPointer(nb.UniTuple(real, 2)(*tables, real, row, real), int),
+    }  # fmt: skip
+
+
+def _signature(function: Callable[..., Any], kinds: Mapping[str, Any]) -> tuple[Any, ...]:
     """Types of the arguments, from their annotations."""
-    kinds = [_TYPES[argument.annotation] for argument in inspect.signature(function).parameters.values()]
-    return f"({', '.join(kinds)})"
+    return tuple(kinds[argument.annotation] for argument in inspect.signature(function).parameters.values())
 
 
 @cache
 def compiled() -> types.SimpleNamespace:
-    """The compiled entries `derivative`, `project` and `advance`."""
+    """The compiled entries `derivative`, `project` and `advance`; the last without its first two arguments."""
     import numba
 
-    digest = _digest()
+    digest, kinds = _digest(), _kinds()
     known: dict[str, Any] = {}
     config: Any = numba.config
     collecting, level = gc.isenabled(), config.OPT
@@ -98,12 +104,18 @@ def compiled() -> types.SimpleNamespace:
     try:
         for function in _ORDER:
             name = function.__name__
-            known[name] = _jit(numba, _signature(function), _renamed(function, known, digest), name)
+            known[name] = _jit(numba, _signature(function, kinds), _renamed(function, known, digest), name)
     finally:
         config.OPT = level
         if collecting:
             gc.enable()
-    return types.SimpleNamespace(**{name: known[name] for name in _ENTRIES})
+    made = {name: known[name].overloads[known[name].signatures[0]] for name in _ENTRIES}
+    pointers = [
+        made[name].library.get_pointer_to_function(made[name].fndesc.llvm_cfunc_wrapper_name) for name in _POINTERS
+    ]
+    # The entry itself: numba's dispatcher knows no type of a pointer.
+    advance = partial(made["advance"].entry_point, *pointers)
+    return types.SimpleNamespace(**{name: known[name] for name in _POINTERS}, advance=advance)
 
 
 def is_cached() -> bool:
@@ -116,7 +128,7 @@ def is_cached() -> bool:
     return any(any(place.glob(f"{depth}{pattern}")) for place in places for depth in ("", "*/"))
 
 
-def _jit(numba: Any, signature: str, function: Any, name: str) -> Any:
+def _jit(numba: Any, signature: tuple[Any, ...], function: Any, name: str) -> Any:
     """Compile, with the cache where the machine allows one."""
     options = {
         "nopython": True, "error_model": "numpy",

@@ -17,6 +17,7 @@ from kinform.simulation.kernel.layout import (
     CONSTANTS,
     COUNTS,
     FORCE,
+    GAIN,
     GAP,
     GEARS,
     HALF,
@@ -45,11 +46,12 @@ from kinform.simulation.kernel.layout import (
     STATE,
     STATES,
     TRIAL,
+    TWIST,
     VECTORS,
     WIDTH,
     Q,
 )
-from kinform.simulation.kernel.loops import back_substitute, eliminate, gained, gap_of, gather, row_of
+from kinform.simulation.kernel.loops import back_substitute, eliminate, gained, gap_of, gather
 from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, solve_cholesky, wrenches
 from kinform.simulation.kernel.motion import place_links, twist_links
 from kinform.simulation.kernel.signals import law
@@ -167,14 +169,14 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
             vectors[ACC, k], vectors[NEED, k] = vectors[FORCE, k], 0.0
         solve_cholesky(matrix, n, vectors[ACC])
     else:
-        gather(ints, nums, work)
+        gather(ints, nums, work, rank)
         margin, _ = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
         if margin == 0.0:
             return 0.0
         if not reduce(matrix, rows, work[HALF], small, mode, n, rank, led):
             return -1.0
         for r in range(rank):
-            vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[0, r])
+            vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[0, r], GAIN)
         back_substitute(rows, vectors, rank)
         for k in range(n):
             if columns[k, SIGNAL] >= 0:
@@ -246,7 +248,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
         if not factored or before > 1e-9:
             inertias(links, nums[LINKS], state)
             mass_matrix(links, columns, state, screws, matrix, vectors, False)
-            gather(ints, nums, work)
+            gather(ints, nums, work, rank)
             margin, kept = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
             if margin == 0.0:
                 return size, 0.0
@@ -266,13 +268,13 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
         rest = abs(gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, row))
         if rest > TORN:
             size = max(size, rest)
-    spare = len(rows) - 1
+    twist_links(links, state, screws, y, first)
     for r in range(rank):
-        row_of(ints, nums, work, mode[0, r], spare)
-        total = 0.0
-        for k in range(n):
-            total -= rows[spare, k] * y[first + k]
-        vectors[GAP, r] = total
+        total, gear = gained(closures, nums[CLOSURES], state, length, mode[0, r], TWIST), mode[0, r] - 6 * len(closures)
+        if gear >= 0:
+            for k in range(n):
+                total += nums[GEARS][gear, k] * y[first + k]
+        vectors[GAP, r] = -total
     back_substitute(rows, vectors, rank)
     for k in range(n):
         vectors[ACC, k] = 0.0

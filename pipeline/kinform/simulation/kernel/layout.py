@@ -43,7 +43,7 @@ LINK, BEFORE, SIGNAL = range(3)
 ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
 """GAIN: acceleration at constant rates. INERT: m, m·c, then xx yy zz xy xz yz about the centre."""
 
-# ints[MODE]: independent rows, and rates in the order dependent, free, led. work[VECTORS]:
+# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is. work[VECTORS]:
 FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT = range(9)
 
 # ints[ACTORS], and their kinds.

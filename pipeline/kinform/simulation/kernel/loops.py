@@ -15,7 +15,6 @@ from kinform.simulation.kernel.layout import (
     COLUMNS,
     CONSTANTS,
     COUNTS,
-    GAIN,
     GAP,
     GEARS,
     LENGTH,
@@ -39,7 +38,7 @@ from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
 
-__all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of", "row_of"]
+__all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 
 def line_of(
@@ -55,42 +54,17 @@ def line_of(
     return m0, m1, m2, e0, e1, e2
 
 
-def row_of(ints: Ints, nums: Nums, work: Work, row: int, out: int) -> None:
-    """Writes row `row` of the closures into work[ROWS][out], by rates in their own order.
-
-    Rows 6c to 6c + 5 are the turn and the displacement over the length of the target relative to the
-    tip of loop c, along the axes of a frame that the tip carries; then come the gears.
-    """
-    n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
-    links, before, screws, rows = ints[LINKS], ints[COLUMNS], work[SCREWS], work[ROWS]
-    loop, axis = row // 6, row % 6
-    if loop >= len(closures):
-        for k in range(n):
-            rows[out, k] = nums[GEARS][row - 6 * len(closures), k]
-        return
-    for k in range(n):
-        rows[out, k] = 0.0
-    m0, m1, m2, f0, f1, f2 = line_of(nums[CLOSURES], work[STATE], length, loop, axis, closures[loop, 0])
-    for side in range(2):
-        k = links[closures[loop, side], TIP]
-        sign = 2.0 * side - 1.0
-        while k >= 0:
-            w0, w1, w2 = three(screws, k, 0)
-            l0, l1, l2 = three(screws, k, 3)
-            rows[out, k] += sign * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
-            k = before[k, BEFORE]
-
-
-def gained(closures: Index, numbers: Table, state: Table, length: float, row: int) -> float:
-    """Acceleration of the gap in row `row` at constant rates."""
+def gained(closures: Index, numbers: Table, state: Table, length: float, row: int, of: int) -> float:
+    """What the links' motions in state from column `of` on add to the gap in row `row` of a loop: its rate
+    for TWIST, its acceleration at constant rates for GAIN. 0 for gears, which know no links."""
     loop, axis = row // 6, row % 6
     if loop >= len(closures):
         return 0.0
     m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
     total = 0.0
     for side in range(2):
-        w0, w1, w2 = three(state, closures[loop, side], GAIN)
-        l0, l1, l2 = three(state, closures[loop, side], GAIN + 3)
+        w0, w1, w2 = three(state, closures[loop, side], of)
+        l0, l1, l2 = three(state, closures[loop, side], of + 3)
         total += (2.0 * side - 1.0) * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
     return total
 
@@ -126,8 +100,8 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
     n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
     count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
     led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
-    for row in range(count):
-        row_of(ints, nums, work, row, row)
+    ints[MODE][0, :count], ints[MODE][1, :n] = range(count), range(n)
+    gather(ints, nums, work, count)
     rows = work[ROWS][:count] * scale
     left = np.ones(count, dtype=bool)
     chosen: list[int] = []
@@ -150,15 +124,34 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
     ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
 
 
-def gather(ints: Ints, nums: Nums, work: Work) -> None:
-    """Writes the independent rows into work[ROWS], rates in the order of the mode."""
-    n, rank = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK]
-    rows, mode = work[ROWS], ints[MODE]
-    spare = len(rows) - 1
-    for r in range(rank):
-        row_of(ints, nums, work, mode[0, r], spare)
+def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
+    """Writes the first `count` rows of the mode into work[ROWS], rates in its order.
+
+    Rows 6c to 6c + 5 are the turn and the displacement over the length of the target relative to the
+    tip of loop c, along the axes of a frame that the tip carries; then come the gears.
+    """
+    n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
+    links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
+    state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
+    for c in range(n):
+        mode[2, mode[1, c]] = c
+    for r in range(count):
+        loop, axis = mode[0, r] // 6, mode[0, r] % 6
+        if loop >= len(closures):
+            for c in range(n):
+                rows[r, c] = gears[mode[0, r] - 6 * len(closures), mode[1, c]]
+            continue
         for c in range(n):
-            rows[r, c] = rows[spare, mode[1, c]]
+            rows[r, c] = 0.0
+        m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
+        for side in range(2):
+            k = links[closures[loop, side], TIP]
+            sign = 2.0 * side - 1.0
+            while k >= 0:
+                w0, w1, w2 = three(screws, k, 0)
+                l0, l1, l2 = three(screws, k, 3)
+                rows[r, mode[2, k]] += sign * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
+                k = before[k, BEFORE]
 
 
 def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> tuple[float, float]:

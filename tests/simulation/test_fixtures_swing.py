@@ -1,0 +1,69 @@
+"""Mechanisms from meshes, left to themselves: their loops stay closed, or the run does not claim to be done."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from known import FIXTURES
+
+from kinform import stages
+from kinform.model.function import SimulationRequest
+
+GENERAL = {"ball_bearing", "gear_pair", "geneva_driven", "rack_and_pinion"}
+"""With contacts that are no joint of a port model."""
+SINGULAR = {"parallelogram_flat", "shaky_truss"}
+"""Written in a pose where their loops branch, or hold only to first order."""
+ROUNDED = {"bennett", "bricard_rectangular"}
+"""Movable by proportions that the coordinates of a mesh file hold only to their rounding."""
+NAMES = sorted(path.parent.name for path in FIXTURES.glob("mechanisms/*/truth.json"))
+
+
+@pytest.fixture(scope="module")
+def swung(derive_design):
+    """A fixture under a slanted gravity, without drives."""
+    known = {}
+
+    def swing(name):
+        if name not in known:
+            found = derive_design(FIXTURES / "mechanisms" / name / f"{name}.toml")
+            request = SimulationRequest(gravity=np.array([3.0, -2.0, -9.0]), duration=0.12, step=0.02)
+            function = replace(found.assembly.function, drives=())
+            assembly = replace(found.assembly, simulation=request, function=function)
+            known[name] = stages.simulate(replace(found, assembly=assembly), level="dynamic").simulation
+        return known[name]
+
+    return swing
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_run_is_done_whose_loops_open_unsaid(name, swung):
+    run = swung(name)
+    if run.status == "done" and run.residual.max() > 1e-8:
+        assert name in ROUNDED
+        assert run.residual.max() < 1e-6
+        assert any("redundant loops open by up to" in said for said in run.assumptions)
+
+
+@pytest.mark.parametrize("name", sorted(set(NAMES) - GENERAL - SINGULAR))
+def test_sound_mechanisms_run_to_the_end(name, swung):
+    """Also those whose loops are redundant: a misfit of their meshes does not stop them."""
+    run = swung(name)
+    assert run.status == "done", run.reason
+    assert run.time[-1] == pytest.approx(0.12)
+
+
+@pytest.mark.parametrize("name", sorted(SINGULAR))
+def test_singular_starts_are_refused_with_their_joints(name, swung):
+    run = swung(name)
+    assert run.status == "refused"
+    assert "singular pose" in run.reason
+    assert run.reason.count("~") >= 3
+
+
+@pytest.mark.parametrize("name", sorted(GENERAL))
+def test_contacts_that_are_no_joint_are_refused_by_name(name, swung):
+    run = swung(name)
+    assert run.status == "refused"
+    assert "~" in run.failures[0][0]
