@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import fcl
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
+from kinform.collisions.entering import Probes, probes
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
 from kinform.contacts.boxes import together
 from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
@@ -191,6 +193,8 @@ class PairTest:
         ]
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
+        self.loose = max([self.scrape, *self._slacks])
+        """m: less deep, points of one may be in the other though the parts only mate."""
         self._bare = {pair for pair, patch in zip(self._mates, mates, strict=True) if patch.kind in _SHAPELESS}
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
@@ -252,6 +256,35 @@ class PairTest:
             if len(deep) and index.contains(deep).any():
                 return True
         return False
+
+    @cached_property
+    def probes(self) -> tuple[Probes, Probes]:
+        """Points on the facets that count."""
+        first, second = (
+            probes(mesh, surfaces.labels, own)
+            for mesh, surfaces, own in zip(self._meshes, self._surfaces, self.facets, strict=True)
+        )
+        return first, second
+
+    def heights(self, D: Array, chosen: Ints) -> Array:
+        """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the negative
+        of a distance that they keep at least."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        own, far = self.probes
+        count = len(own.points)
+        first, second = (self._shapes.index(name) for name in self.names)
+        mine, other = chosen[chosen < count], chosen[chosen >= count] - count
+        out = np.zeros(len(chosen))
+        out[chosen < count] = own.heights(second, np.linalg.inv(X), mine)
+        out[chosen >= count] = far.heights(first, X, other)
+        return out
+
+    def place(self, D: Array, chosen: Ints) -> Array:
+        """(3,) m, first part's frame: the middle of some of these points."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        own, far = self.probes
+        points = np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
+        return np.asarray(points[chosen].mean(axis=0))
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
