@@ -119,10 +119,4 @@ def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
     """m: how deep two parts are in each other at the worst of some output times from the first contact on."""
     after = time[time >= hit]
     chosen = after[np.unique(np.linspace(0, len(after) - 1, DEPTHS).astype(int))] if len(after) else np.array([hit])
-    depths = []
-    for s in chosen:
-        D = way.displacement(float(s))
-        crossing = test.crossing(D)
-        if crossing:
-            depths.append(test.depth(D, crossing.segments()))
-    return max(depths, default=0.0)
+    return max(test.deepest(way.displacement(float(s))) for s in chosen)

@@ -100,4 +100,4 @@ class Inside:
             points, heights = others[met], heights[met]
             right = left if len(points) else right
         here = self._every[(self._heights(right, self._every) > self._speck) & ~self._ignored]
-        return left, right, self._test.place(self._course.displacement(right), here)
+        return left, right, self._test.places(self._course.displacement(right))[here].mean(axis=0)

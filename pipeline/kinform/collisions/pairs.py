@@ -279,12 +279,20 @@ class PairTest:
         out[chosen >= count] = far.heights(first, X, other)
         return out
 
-    def place(self, D: Array, chosen: Ints) -> Array:
-        """(3,) m, first part's frame: the middle of some of these points."""
+    def places(self, D: Array) -> Array:
+        """(n, 3) m, first part's frame: these points."""
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
         own, far = self.probes
-        points = np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
-        return np.asarray(points[chosen].mean(axis=0))
+        return np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
+
+    def deepest(self, D: Array) -> float:
+        """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""
+        if self.empty:
+            return 0.0
+        places = self.places(D)
+        inside = self.heights(D, np.arange(len(places))) > self.loose
+        found = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
+        return max((self.depth(D, points) for points in found), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
@@ -318,8 +326,8 @@ class PairTest:
         return Crossing(out, slack) if out else NONE
 
     def depth(self, D: Array, segments: Array, least: float = 0.0) -> float:
-        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross; 0 where it is not above
-        `least`."""
+        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3) inside
+        either; 0 where it is not above `least`."""
         points = segments.reshape(-1, 3)
         points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)
