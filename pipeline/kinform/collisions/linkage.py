@@ -186,9 +186,7 @@ def drive_loops(
         spinning = [freedom.body for freedom in idle if freedom.body in joint.bodies]
         if len(columns) == 1:
             out[k] = (
-                _spun(shapes, kinematics, joint, spinning[0])
-                if spinning
-                else _range(joint, linkage, columns[0], ends)
+                _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, linkage, columns[0], ends)
             )
     return out
 
