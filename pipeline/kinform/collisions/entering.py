@@ -47,7 +47,7 @@ class Probes:
         if len(near):
             away = other.whole().depths(placed[near])[0]
             out[near] = np.where(other.contains(placed[near]), away, -away)
-        return out
+        return np.asarray(out)
 
 
 def probes(mesh: Mesh, labels: Ints, facets: Ints) -> Probes:
@@ -78,7 +78,7 @@ def _spread(corners: Array, count: int) -> Array:
         if away[farthest] <= 0.0:
             break
         taken.append(farthest)
-    return candidates[np.sort(taken)]
+    return np.asarray(candidates[np.sort(taken)])
 
 
 def _inner(number: int) -> Array:

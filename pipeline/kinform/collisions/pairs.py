@@ -275,7 +275,7 @@ class PairTest:
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
         out = np.zeros(len(chosen))
-        out[chosen < count] = own.heights(second, np.linalg.inv(X), mine)
+        out[chosen < count] = own.heights(second, np.asarray(np.linalg.inv(X), dtype=np.float64), mine)
         out[chosen >= count] = far.heights(first, X, other)
         return out
 

@@ -110,12 +110,8 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
         if _short(near, required):
             # towards the pose of the meshes, as far as the ranges hold it
             start = np.clip(np.zeros(len(low)), low, high)
-            way = float(lever @ np.abs(middle - start))
-            at, near = _on_the_way(
-                lambda x, start=start, change=middle - start, way=way: nearest(start + x * change, way * (1.0 - x)),
-                required, way, floor, near,
-            )  # fmt: skip
-            return Swept(near, 0.0, _named(chain, start + at * (middle - start)), True, floor, count)
+            q, near = _on_the_way(nearest, required, start, middle, lever, floor, near)
+            return Swept(near, 0.0, _named(chain, q), True, floor, count)
         if near.distance - required >= reach or reach <= floor:
             continue
         k = int(np.argmax(lever * half))
@@ -151,18 +147,33 @@ def _first(
 
 
 def _on_the_way(
-    nearest: Callable[[float], Nearest], required: float, way: float, floor: float, found: Nearest
-) -> tuple[float, Nearest]:
-    """The first share of a way (m that no point moves more than) that falls short; at its end `found` does."""
-    at = before = 0.0
+    nearest: Callable[[Array, float], Nearest],
+    required: float,
+    start: Array,
+    end: Array,
+    lever: Array,
+    floor: float,
+    found: Nearest,
+) -> tuple[Array, Nearest]:
+    """The first coordinates (n,) on the straight way from `start` that fall short; at its `end` `found` does."""
+    way = max(float(lever @ np.abs(end - start)), floor)
+
+    def at(share: float) -> Array:
+        return np.asarray(start + share * (end - start))
+
+    def near_at(share: float) -> Nearest:
+        return nearest(at(share), way * (1.0 - share))
+
+    share = clear = 0.0
     for _ in range(BUDGET):
-        near = nearest(at)
+        near = near_at(share)
         if _short(near, required):
-            return _first(nearest, required, before, at, near, FIRST * floor / max(way, floor))
-        if at >= 1.0:
+            share, near = _first(near_at, required, clear, share, near, FIRST * floor / way)
+            return at(share), near
+        if share >= 1.0:
             break
-        before, at = at, min(at + max(near.distance - required, floor) / max(way, floor), 1.0)
-    return 1.0, found
+        clear, share = share, min(share + max(near.distance - required, floor) / way, 1.0)
+    return end, found
 
 
 def _inverse(X: Array) -> Array:
