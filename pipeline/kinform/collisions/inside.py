@@ -84,7 +84,7 @@ class Inside:
 
     def _first(self, points: Ints, heights: Array, right: float, fine: float) -> tuple[float, float, Array]:
         """Where the first of points came in that are inside at `right`."""
-        left = right
+        left, further = right, right
         while len(points):
             deepest = points[[int(np.argmax(heights))]]
             left, least = float(self._entered[deepest[0]]), float(self._least[deepest[0]])
@@ -99,5 +99,11 @@ class Inside:
             met = heights > self._least[others]
             points, heights = others[met], heights[met]
             right = left if len(points) else right
-        here = self._every[(self._heights(right, self._every) > self._speck) & ~self._ignored]
-        return left, right, self._test.places(self._course.displacement(right))[here].mean(axis=0)
+        return left, right, self._middle(right, further)
+
+    def _middle(self, s: float, later: float) -> Array:
+        """(3,) m, first part's frame: about where points come in at s, by those that are deeper a little later."""
+        soon = self._course.when(self._course.travel(s) + self._test.loose, s, max(s, later))
+        heights = np.where(self._ignored, -np.inf, self._heights(soon, self._every))
+        places = self._test.places(self._course.displacement(s))[heights >= 0.5 * heights.max()]
+        return np.asarray(places.mean(axis=0))

@@ -269,13 +269,13 @@ class PairTest:
     def heights(self, D: Array, chosen: Ints) -> Array:
         """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the negative
         of a distance that they keep at least."""
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = np.asarray(np.linalg.solve(self.X_WA, D @ self.X_WB), dtype=np.float64)
         own, far = self.probes
         count = len(own.points)
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
         out = np.zeros(len(chosen))
-        out[chosen < count] = own.heights(second, np.asarray(np.linalg.inv(X), dtype=np.float64), mine)
+        out[chosen < count] = own.heights(second, np.asarray(np.linalg.inv(X)), mine)
         out[chosen >= count] = far.heights(first, X, other)
         return out
 

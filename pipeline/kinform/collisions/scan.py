@@ -70,7 +70,8 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
         if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
-            entered = search.entered(left, right, end, fine, resolution)
+            # nothing comes to be inside where no facets that count meet: the end is asked all the same
+            entered = search.entered(left, right, end, fine, resolution) if right >= end else None
             if entered is not None:
                 return entered
             left = search.pass_(left, stack.pop())
@@ -120,12 +121,12 @@ class _Search:
         """m: overlap at the start."""
         self._known: dict[float, _State] = {}
         self._inside: Inside | None = None
-        self._last = 0.0
-        """As far as it has gone on."""
+        self._apart = 0.0
+        """Since where the parts have not overlapped."""
 
     def begin(self, start: float) -> None:
         """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
-        self._start = self._last = start
+        self._start = self._apart = start
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
@@ -180,7 +181,7 @@ class _Search:
         if self.overlaps:
             return None
         if self._inside is None:
-            self._inside = Inside(self.test, self.course, self._last)
+            self._inside = Inside(self.test, self.course, self._apart)
         found = self._inside.met(right, end, fine)
         if found is None:
             return None
@@ -197,9 +198,9 @@ class _Search:
         """Go on from `right`: parts that overlapped from the start and have parted count from there."""
         crossing = self.state(right).crossing
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
-        self.overlaps = self.overlaps and bool(crossing)
+        if self.overlaps:
+            self.overlaps, self._apart = bool(crossing), right
         self._known = {key: state for key, state in self._known.items() if key >= right}
-        self._last = right
         return right
 
     def too_deep(self, s: float) -> bool:
