@@ -24,6 +24,7 @@ __all__ = [
     "ManifestFolder",
     "Output",
     "Quiet",
+    "Ranges",
     "Results",
     "Severity",
     "TableFormat",
@@ -88,6 +89,15 @@ Jobs = Annotated[
     int | None,
     typer.Option(
         "--jobs", "-j", min=1, metavar="N", show_default=False, help="Use up to N cores; default: all of them."
+    ),
+]
+
+Ranges = Annotated[
+    bool | None,
+    typer.Option(
+        "--ranges/--no-ranges",
+        show_default=False,
+        help="Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
     ),
 ]
 

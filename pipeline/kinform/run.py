@@ -26,17 +26,19 @@ def run(
     allow_outside: bool = False,
     units: str | None = None,
     say: Callable[[str], None] | None = None,
+    ranges: bool | None = None,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
     `manifest` is a TOML file, or one or several mesh files, which need `units`. With `output` the results
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
-    manifest's folder need `allow_outside`. `say` is told what takes long besides.
+    manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
+    each joint goes; None: where the function states ranges or requirements.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
-    if output is not None and units is None and isinstance(manifest, str | Path):
+    if output is not None and units is None and ranges is None and isinstance(manifest, str | Path):
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged
@@ -45,7 +47,7 @@ def run(
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
     design = stages.joints(design, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
-    design = stages.simulate(design, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
+    design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
     design = stages.check(design, ledger=ledger)
     if output is not None:
         from kinform import results

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import acos, asin, atan2, degrees, hypot, pi
+from re import search
 
 import numpy as np
 import pytest
@@ -121,7 +122,10 @@ def test_the_twin_whose_arm_is_too_long_is_stopped_by_the_arm(derive_design):
     assert yaw.lower.parts == ("housing", "outer_gimbal")
     assert degrees(yaw.upper.value) == pytest.approx(degrees(REACH - pi / 2 - atan2(11, 50)), abs=0.05)
     assert pitch.status == "unbounded"
-    assert [f.code for f in check(design).findings if f.code in ("KF412", "KF505", "KF904")] == ["KF412"]
+    found = check(design).findings
+    assert [f.code for f in found if f.code in ("KF412", "KF505", "KF904")] == ["KF412"]
+    (clear,) = (f for f in found if f.code == "KF423")
+    assert float(search(r"= (-?[0-9.]+)°", clear.message)[1]) == pytest.approx(degrees(yaw.lower.value), abs=0.006)
 
 
 def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seeker):
@@ -168,3 +172,52 @@ def test_a_slider_crank_turns_freely_and_its_slider_goes_by_twice_the_crank(deri
     assert slide.upper.value - slide.lower.value == pytest.approx(0.050, abs=2e-6)
     assert slide.upper.parts == ()
     assert known["crank_unit~frame"].status == "unbounded"
+
+
+def loose_pins(extra=None):
+    """A crank of 20 mm, a coupler of 70 mm and a slider on y = 0; `extra` is added to the frame. The pin
+    between coupler and slider is loose in both."""
+    c, s = 20.0 * np.cos(0.9), 20.0 * np.sin(0.9)
+    x = c + np.sqrt(70.0**2 - s**2)
+    tilt = np.degrees(np.arctan2(-s, x - c))
+    frame = box(-30, 130, -14, 14, -12, -8) + rod(5, -9, 4) + rod(8, 4, 6)
+    frame += box(40, 130, -14, -8, -9, 4) + box(40, 130, 8, 14, -9, 4)
+    frame += box(40, 130, -14, -5, 4, 7) + box(40, 130, 5, 14, 4, 7) + box(40, 130, -14, 14, -9, -4)
+    crank = box(0, 20, -4, 4, 0, 4) + rod(8, -8, 4) + rod(6, 0, 4).translate((20, 0, 0))
+    crank = (crank - rod(5, -9, 5)).rotate((0, 0, np.degrees(0.9)))
+    crank += (rod(3, 3, 12) + rod(5, 12, 14)).translate((c, s, 0))
+    coupler = box(0, 70, -4, 4, 8, 12) + rod(6, 8, 12) + rod(6, 8, 12).translate((70, 0, 0))
+    crank += rod(5, 3, 8).translate((c, s, 0))
+    coupler -= rod(3, 7, 13) + rod(3, 7, 13).translate((70, 0, 0))
+    coupler = coupler.rotate((0, 0, tilt)).translate((c, s, 0))
+    slider = (box(-10, 10, -8, 8, -4, 4) + box(-10, 10, -5, 5, 3, 8) - rod(3, -5, 9)).translate((x, 0, 0))
+    pin = (rod(3, -3.5, 12) + rod(5, 12, 14)).translate((x, 0, 0))
+    return {"frame": frame if extra is None else frame + extra, "crank": crank, "coupler": coupler, "slider": slider,
+            "pin": pin}, x  # fmt: skip
+
+
+def test_a_pin_that_spins_on_itself_leaves_the_ranges_of_its_loop_known():
+    solids, _ = loose_pins()
+    items, kin = found(**solids)
+    assert kin.mobility.idle_bodies == ("pin",)
+    known = {item.joint: item for item in items}
+    slide = known["frame~slider"]
+    assert (slide.lower.status, slide.upper.status) == ("found", "found")
+    assert slide.upper.value - slide.lower.value == pytest.approx(0.040, abs=2e-6)
+    assert known["crank~frame"].status == "unbounded"
+    spinning = [j.name for j in kin.joints if "pin" in j.bodies and j.type == "revolute"]
+    assert spinning and {known[name].status for name in spinning} == {"unbounded"}
+
+
+def test_a_loop_with_a_loose_pin_stops_where_its_slider_meets_a_stop():
+    solids, x = loose_pins(box(96, 110, -9, 9, -5, 3))
+    items, kin = found(**solids)
+    known = {j.name: (i, j) for i, j in zip(items, kin.joints, strict=True)}
+    item, joint = known["frame~slider"]
+    _, upper = ends(joint, np.array([1.0, 0, 0]), item)
+    assert upper.value == pytest.approx((86.0 - x) / 1000, abs=1e-6)
+    assert upper.parts == ("frame", "slider")
+    stop = acos((20.0**2 + 86.0**2 - 70.0**2) / (2 * 20.0 * 86.0))
+    item, joint = known["crank~frame"]
+    turned = sorted(abs(end.value) for end in (item.lower, item.upper))
+    assert turned == pytest.approx([0.9 - stop, 2 * pi - stop - 0.9], abs=1e-4)

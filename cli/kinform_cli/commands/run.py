@@ -19,6 +19,7 @@ from kinform_cli.options import (
     FindingsFormat,
     Jobs,
     Quiet,
+    Ranges,
     Severity,
     Units,
     cores,
@@ -32,6 +33,7 @@ EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5",
     "kinform run arm.toml -o arm.h5 --format concise --fail-on warning",
     "kinform run housing.stl shaft.stl --units mm -o pair.h5",
+    "kinform run arm.toml -o arm.h5 --ranges",
     "kinform run arm.toml                # verify only, keep nothing",
 )
 
@@ -54,6 +56,7 @@ def run(
         FindingsFormat.full
     ),
     fail_on: FailOn = Severity.error,
+    ranges: Ranges = None,
     jobs: Jobs = None,
     depfile: Depfile = None,
     quiet: Quiet = False,
@@ -86,6 +89,7 @@ def run(
             allow_outside=allow_outside,
             units=units,
             say=console.say,
+            ranges=ranges,
         )
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))

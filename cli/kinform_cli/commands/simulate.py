@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Output, Quiet, Results, examples
+from kinform_cli.options import Debug, Output, Quiet, Ranges, Results, examples
 from kinform_cli.progress import Working
 
 __all__ = ["EXAMPLES", "Level", "simulate"]
@@ -40,14 +40,7 @@ def simulate(
             help="Force a level; else the one that the manifest states, else the highest that is known.",
         ),
     ] = None,
-    ranges: Annotated[
-        bool | None,
-        typer.Option(
-            "--ranges/--no-ranges",
-            show_default=False,
-            help="Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
-        ),
-    ] = None,
+    ranges: Ranges = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation, Slerp
+from scipy.spatial.transform import Rotation
 
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
@@ -95,7 +95,9 @@ def _displacements(simulation: Simulation) -> Array:
 
 def _nodes(simulation: Simulation) -> Nodes:
     displacements, time = _displacements(simulation), simulation.time
-    turns = [Slerp(time, Rotation.from_matrix(displacements[:, b, :3, :3])) for b in range(displacements.shape[1])]
+    R = displacements[..., :3, :3]
+    turned = (np.swapaxes(R[:-1], 2, 3) @ R[1:]).reshape(-1, 3, 3)
+    turns = Rotation.from_matrix(turned).as_rotvec().reshape(*R[1:].shape[:2], 3)
 
     def between(s: float) -> Array:
         out = np.zeros((displacements.shape[1], 4, 4))
@@ -104,7 +106,7 @@ def _nodes(simulation: Simulation) -> Nodes:
             return np.asarray(displacements[n])
         n = min(max(int(np.searchsorted(time, s, side="right")) - 1, 0), len(time) - 2)
         share = (s - time[n]) / (time[n + 1] - time[n])
-        out[:, :3, :3] = [turn(s).as_matrix() for turn in turns]
+        out[:, :3, :3] = R[n] @ Rotation.from_rotvec(share * turns[n]).as_matrix()
         out[:, :3, 3] = (1.0 - share) * displacements[n, :, :3, 3] + share * displacements[n + 1, :, :3, 3]
         out[:, 3, 3] = 1.0
         return out
@@ -117,10 +119,4 @@ def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
     """m: how deep two parts are in each other at the worst of some output times from the first contact on."""
     after = time[time >= hit]
     chosen = after[np.unique(np.linspace(0, len(after) - 1, DEPTHS).astype(int))] if len(after) else np.array([hit])
-    depths = []
-    for s in chosen:
-        D = way.displacement(float(s))
-        crossing = test.crossing(D)
-        if crossing:
-            depths.append(test.depth(D, crossing.segments()))
-    return max(depths, default=0.0)
+    return max(test.deepest(way.displacement(float(s))) for s in chosen)

@@ -1,5 +1,6 @@
 """The ranges of joints that loops tie together, where all that is left is one motion: it is followed both ways.
 
+Bodies that only spin on themselves, as loose pins do, are held; how far they spin by themselves is another question.
 The motion is continued by arc length in joint coordinates, a step along the null vector of the loop closure and
 Newton's method back onto the loops, so that rockers turn back at their dead points (Allgower and Georg 1990). It ends
 where parts meet, where the linkage comes back to its pose, or where a second motion branches off.
@@ -18,13 +19,14 @@ from numpy.typing import NDArray
 from kinform.collisions.pairs import Shapes
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
+from kinform.collisions.single import drive_alone
 from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
 from kinform.kinematics.motion import LoopSystem, loop_system
 from kinform.kinematics.screws import Frame
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.kinematics import Joint, Kinematics
-from kinform.model.names import PartName
+from kinform.model.kinematics import Freedom, Joint, Kinematics
+from kinform.model.names import BodyName, PartName
 
 __all__ = ["drive_loops"]
 
@@ -47,7 +49,9 @@ CLOSED = 1e-6
 class _Linkage:
     """One block of joints, with the assembly's bodies hanging on it."""
 
-    def __init__(self, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int]):
+    def __init__(
+        self, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int], idle: Sequence[Freedom] = ()
+    ):
         joints = [kinematics.joints[k] for k in block]
         placed = [j.point for j in joints if j.point is not None]
         centre, length = np.zeros(3), 1.0
@@ -70,6 +74,22 @@ class _Linkage:
         ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
         self.tree = forest(len(kinematics.bodies), edges, ground)
         self.edges = edges
+        self.held = np.eye(len(self.owner))[self._columns(kinematics, idle)]
+        """(k, n) rows of coordinates that are held, each of an idle freedom."""
+
+    def _columns(self, kinematics: Kinematics, idle: Sequence[Freedom]) -> list[int]:
+        """For each idle freedom a coordinate in which it is seen, each another: holding these holds the freedoms."""
+        taken: list[int] = []
+        for freedom in idle:
+            rates = np.zeros(len(self.owner))
+            for name, coordinate, rate in freedom.drives:
+                own = [n for n, k in enumerate(self.owner) if kinematics.joints[k].name == name]
+                if own and own[coordinate] not in taken and self.turns[own[coordinate]]:
+                    rates[own[coordinate]] = abs(rate)
+            if rates.any():
+                # rates that are the same but for rounding go by their order
+                taken.append(int(np.flatnonzero(rates > 0.99 * rates.max())[0]))
+        return taken
 
     def poses(self, q: Array) -> Array:
         """(B, 4, 4) displacement of each body at coordinates q (n,); joints outside of the block rest."""
@@ -95,12 +115,14 @@ class _Linkage:
             before, left = left, float(np.abs(residual).max())
             if left < 1e-12 or (left < CLOSED and left > 0.5 * before):
                 return q
-            q = np.asarray(q - np.linalg.lstsq(found.jacobian[0], residual, rcond=3.0 * RANK)[0], float)
+            rows = np.vstack([found.jacobian[0], self.held])
+            wanted = np.concatenate([residual, self.held @ q])
+            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * RANK)[0], float)
         return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
 
     def tangent(self, q: Array) -> tuple[Array, bool] | None:
         """Unit null vector at q, and whether it is the only one; None where there is none."""
-        jacobian = self.system.close(q[None]).jacobian[0]
+        jacobian = np.vstack([self.system.close(q[None]).jacobian[0], self.held])
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
         count = int((values < RANK).sum())
@@ -149,7 +171,8 @@ def drive_loops(
     ]
     if doubtful:
         return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
-    linkage = _Linkage(kinematics, edges, block)
+    idle = _idle(kinematics, block)
+    linkage = _Linkage(kinematics, edges, block, idle)
     first = linkage.tangent(np.zeros(linkage.system.coordinates))
     if first is None:
         return "the loops do not move"
@@ -158,10 +181,34 @@ def drive_loops(
     ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, sign)) for sign in (-1.0, 1.0)]
     out = {}
     for k in block:
+        joint = kinematics.joints[k]
         columns = [n for n, owner in enumerate(linkage.owner) if owner == k]
+        spinning = [freedom.body for freedom in idle if freedom.body in joint.bodies]
         if len(columns) == 1:
-            out[k] = _range(kinematics.joints[k], linkage, columns[0], ends)
+            out[k] = (
+                _spun(shapes, kinematics, joint, spinning[0]) if spinning else _range(joint, linkage, columns[0], ends)
+            )
     return out
+
+
+def _idle(kinematics: Kinematics, block: Sequence[int]) -> list[Freedom]:
+    """The idle freedoms that move joints of a block."""
+    names = {kinematics.joints[k].name for k in block}
+    return [f for f in kinematics.mobility.named if f.idle and any(joint in names for joint, _, _ in f.drives)]
+
+
+def _spun(shapes: Shapes, kinematics: Kinematics, joint: Joint, body: BodyName) -> JointRange:
+    """The range of a joint of a body that spins on itself while all else is at rest."""
+    if joint.type != "revolute" or joint.axis is None or joint.point is None:
+        end = RangeEnd("unknown", reason=f"'{body}' spins on itself")
+        return JointRange(joint.name, end, end)
+    own = sorted(shapes.body_parts[body])
+    rest = sorted(part for name, parts in shapes.body_parts.items() if name != body for part in parts)
+    found = drive_alone(shapes, joint, *((rest, own) if joint.bodies[1] == body else (own, rest)))
+    if found.status == "unbounded":
+        return found
+    end = RangeEnd("unknown", reason=f"'{body}' spins on itself, and not freely where it is")
+    return JointRange(joint.name, end, end, found.left_out)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import fcl
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
+from kinform.collisions.entering import Probes, probes
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
 from kinform.contacts.boxes import together
 from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
@@ -191,6 +193,8 @@ class PairTest:
         ]
         self.scrape = shapes.allowed(first, second).length
         """m: less deep, parts scrape, as mates may."""
+        self.loose = max([self.scrape, *self._slacks])
+        """m: less deep, points of one may be in the other though the parts only mate."""
         self._bare = {pair for pair, patch in zip(self._mates, mates, strict=True) if patch.kind in _SHAPELESS}
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
@@ -253,6 +257,43 @@ class PairTest:
                 return True
         return False
 
+    @cached_property
+    def probes(self) -> tuple[Probes, Probes]:
+        """Points on the facets that count."""
+        first, second = (
+            probes(mesh, surfaces.labels, own)
+            for mesh, surfaces, own in zip(self._meshes, self._surfaces, self.facets, strict=True)
+        )
+        return first, second
+
+    def heights(self, D: Array, chosen: Ints) -> Array:
+        """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the negative
+        of a distance that they keep at least."""
+        X = np.asarray(np.linalg.solve(self.X_WA, D @ self.X_WB), dtype=np.float64)
+        own, far = self.probes
+        count = len(own.points)
+        first, second = (self._shapes.index(name) for name in self.names)
+        mine, other = chosen[chosen < count], chosen[chosen >= count] - count
+        out = np.zeros(len(chosen))
+        out[chosen < count] = own.heights(second, np.asarray(np.linalg.inv(X)), mine)
+        out[chosen >= count] = far.heights(first, X, other)
+        return out
+
+    def places(self, D: Array) -> Array:
+        """(n, 3) m, first part's frame: these points."""
+        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        own, far = self.probes
+        return np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
+
+    def deepest(self, D: Array) -> float:
+        """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""
+        if self.empty:
+            return 0.0
+        places = self.places(D)
+        inside = self.heights(D, np.arange(len(places))) > self.loose
+        found = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
+        return max((self.depth(D, points) for points in found), default=0.0)
+
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
@@ -285,8 +326,8 @@ class PairTest:
         return Crossing(out, slack) if out else NONE
 
     def depth(self, D: Array, segments: Array, least: float = 0.0) -> float:
-        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross; 0 where it is not above
-        `least`."""
+        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3) inside
+        either; 0 where it is not above `least`."""
         points = segments.reshape(-1, 3)
         points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)

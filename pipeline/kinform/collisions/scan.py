@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
+from kinform.collisions.inside import Inside
 from kinform.collisions.pairs import NONE, Crossing, PairTest, SurfacePair
 
 __all__ = ["First", "first_crossing"]
@@ -31,6 +32,9 @@ TOGETHER = 8.0
 """Surfaces that come to cross within so many chord errors of travel belong to one collision."""
 OVERLAPPING = 5.0
 """Steps are so much longer while parts overlap: all that is asked is whether they part."""
+AHEAD = (0.0, 1.0, 2.0, 4.0)
+"""Where points of a part are deep inside the other, facets are looked for that cross too deeply up to so much further, as
+multiples of what mates may be deep: facets may have met before."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 
@@ -49,6 +53,11 @@ class First:
     """m: how deep the parts overlapped at the start, before they parted."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Hit(First):
+    hit: float
+
+
 def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, start: float = 0.0) -> First:
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
@@ -61,6 +70,10 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
         if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
+            # nothing comes to be inside where no facets that count meet: the end is asked all the same
+            entered = search.entered(left, right, end, fine, resolution) if right >= end else None
+            if entered is not None:
+                return entered
             left = search.pass_(left, stack.pop())
             continue
         if way > (OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
@@ -69,13 +82,16 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
             stack.append(course.middle(left, right))
             continue
         if search.too_deep(right):
-            return search.located(left, right, fine, resolution)
+            return search.sooner(right, fine, search.located(left, right, fine, resolution))
         if search.through(left, right):
             if right - left > fine:
                 stack.append(course.middle(left, right))
                 continue
             if search.goes_in(left, end, resolution):
                 return search.flat(left, right)
+        entered = search.entered(left, right, end, fine, resolution)
+        if entered is not None:
+            return entered
         left = search.pass_(left, stack.pop())
     return First(None, None, None, search.overlaps)
 
@@ -104,10 +120,13 @@ class _Search:
         self.before = 0.0
         """m: overlap at the start."""
         self._known: dict[float, _State] = {}
+        self._inside: Inside | None = None
+        self._apart = 0.0
+        """Since where the parts have not overlapped."""
 
     def begin(self, start: float) -> None:
         """What crosses at the start is no stop as long as it is no deeper than chord errors, and else not known."""
-        self._start = start
+        self._start = self._apart = start
         crossing = self.state(start).crossing
         self.since = dict.fromkeys(crossing.shared)
         self.overlaps = bool(crossing) and (self.test.overlapping or self.too_deep(start))
@@ -140,6 +159,35 @@ class _Search:
         way = self.course.travel(further) - self.course.travel(s)
         return self.test.inside(self.course.displacement(further), *nearest, 0.4 * way)
 
+    def entered(self, left: float, right: float, end: float, fine: float, resolution: float) -> First | None:
+        """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to cross
+        that are too deep together with them."""
+        found = self._entered(right, end, fine)
+        if found is None or not self.state(right).crossing:
+            return found
+        for more in AHEAD:
+            further = self.course.when(self.course.travel(right) + more * self.test.loose, right, end)
+            if self.too_deep(further):
+                crossed = self.located(left, further, fine, resolution)
+                return found if crossed.hit is None or found.hit <= crossed.hit else crossed
+        return found
+
+    def sooner(self, right: float, fine: float, found: First) -> First:
+        """What was found, or points that came to be inside before."""
+        entered = self._entered(right, right, fine)
+        return found if entered is None or found.hit is None or entered.hit >= found.hit else entered
+
+    def _entered(self, right: float, end: float, fine: float) -> _Hit | None:
+        if self.overlaps:
+            return None
+        if self._inside is None:
+            self._inside = Inside(self.test, self.course, self._apart)
+        found = self._inside.met(right, end, fine)
+        if found is None:
+            return None
+        at, hit, place = found
+        return _Hit(at, hit, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
+
     def flat(self, left: float, right: float) -> First:
         """Where faces meet flat."""
         f, g = self.state(left).nearest
@@ -150,7 +198,8 @@ class _Search:
         """Go on from `right`: parts that overlapped from the start and have parted count from there."""
         crossing = self.state(right).crossing
         self.since = {pair: self.since.get(pair, (left, right)) for pair in crossing.shared}
-        self.overlaps = self.overlaps and bool(crossing)
+        if self.overlaps:
+            self.overlaps, self._apart = bool(crossing), right
         self._known = {key: state for key, state in self._known.items() if key >= right}
         return right
 

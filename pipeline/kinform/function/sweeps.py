@@ -2,14 +2,16 @@
 
 Along a motion (conservative advancement): a pose in which the distance exceeds what is required by e certifies all
 poses up to which no point moves by more than e. Over ranges (branch and bound): the middle of a cell certifies it
-if no point moves by more than e from there; else the cell is halved. Both stop at the first pose that falls short.
-Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion
+if no point moves by more than e from there; else the cell is halved. Both stop at a pose that falls short; what is told is
+the first that does, between it and the clear pose before (along a motion), or on the straight way of the coordinates
+from the pose of the meshes to it (over ranges). Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion
 the second group moves along the screw that leads from one to the other.
 """
 
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,6 +27,8 @@ Array = NDArray[np.float64]
 
 BUDGET = 4000
 """Poses that are measured before giving up."""
+FIRST = 1e-3
+"""Share of the shortest step to which the first pose that falls short is found."""
 FLOOR = 1e-4
 """Shortest step, of the size of the smaller group; ten times that where several joints move at once."""
 
@@ -57,19 +61,26 @@ def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     def pose(k: int, share: float) -> Array:
         return np.asarray(relative[k] @ displacement(share * twists[k]) if share > 0.0 else relative[k])
 
-    at, worst, where = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0
-    for count in range(1, BUDGET + 1):
+    def located(at: float) -> tuple[int, float]:
         k = int(np.clip(np.searchsorted(way, at, side="right") - 1, 0, max(len(moved) - 1, 0)))
-        share = (at - way[k]) / moved[k] if len(moved) and moved[k] > 0.0 else 0.0
+        return k, (at - way[k]) / moved[k] if len(moved) and moved[k] > 0.0 else 0.0
+
+    def nearest(at: float) -> Nearest:
+        k, share = located(at)
         near = groups.at(pose(k, min(share, 1.0)), enough=required + way[-1] - at)
+        return replace(near, place=first[k, :3, :3] @ near.place + first[k, :3, 3])
+
+    at, worst, where, before = 0.0, Nearest(np.inf, ("", ""), np.zeros(3)), 0.0, 0.0
+    for count in range(1, BUDGET + 1):
+        near = nearest(at)
         if near.distance < worst.distance:
-            near = replace(near, place=first[k, :3, :3] @ near.place + first[k, :3, 3])
-            worst, where = near, k + share
-        if near.distance < required or near.distance <= 0.0:
-            return Swept(near, k + share, (), True, floor, count)
+            worst, where = near, sum(located(at))
+        if _short(near, required):
+            at, near = _first(nearest, required, before, at, near, FIRST * floor)
+            return Swept(near, sum(located(at)), (), True, floor, count)
         if at >= way[-1]:
             return Swept(worst, where, (), True, floor, count)
-        at = min(at + max(near.distance - required, floor), way[-1])
+        before, at = at, min(at + max(near.distance - required, floor), way[-1])
     return Swept(worst, where, (), False, floor, BUDGET)
 
 
@@ -82,19 +93,25 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     cells: list[tuple[float, int, Array, Array]] = [(0.0, 0, middle, half)]
     worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle
     number = count = 0
+
+    def nearest(q: Array, reach: float) -> Nearest:
+        poses = chain.world(chain.system.bodies(q[None])[0])
+        return groups.at(np.linalg.inv(poses[a]) @ poses[b], enough=required + reach)
+
     while cells:
         if count >= BUDGET:
             return Swept(worst, 0.0, _named(chain, values), False, floor, count)
         _, _, middle, half = heapq.heappop(cells)
-        poses = chain.world(chain.system.bodies(middle[None])[0])
-        X = np.linalg.inv(poses[a]) @ poses[b]
         reach = float(lever @ half)
-        near = groups.at(X, enough=required + reach)
+        near = nearest(middle, reach)
         count += 1
         if near.distance < worst.distance:
             worst, values = near, middle
-        if near.distance < required or near.distance <= 0.0:
-            return Swept(near, 0.0, _named(chain, middle), True, floor, count)
+        if _short(near, required):
+            # towards the pose of the meshes, as far as the ranges hold it
+            start = np.clip(np.zeros(len(low)), low, high)
+            q, near = _on_the_way(nearest, required, start, middle, lever, floor, near)
+            return Swept(near, 0.0, _named(chain, q), True, floor, count)
         if near.distance - required >= reach or reach <= floor:
             continue
         k = int(np.argmax(lever * half))
@@ -106,6 +123,57 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
             shifted[k] += side * smaller[k]
             heapq.heappush(cells, (near.distance - reach, number, shifted, smaller))
     return Swept(worst, 0.0, _named(chain, values), True, floor, count)
+
+
+def _short(near: Nearest, required: float) -> bool:
+    """Whether a pose falls short."""
+    return near.distance < required or near.distance <= 0.0
+
+
+def _first(
+    nearest: Callable[[float], Nearest], required: float, clear: float, at: float, found: Nearest, fine: float
+) -> tuple[float, Nearest]:
+    """About the first place that falls short between one that is clear and `at`, where `found` does."""
+    while at - clear > fine:
+        middle = 0.5 * (clear + at)
+        if middle in (clear, at):
+            break
+        near = nearest(middle)
+        if _short(near, required):
+            at, found = middle, near
+        else:
+            clear = middle
+    return at, found
+
+
+def _on_the_way(
+    nearest: Callable[[Array, float], Nearest],
+    required: float,
+    start: Array,
+    end: Array,
+    lever: Array,
+    floor: float,
+    found: Nearest,
+) -> tuple[Array, Nearest]:
+    """The first coordinates (n,) on the straight way from `start` that fall short; at its `end` `found` does."""
+    way = max(float(lever @ np.abs(end - start)), floor)
+
+    def at(share: float) -> Array:
+        return np.asarray(start + share * (end - start))
+
+    def near_at(share: float) -> Nearest:
+        return nearest(at(share), way * (1.0 - share))
+
+    share = clear = 0.0
+    for _ in range(BUDGET):
+        near = near_at(share)
+        if _short(near, required):
+            share, near = _first(near_at, required, clear, share, near, FIRST * floor / way)
+            return at(share), near
+        if share >= 1.0:
+            break
+        clear, share = share, min(share + max(near.distance - required, floor) / way, 1.0)
+    return end, found
 
 
 def _inverse(X: Array) -> Array:

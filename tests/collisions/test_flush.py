@@ -1,0 +1,132 @@
+"""Parts whose faces are flush run into each other's ends without any facets that cross: that is a collision all the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from solids import assembly, box, part, random_pose, rod
+
+from kinform import collisions, contacts, kinematics, surfaces
+from kinform.model.simulation import Simulation
+
+SLOT = (-40, 30)
+
+
+def block_in_slot(gap=0.0):
+    lever = box(-60, 60, -20, 20, 0, 8) - box(*SLOT, -9, 9, -1, 9) - box(*SLOT, -11, 11, 3, 5)
+    block = box(-12, 12, -9 + gap, 9 - gap, 0, 8) + box(-12, 12, -11 + gap, 11 - gap, 3 + gap, 5 - gap)
+    return {"lever": lever, "block": block}
+
+
+def loose_block_in_slot():
+    lever = box(-60, 60, -20, 20, 0, 8) - box(*SLOT, -9, 9, -1, 9)
+    return {"lever": lever, "block": box(-12, 12, -9, 9, 0, 8)}
+
+
+def piston_in_cylinder(segments=48):
+    cylinder = rod(14, -45, 5, segments) - rod(10, -40, 6, segments)
+    return {"cylinder": cylinder, "piston": rod(10, -20, 5, segments)}
+
+
+def tenon_in_mortise():
+    post = box(-20, 20, -20, 20, -40, 0) - box(-8, 8, -5, 5, -30, 1)
+    return {"post": post, "rail": box(-8, 8, -5, 5, -12, 10)}
+
+
+def narrowing_slot():
+    lever = box(-60, 60, -20, 20, 0, 8) - box(-70, 29, -9, 9, -1, 9) - box(28, 70, -9, 7.5, -1, 9)
+    lever -= box(-70, 70, -11, 0, 3, 5)
+    return {"lever": lever, "block": box(-12, 12, -9, 9, 0, 8) + box(-12, 12, -11, 0, 3, 5)}
+
+
+def derived(solids, X=None, ground=None):
+    X = np.eye(4) if X is None else X
+    made = assembly(*(part(name, solid, X) for name, solid in solids.items()), ground=ground)
+    known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, known)
+    return made, known, touching, kinematics.derive(made, known, touching)
+
+
+def ends(solids, along, X=None):
+    """How far (m) the part named second goes along the world direction `along`: lower, upper."""
+    X = np.eye(4) if X is None else X
+    made, known, touching, kin = derived(solids, X)
+    (joint,) = kin.joints
+    assert joint.type in ("prismatic", "cylindrical")
+    if joint.type == "cylindrical":
+        kin = replace(
+            kin, joints=(replace(joint, type="prismatic", twists=joint.twists[joint.twists[:, :3].any(1) == 0]),)
+        )
+    (item,) = collisions.ranges(made, known, touching, kin)
+    sign = float(joint.axis @ (X[:3, :3] @ along)) * (1 if joint.bodies[1] == list(solids)[1] else -1)
+    lower, upper = (item.lower, item.upper) if sign > 0 else (item.upper, item.lower)
+    return tuple(None if e.status != "found" else round(np.sign(sign) * e.value, 12) for e in (lower, upper))
+
+
+x, z = np.eye(3)[[0, 2]]
+
+
+def finer(solid, times=2):
+    return solid.refine(times)
+
+
+@pytest.mark.parametrize("seed", [None, 1, 4])
+@pytest.mark.parametrize("gap", [0.0, 0.05])
+def test_a_block_goes_to_the_ends_of_its_slot(seed, gap):
+    X = None if seed is None else random_pose(np.random.default_rng(seed))
+    assert ends(block_in_slot(gap), x, X) == pytest.approx((-0.028, 0.018), abs=1e-6)
+
+
+@pytest.mark.parametrize("times", [2, 5])
+def test_smaller_facets_change_nothing(times):
+    solids = {name: finer(solid, times) for name, solid in block_in_slot().items()}
+    assert ends(solids, x) == pytest.approx((-0.028, 0.018), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", [None, 2])
+@pytest.mark.parametrize("segments", [24, 48])
+def test_a_piston_stops_at_the_bottom(segments, seed):
+    X = None if seed is None else random_pose(np.random.default_rng(seed))
+    lower, upper = ends(piston_in_cylinder(segments), z, X)
+    assert (lower, upper) == (pytest.approx(-0.020, abs=1e-6), None)
+
+
+@pytest.mark.parametrize("seed", [None, 2])
+def test_a_tenon_stops_at_the_bottom_of_its_mortise(seed):
+    X = None if seed is None else random_pose(np.random.default_rng(seed))
+    lower, upper = ends(tenon_in_mortise(), z, X)
+    assert (lower, upper) == (pytest.approx(-0.018, abs=1e-6), None)
+
+
+def test_a_narrow_step_stops_a_flush_block():
+    lower, upper = ends(narrowing_slot(), x)
+    assert (lower, upper) == (None, pytest.approx(0.017, abs=1e-6))
+
+
+def moved(kin, places, X):
+    """A run in which the block is at `places` (m) along its slot, a second apart."""
+    names = tuple(sorted(str(body.name) for body in kin.bodies))
+    p, q = np.zeros((len(places), 2, 3)), np.zeros((len(places), 2, 4))
+    q[..., 0] = 1.0
+    p[:, names.index("block")] = np.outer(places, X[:3, 0])
+    made = object.__new__(Simulation)
+    for name, value in {"time": np.arange(float(len(places))), "body_names": names, "p_WB": p, "q_WB": q}.items():
+        object.__setattr__(made, name, value)
+    return made
+
+
+@pytest.mark.parametrize("seed", [None, 5])
+@pytest.mark.parametrize("solids", [block_in_slot, loose_block_in_slot])
+def test_the_time_of_the_collision_is_when_the_ends_meet(seed, solids):
+    X = np.eye(4) if seed is None else random_pose(np.random.default_rng(seed))
+    made, known, touching, kin = derived(solids(), X, ground="lever")
+    (met,), untested = collisions.along(made, known, touching, kin, moved(kin, [0, 0.010, 0.030, 0.020], X))
+    assert met.parts == ("block", "lever") and not untested
+    assert met.time == pytest.approx(1.4, abs=2e-4)
+    assert met.depth == pytest.approx(0.008, abs=5e-4)  # the lever is 8 mm thick
+    place = np.linalg.inv(X) @ np.append(met.place, 1.0)
+    assert place[0] == pytest.approx(0.030, abs=1e-5)
+    assert abs(place[1]) < 0.009 and 0.0 < place[2] < 0.008
+    assert collisions.along(made, known, touching, kin, moved(kin, [0, 0.017, -0.027, 0.0], X)) == ((), ())
