@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import pytest
@@ -33,6 +34,13 @@ def test_concise_has_a_line_a_finding_and_a_line_a_doubt():
         "m.toml: inconclusive KF904 range-not-checked: no rule checks ranges yet",
         "test: inconsistent; 1 error, 0 warnings, 1 note; 3 rules ran, 1 skipped, 1 inconclusive",
     ]
+
+
+@pytest.mark.parametrize("format", ["full", "github", "junit", "md"])
+def test_a_place_is_told_without_the_noise_of_its_computation(format):
+    noisy = dataclasses.replace(ERROR, place=(6.6e-19, -1.04e-18, -0.002497))
+    text = render(CheckReport((noisy,), RULES), DESIGN, format).replace("\\", "")
+    assert "(0, 0, -2.497) mm" in text
 
 
 def test_full_tells_everything_within_eighty_columns():

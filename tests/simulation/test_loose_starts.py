@@ -63,8 +63,8 @@ def test_a_rest_that_the_loops_do_not_allow_gives_way_to_what_is_driven():
     np.testing.assert_allclose(run.joint_velocity[:, run.joint_names.index("swing")], RATE, atol=1e-9)
 
 
-def test_what_a_spline_leaves_of_a_table_has_its_unit():
+def test_what_a_curve_leaves_of_a_table_has_its_unit():
     run = ran(Table(np.array([0.0, 0.05, 0.1, 0.2]), np.array([0.0, 0.2, 0.2, 0.0])))
-    (text,) = (text for text in run.assumptions if "spline" in text)
+    (text,) = (text for text in run.assumptions if "cubic" in text)
     assert "°" in text
     assert "rad" not in text

@@ -30,10 +30,10 @@ def where(finding: Finding) -> str:
 
 
 def place(finding: Finding) -> str | None:
-    """ "(1, 0, -20) mm", or None."""
+    """ "(1, 0, -20) mm", or None; no millionths, which are the noise of what is computed."""
     if finding.place is None:
         return None
-    return "(" + ", ".join(f"{round(1000.0 * x, 9) + 0.0:.4g}" for x in finding.place) + ") mm"
+    return "(" + ", ".join(f"{round(1e3 * x, 6) + 0.0:.4g}" for x in finding.place) + ") mm"
 
 
 def details(finding: Finding) -> dict[str, str]:
