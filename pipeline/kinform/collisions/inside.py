@@ -20,6 +20,9 @@ SPECK = 1e-8
 """Share of the smaller part's diagonal by which a point is inside."""
 UNSEEN = 0.5
 """Share of what mates may be deep that points may travel unseen."""
+SPARSE = 0.016
+"""Share of the smaller part's diagonal that points near the other part may travel between two questions: to ask whether
+they are inside is dear, and what came in is found by halving anyhow."""
 
 
 class Inside:
@@ -43,6 +46,9 @@ class Inside:
         self._outside = np.full(count, s)
         """Where each point was last asked for and not inside."""
         self._speck = speck
+        self._stride = max(UNSEEN * test.loose, SPARSE * test.size)
+        self._next = course.travel(s) + self._stride
+        """m travelled: nothing is asked before, so that points are asked together."""
         self._wait(course.travel(s), self._every, heights)
 
     def _heights(self, s: float, chosen: Ints) -> Array:
@@ -52,15 +58,19 @@ class Inside:
         """When points have to be asked for again: once they may be out, in, or deep."""
         inside = ~self._ignored[chosen] & (heights > 0.0)
         away = np.where(inside, self._test.loose - heights, np.abs(heights))
-        self._due[chosen] = travelled + np.maximum((1.0 - 1e-6) * away, UNSEEN * self._test.loose)
+        self._due[chosen] = travelled + np.maximum((1.0 - 1e-6) * away, self._stride)
 
-    def met(self, right: float, end: float, fine: float) -> tuple[float, float, Array] | None:
+    def met(self, right: float, end: float, fine: float, *, every: bool = False) -> tuple[float, float, Array] | None:
         """Whether points are deep inside at `right`: to within `fine`, where the first of them came
-        in, and its place (first part's frame). Those that just came in are looked for a little further, up to `end`."""
+        in, and its place (first part's frame). Those that just came in are looked for a little further, up to `end`.
+        Only those that are due are asked for, unless `every`."""
         travelled = self._course.travel(right)
-        asked = np.flatnonzero(self._due <= travelled)
+        if not every and travelled < self._next:
+            return None
+        asked = self._every if every else np.flatnonzero(self._due <= travelled)
         if not len(asked):
             return None
+        self._next = travelled + self._stride
         heights = self._heights(right, asked)
         out = heights <= self._speck
         self._ignored[asked[out]] = False

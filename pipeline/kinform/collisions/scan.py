@@ -162,7 +162,7 @@ class _Search:
     def entered(self, left: float, right: float, end: float, fine: float, resolution: float) -> First | None:
         """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to cross
         that are too deep together with them."""
-        found = self._entered(right, end, fine)
+        found = self._entered(right, end, fine, every=right >= end)
         if found is None or not self.state(right).crossing:
             return found
         for more in AHEAD:
@@ -174,15 +174,15 @@ class _Search:
 
     def sooner(self, right: float, fine: float, found: First) -> First:
         """What was found, or points that came to be inside before."""
-        entered = self._entered(right, right, fine)
+        entered = self._entered(right, right, fine, every=True)
         return found if entered is None or found.hit is None or entered.hit >= found.hit else entered
 
-    def _entered(self, right: float, end: float, fine: float) -> _Hit | None:
+    def _entered(self, right: float, end: float, fine: float, *, every: bool) -> _Hit | None:
         if self.overlaps:
             return None
         if self._inside is None:
             self._inside = Inside(self.test, self.course, self._apart)
-        found = self._inside.met(right, end, fine)
+        found = self._inside.met(right, end, fine, every=every)
         if found is None:
             return None
         at, hit, place = found
