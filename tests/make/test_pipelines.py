@@ -40,11 +40,11 @@ def test_the_commands_in_an_example_exist_with_their_options(path):
 
 @pytest.mark.parametrize("path", CI, ids=lambda path: path.name)
 def test_the_gate_decides_the_job_and_nothing_else_does(path):
-    lines = [line.strip() for line in path.read_text().splitlines() if re.search(r"kinform (run|check)", line)]
+    lines = [line.strip() for line in path.read_text().splitlines() if re.search(r"kinform (run|check|report)", line)]
     gates = [line for line in lines if "kinform run" in line]
     assert len(gates) == 1
     assert "|| true" not in gates[0]
-    assert all(line.endswith("|| true") for line in lines if "kinform check" in line)
+    assert all(line.endswith("|| true") for line in lines if line not in gates)
 
 
 def test_reports_are_kept_when_the_gate_is_red():
@@ -53,6 +53,15 @@ def test_reports_are_kept_when_the_gate_is_red():
         after = github[github.index(step) :].splitlines()[1]
         assert after.strip() == "if: ${{ !cancelled() }}", step
     assert re.search(r"artifacts:\n\s+when: always\n", gitlab)
+
+
+@pytest.mark.parametrize("path", CI, ids=lambda path: path.name)
+def test_the_page_is_among_the_reports_that_are_kept(path):
+    text = path.read_text()
+    made = [words for words in commands(text) if words[1] == "report"]
+    assert [words[words.index("-o") + 1] for words in made] == ["reports/report.html"]
+    kept = text[text.rindex("path:" if "upload-artifact" in text else "paths:") :]
+    assert re.search(r"^\s*(- )?reports$", kept, re.MULTILINE)
 
 
 @pytest.mark.parametrize("path", [*CI, ROOT / ".pre-commit-hooks.yaml"], ids=lambda path: path.name)
