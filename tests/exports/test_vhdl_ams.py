@@ -15,7 +15,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 from test_modelica import controlled_by_voltage
 from validators import ghdl
-from vhdl_reader import SIZES, Flat, Jet, constant, read, residuals
+from vhdl_expressions import Jet
+from vhdl_reader import SIZES, Flat, read
+from vhdl_residuals import constant, residuals
 
 from kinform.behaviour import JointComponent, Servo
 from kinform.exports import export, vhdl_ams

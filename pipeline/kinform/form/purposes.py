@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
-from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
-from kinform.form.tables import rows_of
+from kinform.form.tables import columns, path_rows
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (
@@ -187,71 +185,14 @@ class Purposes:
         found = self.sources.find(table.file, self.scope.folder, self.scope.file, self.scope.line(*path), "the table")
         if found is None:
             return Law("table", file=table.file)
-        times, values = self._columns(found)
-        return Law("table", times=times, values=values, file=self.sources.shown(found))
-
-    def _columns(self, path: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Times (strictly ascending) and values of a CSV file; a header line is allowed."""
-        shown = self.sources.shown(path)
-        times: list[float] = []
-        values: list[float] = []
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            for number, row in enumerate(csv.reader(file), start=1):
-                if not row or not "".join(row).strip():
-                    continue
-                try:
-                    time, value = (float(cell) for cell in row[:2])
-                    if not (math.isfinite(time) and math.isfinite(value)):
-                        raise ValueError
-                except ValueError:
-                    if number > 1:
-                        self.scope.problems.add(
-                            f"the row {','.join(row)!r} is not time and value",
-                            shown,
-                            number,
-                            "give two finite numbers",
-                        )
-                    continue
-                if times and time <= times[-1]:
-                    self.scope.problems.add(
-                        f"time {time:g} does not follow {times[-1]:g}", shown, number, "sort the rows by time"
-                    )
-                times.append(time)
-                values.append(value)
-        if len(times) < 2:
-            self.scope.problems.add("the table has fewer than two rows", shown, 1, "give rows of time and value")
-        return tuple(times), tuple(values)
+        shown = self.sources.shown(found)
+        times, values = columns(self.scope, found, shown)
+        return Law("table", times=times, values=values, file=shown)
 
     def _path(self, name: str, *path: str | int) -> list[list[float]]:
-        """Rows of time, point (m) and perhaps quaternion wxyz, in the world, of a CSV file."""
         scope = self.scope
         found = self.sources.find(name, scope.folder, scope.file, scope.line(*path), "the path")
-        if found is None:
-            return []
-        shown = self.sources.shown(found)
-        out: list[list[float]] = []
-        R = scope.X_WF[:3, :3]
-        turn = Rotation.from_matrix(R)
-        for number, row in rows_of(found):
-            if len(row) not in (4, 8) or (out and len(row) != len(out[0])):
-                scope.problems.add("the row is not time, x, y, z, or these with a quaternion", shown, number,
-                                   "give 4 numbers a row, or 8")  # fmt: skip
-                continue
-            if out and row[0] <= out[-1][0]:
-                scope.problems.add(f"time {row[0]:g} does not follow {out[-1][0]:g}", shown, number,
-                                   "sort the rows by time")  # fmt: skip
-            point = scope.point(row[1:4])
-            assert point is not None
-            pose: list[float] = []
-            if len(row) == 8:
-                if not np.linalg.norm(row[4:]) > 0.0:
-                    scope.problems.add("the quaternion is zero", shown, number, "give qw, qx, qy, qz")
-                    continue
-                pose = (turn * Rotation.from_quat(row[4:], scalar_first=True)).as_quat(scalar_first=True).tolist()
-            out.append([row[0], *point.tolist(), *pose])
-        if len(out) < 2:
-            scope.problems.add("the path has fewer than two rows", shown, 1, "give rows of time, x, y, z")
-        return out
+        return [] if found is None else path_rows(scope, found, self.sources.shown(found))
 
     def loads(self) -> list[Load]:
         """`[[function.load]]`."""
