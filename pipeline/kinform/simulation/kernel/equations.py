@@ -21,6 +21,7 @@ from kinform.simulation.kernel.layout import (
     GAP,
     GEARS,
     HALF,
+    KEPT,
     KIND,
     LAST,
     LED,
@@ -216,11 +217,11 @@ def move(links: Index, vectors: Table, y: Row) -> None:
         y[at + 3] = c + 0.5 * (d2 * w + d0 * b - d1 * a)
 
 
-def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float) -> tuple[float, float]:
+def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float) -> float:
     """Closes the loops in y to `closed` by least corrections, by mass, of positions and then of rates.
 
-    Quaternions get unit length. Returns (gap left, smallest pivot over that of its choice); −1 for the
-    first when a free motion has no mass.
+    Quaternions get unit length. Returns the gap left, −1 when a free motion has no mass; writes how good
+    the pivots still are to work[VECTORS][KEPT].
     """
     counts, links, columns, closures, mode = ints[COUNTS], ints[LINKS], ints[COLUMNS], ints[CLOSURES], ints[MODE]
     state, screws, matrix, rows, small = work[STATE], work[SCREWS], work[MASS], work[ROWS], work[REDUCED]
@@ -234,26 +235,27 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
             norm = math.sqrt(y[at] ** 2 + y[at + 1] ** 2 + y[at + 2] ** 2 + y[at + 3] ** 2)
             for j in range(4):
                 y[at + j] /= norm
+    vectors[KEPT, 0] = 1.0
     if rank == 0:
-        return 0.0, 1.0
+        return 0.0
     for k in range(n):
         vectors[FORCE, k] = 0.0
-    before, size, kept, factored = 1e300, 1e300, 1.0, False
+    before, size, factored = 1e300, 1e300, False
     for _ in range(10):
         place_links(links, nums[LINKS], state, screws, y)
         size = 0.0
         for r in range(rank):
-            vectors[GAP, r] = -gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, mode[0, r])
+            vectors[GAP, r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[0, r])
             size = max(size, abs(vectors[GAP, r]))
         if not factored or before > 1e-9:
             inertias(links, nums[LINKS], state)
             mass_matrix(links, columns, state, screws, matrix, vectors, False)
             gather(ints, nums, work, rank)
-            margin, kept = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
+            margin, vectors[KEPT, 0] = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
             if margin == 0.0:
-                return size, 0.0
+                return size
             if not reduce(matrix, rows, work[HALF], small, mode, n, rank, led):
-                return -1.0, kept
+                return -1.0
             factored = True
         if size <= closed or not size < before:
             break
@@ -265,7 +267,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
         move(links, vectors, y)
     for row in range(6 * len(closures) + len(nums[GEARS])):
         # The rows that depend on the others at the start must stay closed too.
-        rest = abs(gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, row))
+        rest = abs(gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, row))
         if rest > TORN:
             size = max(size, rest)
     twist_links(links, state, screws, y, first)
@@ -281,4 +283,4 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
     balance(matrix, rows, small, mode, vectors, n, rank, led)
     for k in range(n):
         y[first + k] += vectors[ACC, k]
-    return size, kept
+    return size

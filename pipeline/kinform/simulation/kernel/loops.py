@@ -21,6 +21,7 @@ from kinform.simulation.kernel.layout import (
     LINKS,
     MODE,
     PIVOT,
+    POSITIONS,
     RANK,
     RATES,
     REFERENCE,
@@ -70,14 +71,14 @@ def gained(closures: Index, numbers: Table, state: Table, length: float, row: in
 
 
 def gap_of(
-    closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, n: int, row: int
+    counts: Index, closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, row: int
 ) -> float:
     """What row `row` has open in the positions."""
     loop, axis = row // 6, row % 6
     total = 0.0
     if loop >= len(closures):
-        for k in range(gears.shape[1] - n):
-            total += gears[row - 6 * len(closures), n + k] * y[k]
+        for k in range(counts[0, POSITIONS]):
+            total += gears[row - 6 * len(closures), counts[0, RATES] + k] * y[k]
         return total
     a, b = closures[loop, 0], closures[loop, 1]
     e0, e1, e2 = turned(state, a, *three(numbers, loop, 3 * (axis % 3)))
