@@ -102,6 +102,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     values, pieces = signals.tables()
     mode = np.zeros((3, width), dtype=np.int64)
     mode[1, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
+    mode[2, :n] = np.argsort(mode[1, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
         np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors, loads, springs,

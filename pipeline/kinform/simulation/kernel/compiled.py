@@ -30,6 +30,7 @@ from kinform.simulation.kernel import (
     loops,
     masses,
     motion,
+    reduction,
     signals,
     steps,
     vectors,
@@ -37,9 +38,12 @@ from kinform.simulation.kernel import (
 
 __all__ = ["compiled", "is_cached"]
 
-_MODULES = (vectors, signals, motion, masses, forces, loops, equations, crossings, steps, explicit)
-_UNITS = (equations.derivative, equations.project, explicit.sample, explicit.advance)
-"""After those that they call."""
+_MODULES = (vectors, signals, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
+"""Functions after those that they call."""
+_UNITS = (
+    motion.place_links, masses.inertias, masses.mass_matrix, reduction.factor, reduction.settle,
+    equations.derivative, equations.project, explicit.sample, explicit.advance,
+)  # fmt: skip
 
 
 def _digest() -> str:
@@ -71,16 +75,19 @@ class _Copy:
 
 
 def _kinds() -> dict[str, tuple[Any, Any]]:
-    """What the annotations of the units are to numba and to ctypes."""
+    """What the annotations of the kernel are to numba and, where units have them, to ctypes."""
     import numba
 
-    from kinform.simulation.kernel.native import Row, Tables
+    from kinform.simulation.kernel.native import Row, Table, Tables
 
     whole, real = numba.types.int64, numba.types.float64
-    memory = {"Row": Row(real), "Counts": Row(whole), "Ints": Tables(whole), "Nums": Tables(real), "Work": Tables(real)}
+    memory = {
+        "Row": Row(real), "Counts": Row(whole), "Table": Table(real), "Index": Table(whole),
+        "Ints": Tables(whole), "Nums": Tables(real), "Work": Tables(real),
+    }  # fmt: skip
     return {
-        "int": (whole, ctypes.c_int64), "float": (real, ctypes.c_double), "None": (numba.types.none, None),
-        **{name: (kind, ctypes.c_void_p) for name, kind in memory.items()},
+        "int": (whole, ctypes.c_int64), "float": (real, ctypes.c_double), "bool": (numba.types.boolean, ctypes.c_bool),
+        "None": (numba.types.none, None), **{name: (kind, ctypes.c_void_p) for name, kind in memory.items()},
     }  # fmt: skip
 
 
@@ -88,17 +95,7 @@ def _kinds() -> dict[str, tuple[Any, Any]]:
 def compiled() -> types.SimpleNamespace:
     """The units, compiled; where they take arrays, they take addresses (`addresses`)."""
     import numba
-    from llvmlite import binding
 
-    digest, kinds = _digest(), _kinds()
-    options = {"nopython": True, "error_model": "numpy"}
-    copy = _Copy(digest)
-    inner: Any = numba.jit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
-    for module in _MODULES:
-        for _, function in inspect.getmembers(module, inspect.isfunction):
-            if function.__module__ == module.__name__ and function not in _UNITS:
-                copy.mean(function, inner(copy.of(function)))
-    made = types.SimpleNamespace()
     config: Any = numba.config
     collecting, level = gc.isenabled(), config.OPT
     # A compiler makes much and drops little: collecting between costs a tenth of its time. The higher
@@ -106,20 +103,36 @@ def compiled() -> types.SimpleNamespace:
     gc.disable()
     config.OPT = type(level)(min(level, 1))
     try:
-        for unit in _UNITS:
-            name, symbol = unit.__name__, f"kinform_{unit.__name__}_{digest}"
-            shape = inspect.signature(unit)
-            taken = [kinds[argument.annotation] for argument in shape.parameters.values()]
-            given = kinds[shape.return_annotation]
-            signature = given[0](*(kind for kind, _ in taken))
-            done = _unit(numba, signature, copy.of(unit), options)
-            binding.add_symbol(symbol, done.address)
-            copy.mean(unit, numba.types.ExternalFunction(symbol, signature))
-            setattr(made, name, ctypes.CFUNCTYPE(given[1], *(kind for _, kind in taken))(done.address))
+        return _compile(numba)
     finally:
         config.OPT = level
         if collecting:
             gc.enable()
+
+
+def _compile(numba: Any) -> types.SimpleNamespace:
+    from llvmlite import binding
+
+    digest, kinds, cached = _digest(), _kinds(), is_cached()
+    copy, made = _Copy(digest), types.SimpleNamespace()
+    options = {"nopython": True, "error_model": "numpy", "no_rewrites": True, "_nrt": False}
+    for module in _MODULES:
+        for name, function in list(vars(module).items()):
+            if not inspect.isfunction(function) or function.__module__ != module.__name__:
+                continue
+            shape = inspect.signature(function)
+            taken = [kinds[argument.annotation] for argument in shape.parameters.values()]
+            if function not in _UNITS:
+                signature = None if cached else tuple(kind for kind, _ in taken)
+                inner = numba.jit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+                copy.mean(function, inner(copy.of(function)))
+                continue
+            given = kinds[shape.return_annotation]
+            signature = given[0](*(kind for kind, _ in taken))
+            unit, symbol = _unit(numba, signature, copy.of(function), options), f"kinform_{name}_{digest}"
+            binding.add_symbol(symbol, unit.address)
+            copy.mean(function, numba.types.ExternalFunction(symbol, signature))
+            setattr(made, name, ctypes.CFUNCTYPE(given[1], *(kind for _, kind in taken))(unit.address))
     return made
 
 

@@ -153,10 +153,12 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         if margin < 0.0:
             return MASSLESS
         for i in range(size):
-            rough += (slopes[12, i] - slopes[11, i]) ** 2
-            moved += (slopes[NEW, i] - slopes[TRIED, i]) ** 2
+            change, way = slopes[12, i] - slopes[11, i], slopes[NEW, i] - slopes[TRIED, i]
+            rough += change * change
+            moved += way * way
         # What rounding leaves near a singular pose is no decay.
-        real = rough > (10.0 * NOISE / max(clock[LEAST], 1e-6) ** 2) ** 2
+        least = max(clock[LEAST], 1e-6)
+        real = math.sqrt(rough) > 10.0 * NOISE / (least * least)
         fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
         tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
         hit, share = -1, 1.0

@@ -43,13 +43,14 @@ LINK, BEFORE, SIGNAL = range(3)
 ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
 """GAIN: acceleration at constant rates. INERT: m, m·c, then xx yy zz xy xz yz about the centre."""
 
-# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is. work[VECTORS]:
+# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is in it. work[VECTORS]:
 FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT, KEPT = range(10)
 """KEPT, its first number: smallest pivot over that of its choice, at the last projection."""
 
 # ints[ACTORS], and their kinds.
 DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE = range(6)
 EFFORT, SPRING, DAMPER, SERVO, MOTOR, CONTROLLED = range(6)
+"""CONTROLLED: a motor with a controller."""
 
 # nums[SIGNALS]: four numbers, the kind, first of its pieces and how many. Kinds: polynomial of degree one,
 # sine, pieces of cubics.

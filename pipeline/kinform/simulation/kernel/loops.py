@@ -1,13 +1,11 @@
 """Closes loops: independent rows and dependent rates, factors, and what follows from both.
 
-Rows and rates are chosen once by complete pivoting at a known rank, and kept while their pivots stay
-good; every evaluation eliminates in that order, never by a tolerance of its own. With the rates in the
+Rows and rates are chosen once (`choice`) and kept while their pivots stay good; every evaluation eliminates
+in that order, never by a tolerance of its own. With the rates in the
 order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (−B; 1) keep them closed.
 """
 
 from __future__ import annotations
-
-import numpy as np
 
 from kinform.simulation.kernel.layout import (
     BEFORE,
@@ -22,16 +20,12 @@ from kinform.simulation.kernel.layout import (
     MODE,
     PIVOT,
     POSITIONS,
-    RANK,
     RATES,
     REFERENCE,
     ROWS,
-    SCALE,
     SCREWS,
-    SIGNAL,
     STATE,
     TIP,
-    VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
@@ -39,7 +33,7 @@ from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
 
-__all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of"]
+__all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 
 def line_of(
@@ -95,36 +89,6 @@ def gap_of(
     return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
 
 
-def choose(ints: Ints, nums: Nums, work: Work) -> None:
-    """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
-    mode and its pivots. Never compiled: it is called a few times a run."""
-    n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
-    count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
-    led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
-    ints[MODE][0, :count], ints[MODE][1, :n] = range(count), range(n)
-    gather(ints, nums, work, count)
-    rows = work[ROWS][:count] * scale
-    left = np.ones(count, dtype=bool)
-    chosen: list[int] = []
-    dependent: list[int] = []
-    for _ in range(rank):
-        size = np.abs(rows) * left[:, None]
-        size[:, led] = -1.0
-        size[:, dependent] = -1.0
-        preferred = np.where(closing, size, -1.0)
-        best = preferred if preferred.max() > 0.3 else size
-        row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
-        work[VECTORS][REFERENCE, len(chosen)] = max(float(best[row, column]), 1e-300)
-        left[row] = False
-        chosen.append(row)
-        dependent.append(column)
-        others = left & (rows[:, column] != 0.0)
-        rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
-    free = [k for k in range(n) if not led[k] and k not in dependent]
-    ints[MODE][0, :rank] = chosen
-    ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
-
-
 def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     """Writes the first `count` rows of the mode into work[ROWS], rates in its order.
 
@@ -134,8 +98,6 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
     links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
     state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
-    for c in range(n):
-        mode[2, mode[1, c]] = c
     for r in range(count):
         loop, axis = mode[0, r] // 6, mode[0, r] % 6
         if loop >= len(closures):

@@ -40,9 +40,7 @@ from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
 __all__ = ["interpolate", "prepare", "slope", "stage", "try_step"]
 
 
-def slope(
-    ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: float, y: Row, dy: Row
-) -> float:
+def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: float, y: Row, dy: Row) -> float:
     """The derivative, in y closed first when a singular pose is near: accelerations depend on it there."""
     tally[SLOPES] += 1
     margin = derivative(ints, nums, work, t, y, dy)
@@ -85,8 +83,9 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
             five += table[E5_ROW, j] * slopes[j, i]
         slopes[NEW, i] = y[i] + h * total
         allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i]))
-        third += (three / allowed) ** 2
-        fifth += (five / allowed) ** 2
+        three, five = three / allowed, five / allowed
+        third += three * three
+        fifth += five * five
     if fifth == 0.0 and third == 0.0:
         return 0.0
     # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
