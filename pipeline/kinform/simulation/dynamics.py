@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from kinform.behaviour.components import RigidBody, System
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.closure import factor
-from kinform.simulation.kernel import equations, layout, loops, masses, motion
+from kinform.simulation.kernel import choice, equations, layout, masses, motion
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.states import States
 from kinform.simulation.tables import Tables, tabulate
@@ -37,11 +37,9 @@ class Dynamics:
     def place(self, q: Array, v: Array) -> None:
         """Bring the kernel's links to these positions and rates, and choose which rows to keep there."""
         tables = self.tables
-        y = tables.pack(q, v)
-        state, screws, links = tables.work[layout.STATE], tables.work[layout.SCREWS], tables.ints[layout.LINKS]
-        motion.place_links(links, tables.nums[layout.LINKS], state, screws, y)
+        motion.place_links(tables.ints, tables.nums, tables.work, tables.pack(q, v))
         if self.rank:
-            loops.choose(tables.ints, tables.nums, tables.work)
+            choice.choose(tables.ints, tables.nums, tables.work)
 
     def project(self, t: float, q: Array, v: Array, closed: float) -> tuple[Array, Array]:
         """Positions and rates nearest, by the mass matrix, on closed loops; prescribed joints on their laws."""
@@ -52,17 +50,12 @@ class Dynamics:
 
     def mass_matrix(self, q: Array) -> Array:
         """(n, n) at positions (nq,)."""
-        tables, work = self.tables, self.tables.work
-        state, screws, links = work[layout.STATE], work[layout.SCREWS], tables.ints[layout.LINKS]
-        y = tables.pack(q, np.zeros(self.mechanism.rates))
-        motion.place_links(links, tables.nums[layout.LINKS], state, screws, y)
-        masses.inertias(links, tables.nums[layout.LINKS], state)
-        matrix = np.zeros((self.mechanism.rates, self.mechanism.rates))
-        columns = tables.ints[layout.COLUMNS]
-        masses.mass_matrix(links, columns, state, screws, matrix, work[layout.VECTORS], False)
-        full = matrix + np.tril(matrix, -1).T
-        inverse = np.argsort(tables.v_order)
-        return full[np.ix_(inverse, inverse)]
+        tables = self.tables
+        motion.place_links(tables.ints, tables.nums, tables.work, tables.pack(q, np.zeros(self.mechanism.rates)))
+        masses.inertias(tables.ints, tables.nums, tables.work)
+        masses.mass_matrix(tables.ints, tables.work, False)
+        order = tables.ints[layout.MODE][2, np.argsort(tables.v_order)]
+        return tables.work[layout.MASS][np.ix_(order, order)]
 
     def weightless(self, q: Array) -> tuple[str, ...]:
         """Joints that take part in free motions without mass: their acceleration is undetermined."""

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.simulation.kernel import equations, explicit
+from kinform.simulation.kernel import equations, explicit, layout
+from kinform.simulation.kernel.addresses import address, addresses
 
 if TYPE_CHECKING:
     from kinform.simulation.run import Run
@@ -26,31 +25,39 @@ class Engine:
     """Calls into the kernel with the tables of a run."""
 
     compiled: bool
-    _derivative: Callable[..., float]
-    _project: Callable[..., tuple[float, float]]
-    _advance: Callable[..., int]
+    _units: Any
     loaded: ClassVar[bool] = False
     """Whether this process has the compiled functions already."""
 
     def advance(self, run: Run) -> int:
         """Integrate; see `kernel.explicit.advance`."""
-        tables = run.dynamics.tables
-        with _quiet(self.compiled):
-            return int(
-                self._advance(tables.ints, tables.nums, tables.work, run.y, run.clock, run.tally, run.times, run.out)
-            )
+        return int(self._call("advance", run, run.y, run.clock, run.tally, run.outputs))
 
     def derivative(self, run: Run, t: float, y: Array, dy: Array) -> float:
         """See `kernel.equations.derivative`."""
-        tables = run.dynamics.tables
-        with _quiet(self.compiled):
-            return float(self._derivative(tables.ints, tables.nums, tables.work, t, y, dy))
+        return float(self._call("derivative", run, t, y, dy))
 
     def project(self, run: Run, t: float, y: Array) -> tuple[float, float]:
-        """See `kernel.equations.project`."""
+        """(gap left, smallest pivot over that of its choice); see `kernel.equations.project`."""
+        gap = float(self._call("project", run, t, y, run.settings.closed))
+        return gap, float(run.dynamics.tables.work[layout.VECTORS][layout.KEPT, 0])
+
+    def sample(self, run: Run, t: float, y: Array, out: Array) -> None:
+        """Write an output; see `kernel.explicit.sample`."""
+        self._call("sample", run, run.clock, t, y, out)
+
+    def _call(self, name: str, run: Run, *arguments: Any) -> Any:
+        """The unit of that name with the tables of the run."""
         tables = run.dynamics.tables
-        with _quiet(self.compiled):
-            return self._project(tables.ints, tables.nums, tables.work, t, y, run.settings.closed)
+        unit = getattr(self._units, name)
+        if not self.compiled:
+            with _Silence():
+                return unit(tables.ints, tables.nums, tables.work, *arguments)
+        held = [addresses(a) if isinstance(a, tuple) else a for a in arguments]
+        return unit(
+            *(address(list_) for list_ in tables.addresses),
+            *(address(a) if isinstance(a, np.ndarray) else a for a in held),
+        )
 
 
 class _Silence(warnings.catch_warnings):
@@ -62,14 +69,11 @@ class _Silence(warnings.catch_warnings):
         return out
 
 
-class _Nothing:
-    def __enter__(self) -> None: ...
+class _Plain:
+    """The units as they are."""
 
-    def __exit__(self, *_: object) -> None: ...
-
-
-def _quiet(compiled: bool) -> Any:
-    return _Nothing() if compiled else _Silence()
+    advance, sample = staticmethod(explicit.advance), staticmethod(explicit.sample)
+    derivative, project = staticmethod(equations.derivative), staticmethod(equations.project)
 
 
 def ready() -> bool:
@@ -82,10 +86,9 @@ def ready() -> bool:
 def engine(*, compiled: bool) -> Engine:
     """The kernel's entries, compiled (from numba's cache where there is one) or not."""
     if not compiled:
-        advance = partial(explicit.advance, equations.derivative, equations.project)
-        return Engine(False, equations.derivative, equations.project, advance)
+        return Engine(False, _Plain)
     from kinform.simulation.kernel.compiled import compiled as functions
 
     made = functions()
     Engine.loaded = True
-    return Engine(True, made.derivative, made.project, made.advance)
+    return Engine(True, made)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.simulation.engine import Engine
-from kinform.simulation.kernel import explicit, layout
+from kinform.simulation.kernel import layout
 from kinform.simulation.run import Run
 from kinform.simulation.stiffness import jacobian
 from kinform.simulation.stops import Contact
@@ -107,11 +107,7 @@ def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
 
 def _sample(run: Run, engine: Engine, dense: Any, until: float) -> None:
     """Outputs up to a time in the last step."""
-    tables = run.dynamics.tables
     while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= until:
         t = float(run.times[run.tally[layout.NEXT]])
-        explicit.sample(
-            engine._derivative, engine._project, tables.ints, tables.nums, tables.work, run.clock, t,
-            np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]],
-        )  # fmt: skip
+        engine.sample(run, t, np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]])
         run.tally[layout.NEXT] += 1

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from kinform.simulation.closure import rank_of
 from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.engine import Engine
-from kinform.simulation.kernel import explicit, layout
+from kinform.simulation.kernel import layout
 from kinform.simulation.record import Record
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start
@@ -27,6 +27,7 @@ class Run:
         self.y = dynamics.tables.pack(start.q, start.v)
         n = dynamics.mechanism.rates
         self.out = np.zeros((len(times), len(self.y) + 3 * n))
+        self.outputs = (self.times[None], self.out)
         self.clock, self.tally = np.zeros(layout.CLOCK), np.zeros(8, dtype=np.int64)
         self.clock[layout.NOW] = times[0]
         self.clock[layout.RTOL], self.clock[layout.ATOL] = settings.rtol, settings.atol
@@ -38,17 +39,13 @@ class Run:
 
     def begin(self, engine: Engine) -> bool:
         """Sample the start; False when a free motion has no mass there."""
-        tables = self.dynamics.tables
         self.clock[layout.END] = np.inf
         y = self.y.copy()
         engine.project(self, float(self.times[0]), y)
         self.y[:] = y
         if engine.derivative(self, float(self.times[0]), y, np.zeros_like(y)) < 0.0:
             return False
-        explicit.sample(
-            engine._derivative, engine._project, tables.ints, tables.nums, tables.work, self.clock,
-            float(self.times[0]), y, self.out[0],
-        )  # fmt: skip
+        engine.sample(self, float(self.times[0]), y, self.out[0])
         self.tally[layout.NEXT] = 1
         return True
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Tabl
 from kinform.kinematics.screws import perpendicular
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.kernel import layout
+from kinform.simulation.kernel.addresses import addresses
 from kinform.simulation.mechanism import Mechanism
 
 __all__ = ["Tables", "tabulate"]
@@ -33,6 +35,11 @@ class Tables:
     """(n,) the same of rates."""
     states: int
     """How many states controllers and motors have."""
+
+    @cached_property
+    def addresses(self) -> tuple[Index, Index, Index]:
+        """Where compiled functions find the tables, which stay where they are."""
+        return addresses(self.ints), addresses(self.nums), addresses(self.work)
 
     @property
     def size(self) -> int:
@@ -87,6 +94,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     stops = _rows([(order.place[s.q], order.rate[s.v], s.sense, 0) for s in actuation.stops], 4)
     closures = _rows([tuple(pair) for pair in mechanism.closures], 2)
     n, nq = mechanism.rates, mechanism.gear_q.shape[1]
+    size = nq + n + states + 1
     count = 6 * len(closures) + len(mechanism.gear_v)
     width = max(n, count, nq, 1)
     scale = np.column_stack([mechanism.scale, ~mechanism.moves[mechanism.link_of].any(axis=0)])[order.v_order]
@@ -94,18 +102,19 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     values, pieces = signals.tables()
     mode = np.zeros((3, width), dtype=np.int64)
     mode[1, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
+    mode[2, :n] = np.argsort(mode[1, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
-        np.array([[rank, led, nq, states, n]]), order.links(), columns, closures, np.zeros((0, 1)), actors, loads, springs,
+        np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors, loads, springs,
         mode, stops,
     )  # fmt: skip
     nums = (
         numbers, _links(mechanism, system, order), scale, _frames(mechanism), values, actor_numbers, load_numbers,
         spring_numbers, gears, np.array([[s.limit] for s in actuation.stops]).reshape(-1, 1), pieces, _coefficients(),
     )  # fmt: skip
-    L, size = len(mechanism.parent), nq + n + states + 1
+    L = len(mechanism.parent)
     shapes = (
-        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (9, width), (19, size), (7, size),
+        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (19, size), (7, size),
     )  # fmt: skip
     work = tuple(np.zeros(shape) for shape in shapes)
     work[layout.STATE][0, [0, 4, 8]] = 1.0

@@ -1,24 +1,27 @@
 """The kernel's functions compiled by numba, from its cache where there is one.
 
-Every function is compiled for one signature: three tuples of two-dimensional arrays, and numbers. The
-names under which numba caches them carry a digest of all the kernel's source: a change of one function
-compiles afresh those that call it.
+Units are functions that others call by name, as C does: each is compiled once and kept in the cache. All
+other functions are compiled into the units that use them, when such a unit has to be compiled. The names
+under which numba caches units carry a digest of all the kernel's source: a change of one function
+compiles all of them afresh.
 """
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import hashlib
 import inspect
 import os
 import sys
 import types
-from collections.abc import Callable, Mapping
-from functools import cache, partial
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from kinform.simulation.kernel import (
+    addresses,
     crossings,
     equations,
     explicit,
@@ -27,74 +30,72 @@ from kinform.simulation.kernel import (
     loops,
     masses,
     motion,
+    reduction,
     signals,
+    steps,
     vectors,
 )
 
 __all__ = ["compiled", "is_cached"]
 
-_ORDER = (
-    vectors.three, vectors.put, vectors.add, vectors.cross, vectors.dot, vectors.turned, vectors.place,
-    signals.law, motion.place_screw, motion.place_ball, motion.place_links, motion.twist_links,
-    masses.momentum, masses.heavy, masses.inertias, masses.wrenches, masses.mass_matrix, masses.cholesky,
-    masses.solve_cholesky, forces.controlled, forces.drive, forces.push, forces.pace, forces.loads, forces.between,
-    loops.line_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
-    equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
-    crossings.alike, crossings.tip, crossings.laid,
-    explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
-    explicit.stop_reached, explicit.advance,
-)  # fmt: skip
+_MODULES = (vectors, signals, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
-
-_POINTERS = ("derivative", "project")
-"""Passed to the integrator as functions."""
-_ENTRIES = (*_POINTERS, "advance")
-"""What is called from Python; the rest gets no wrapper, which shortens compilation."""
+_UNITS = (
+    motion.place_links, masses.inertias, masses.mass_matrix, reduction.factor, reduction.settle,
+    equations.derivative, equations.project, explicit.sample, explicit.advance,
+)  # fmt: skip
 
 
 def _digest() -> str:
-    modules = (layout, vectors, signals, motion, masses, forces, loops, equations, crossings, explicit)
-    text = "".join(inspect.getsource(module) for module in (*modules, sys.modules[__name__]))
+    rest = (Path(__file__).with_name("native.py"), *(Path(str(m.__file__)) for m in (layout, addresses)))
+    text = "".join(inspect.getsource(module) for module in (*_MODULES, sys.modules[__name__]))
+    text += "".join(path.read_text(encoding="utf-8") for path in rest)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def _renamed(function: Callable[..., Any], known: dict[str, Any], digest: str) -> Any:
-    """The function with compiled ones in place of those that it calls."""
-    scope = {**function.__globals__, **known}
-    made = types.FunctionType(function.__code__, scope, function.__name__)
-    made.__module__ = function.__module__
-    made.__qualname__ = f"{function.__name__}_{digest}"
-    return made
+class _Copy:
+    """The kernel's functions in a world of their own, where the names of those that they call can be given
+    other meanings."""
+
+    def __init__(self, digest: str):
+        self._digest = digest
+        self._scopes = {module.__name__: dict(vars(module)) for module in _MODULES}
+
+    def of(self, function: Callable[..., Any]) -> Any:
+        made = types.FunctionType(function.__code__, self._scopes[function.__module__], function.__name__)
+        made.__module__ = function.__module__
+        made.__qualname__ = f"{function.__name__}_{self._digest}"
+        return made
+
+    def mean(self, function: Callable[..., Any], other: Any) -> None:
+        """The other for the function, wherever one calls it."""
+        for scope in self._scopes.values():
+            if scope.get(function.__name__) is function:
+                scope[function.__name__] = other
 
 
-def _kinds() -> dict[str, Any]:
-    """What the annotations of the kernel are to numba."""
+def _kinds() -> dict[str, tuple[Any, Any]]:
+    """What the annotations of the kernel are to numba and, where units have them, to ctypes."""
     import numba
 
-    nb: Any = numba.types
-    whole, real, row = nb.int64, nb.float64, nb.float64[::1]
-    index, table = whole[:, ::1], real[:, ::1]
-    tables = (nb.UniTuple(index, 10), nb.UniTuple(table, 12), nb.UniTuple(table, 9))
-    return {
-        "int": whole, "float": real, "bool": nb.boolean, "Row": row, "Counts": whole[::1], "Table": table,
-        "Index": index, "Ints": tables[0], "Nums": tables[1], "Work": tables[2],
-        "Derivative": nb.ExternalFunctionPointer(real(*tables, real, row, row), int),
-        "Project": nb.ExternalFunctionPointer(nb.UniTuple(real, 2)(*tables, real, row, real), int),
+    from kinform.simulation.kernel.native import Row, Table, Tables
+
+    whole, real = numba.types.int64, numba.types.float64
+    memory = {
+        "Row": Row(real), "Counts": Row(whole), "Table": Table(real), "Index": Table(whole),
+        "Ints": Tables(whole), "Nums": Tables(real), "Work": Tables(real),
     }  # fmt: skip
-
-
-def _signature(function: Callable[..., Any], kinds: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Types of the arguments, from their annotations."""
-    return tuple(kinds[argument.annotation] for argument in inspect.signature(function).parameters.values())
+    return {
+        "int": (whole, ctypes.c_int64), "float": (real, ctypes.c_double), "bool": (numba.types.boolean, ctypes.c_bool),
+        "None": (numba.types.none, None), **{name: (kind, ctypes.c_void_p) for name, kind in memory.items()},
+    }  # fmt: skip
 
 
 @cache
 def compiled() -> types.SimpleNamespace:
-    """The compiled entries `derivative`, `project` and `advance`; the last without its first two arguments."""
+    """The units, compiled; where they take arrays, they take addresses (`addresses`)."""
     import numba
 
-    digest, kinds = _digest(), _kinds()
-    known: dict[str, Any] = {}
     config: Any = numba.config
     collecting, level = gc.isenabled(), config.OPT
     # A compiler makes much and drops little: collecting between costs a tenth of its time. The higher
@@ -102,20 +103,37 @@ def compiled() -> types.SimpleNamespace:
     gc.disable()
     config.OPT = type(level)(min(level, 1))
     try:
-        for function in _ORDER:
-            name = function.__name__
-            known[name] = _jit(numba, _signature(function, kinds), _renamed(function, known, digest), name)
+        return _compile(numba)
     finally:
         config.OPT = level
         if collecting:
             gc.enable()
-    made = {name: known[name].overloads[known[name].signatures[0]] for name in _ENTRIES}
-    pointers = [
-        made[name].library.get_pointer_to_function(made[name].fndesc.llvm_cfunc_wrapper_name) for name in _POINTERS
-    ]
-    # The entry itself: numba's dispatcher knows no type of a pointer.
-    advance = partial(made["advance"].entry_point, *pointers)
-    return types.SimpleNamespace(**{name: known[name] for name in _POINTERS}, advance=advance)
+
+
+def _compile(numba: Any) -> types.SimpleNamespace:
+    from llvmlite import binding
+
+    digest, kinds, cached = _digest(), _kinds(), is_cached()
+    copy, made = _Copy(digest), types.SimpleNamespace()
+    options = {"nopython": True, "error_model": "numpy", "no_rewrites": True, "_nrt": False}
+    for module in _MODULES:
+        for name, function in list(vars(module).items()):
+            if not inspect.isfunction(function) or function.__module__ != module.__name__:
+                continue
+            shape = inspect.signature(function)
+            taken = [kinds[argument.annotation] for argument in shape.parameters.values()]
+            if function not in _UNITS:
+                signature = None if cached else tuple(kind for kind, _ in taken)
+                inner = numba.jit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+                copy.mean(function, inner(copy.of(function)))
+                continue
+            given = kinds[shape.return_annotation]
+            signature = given[0](*(kind for kind, _ in taken))
+            unit, symbol = _unit(numba, signature, copy.of(function), options), f"kinform_{name}_{digest}"
+            binding.add_symbol(symbol, unit.address)
+            copy.mean(function, numba.types.ExternalFunction(symbol, signature))
+            setattr(made, name, ctypes.CFUNCTYPE(given[1], *(kind for _, kind in taken))(unit.address))
+    return made
 
 
 def is_cached() -> bool:
@@ -128,15 +146,11 @@ def is_cached() -> bool:
     return any(any(place.glob(f"{depth}{pattern}")) for place in places for depth in ("", "*/"))
 
 
-def _jit(numba: Any, signature: tuple[Any, ...], function: Any, name: str) -> Any:
+def _unit(numba: Any, signature: Any, function: Any, options: dict[str, Any]) -> Any:
     """Compile, with the cache where the machine allows one."""
-    options = {
-        "nopython": True, "error_model": "numpy",
-        "no_cpython_wrapper": name not in _ENTRIES, "no_cfunc_wrapper": name not in _POINTERS,
-    }  # fmt: skip
     try:
-        return numba.jit(signature, cache=True, **options)(function)
+        return numba.cfunc(signature, cache=True, **options)(function)
     except RuntimeError as error:
         if "cache" not in str(error):
             raise
-        return numba.jit(signature, **options)(function)
+        return numba.cfunc(signature, **options)(function)

@@ -1,8 +1,4 @@
-"""The equations of motion: derivative of the state, and its projection onto closed loops.
-
-Both solve the same system: rates x (accelerations, or corrections) with x_d = g − B x_il that balance
-the efforts, or are least by the mass matrix when there are none.
-"""
+"""The equations of motion: derivative of the state, and its projection onto closed loops."""
 
 from __future__ import annotations
 
@@ -20,7 +16,7 @@ from kinform.simulation.kernel.layout import (
     GAIN,
     GAP,
     GEARS,
-    HALF,
+    KEPT,
     KIND,
     LAST,
     LED,
@@ -34,33 +30,28 @@ from kinform.simulation.kernel.layout import (
     POSITIONS,
     RANK,
     RATES,
-    REDUCED,
-    RIGHT,
-    ROWS,
-    SCALE,
     SCREW,
-    SCREWS,
     SIGNAL,
     SIGNALS,
     SPRINGS,
     STATE,
     STATES,
-    TRIAL,
     TWIST,
     VECTORS,
     WIDTH,
     Q,
 )
-from kinform.simulation.kernel.loops import back_substitute, eliminate, gained, gap_of, gather
+from kinform.simulation.kernel.loops import gained, gap_of
 from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, solve_cholesky, wrenches
 from kinform.simulation.kernel.motion import place_links, twist_links
+from kinform.simulation.kernel.reduction import factor, settle
 from kinform.simulation.kernel.signals import law
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 
 TORN = 1e-4
 """Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
 
-__all__ = ["balance", "derivative", "impose", "move", "project", "reduce"]
+__all__ = ["derivative", "impose", "move", "project"]
 
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
@@ -72,74 +63,6 @@ def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float,
             y[links[i, Q]], y[first + k] = value, rate
 
 
-def reduce(matrix: Table, rows: Table, half: Table, small: Table, mode: Index, n: int, rank: int, led: int) -> bool:
-    """Mass matrix of the motions E that keep the loops closed, its free part factored. False when a
-    free motion has no mass."""
-    for k in range(n):
-        for j in range(k):
-            matrix[j, k] = matrix[k, j]
-    rest = n - rank
-    for i in range(n):
-        own = mode[1, i]
-        for j in range(rest):
-            half[i, j] = matrix[own, mode[1, rank + j]]
-        for d in range(rank):
-            value = matrix[own, mode[1, d]]
-            if value != 0.0:
-                for j in range(rest):
-                    half[i, j] -= value * rows[d, rank + j]
-    for i in range(rest):
-        for j in range(rest):
-            small[i, j] = half[rank + i, j]
-        for d in range(rank):
-            value = rows[d, rank + i]
-            if value != 0.0:
-                for j in range(rest):
-                    small[i, j] -= value * half[d, j]
-    return cholesky(small, rest - led)
-
-
-def balance(matrix: Table, rows: Table, small: Table, mode: Index, vectors: Table, n: int, rank: int, led: int) -> None:
-    """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (dependent rates) and led rates in [ACC].
-
-    [NEED] is the effort that led rates take.
-    """
-    rest, free = n - rank, n - rank - led
-    # Efforts less what the gap takes, on the motions E.
-    for i in range(n):
-        total = vectors[FORCE, mode[1, i]]
-        for d in range(rank):
-            total -= matrix[mode[1, i], mode[1, d]] * vectors[GAP, d]
-        vectors[TRIAL, i] = total
-    for j in range(rest):
-        total = vectors[TRIAL, rank + j]
-        for d in range(rank):
-            total -= rows[d, rank + j] * vectors[TRIAL, d]
-        vectors[RIGHT, j] = total
-        vectors[NEED, j] = -total
-    for j in range(free):
-        for k in range(led):
-            vectors[RIGHT, j] -= small[free + k, j] * vectors[ACC, mode[1, rank + free + k]]
-    solve_cholesky(small, free, vectors[RIGHT])
-    for j in range(free):
-        vectors[ACC, mode[1, rank + j]] = vectors[RIGHT, j]
-    for d in range(rank):
-        total = vectors[GAP, d]
-        for j in range(rest):
-            total -= rows[d, rank + j] * vectors[ACC, mode[1, rank + j]]
-        vectors[ACC, mode[1, d]] = total
-    for k in range(led):
-        total = vectors[NEED, free + k]
-        for j in range(rest):
-            # Rows of led rates keep the whole reduced matrix left of their own block.
-            total += small[free + k, j] * vectors[ACC, mode[1, rank + j]]
-        vectors[TRIAL, k] = total
-    for k in range(n):
-        vectors[NEED, k] = 0.0
-    for k in range(led):
-        vectors[NEED, mode[1, rank + free + k]] = vectors[TRIAL, k]
-
-
 def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) -> float:
     """Rate of change of the state y at t into dy; led joints in y are put on their laws.
 
@@ -147,20 +70,20 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
     motion has no mass.
     """
     counts, links, columns, closures, mode = ints[COUNTS], ints[LINKS], ints[COLUMNS], ints[CLOSURES], ints[MODE]
-    state, screws, matrix, rows, small = work[STATE], work[SCREWS], work[MASS], work[ROWS], work[REDUCED]
-    constants, values, pieces, vectors = nums[CONSTANTS], nums[SIGNALS], nums[PIECES], work[VECTORS]
+    constants, values, pieces = nums[CONSTANTS], nums[SIGNALS], nums[PIECES]
+    state, matrix, vectors = work[STATE], work[MASS], work[VECTORS]
     n, rank, led, first = counts[0, RATES], counts[0, RANK], counts[0, LED], counts[0, POSITIONS]
     t = min(t, constants[0, LAST])
     if led > 0:
         impose(links, columns, values, pieces, t, y, first)
-    place_links(links, nums[LINKS], state, screws, y)
-    twist_links(links, state, screws, y, first)
-    inertias(links, nums[LINKS], state)
-    wrenches(links, state, constants)
+    place_links(ints, nums, work, y)
+    twist_links(ints, work, y)
+    inertias(ints, nums, work)
+    wrenches(ints, nums, work)
     power = drive(ints[ACTORS], nums[ACTORS], values, pieces, vectors, t, y, dy, first, n)
     power += loads(ints[LOADS], nums[LOADS], state)
     power += between(ints[SPRINGS], nums[SPRINGS], state)
-    mass_matrix(links, columns, state, screws, matrix, vectors, True)
+    mass_matrix(ints, work, True)
     margin = 1.0
     if rank == 0 and led == 0:
         if not cholesky(matrix, n):
@@ -169,19 +92,15 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
             vectors[ACC, k], vectors[NEED, k] = vectors[FORCE, k], 0.0
         solve_cholesky(matrix, n, vectors[ACC])
     else:
-        gather(ints, nums, work, rank)
-        margin, _ = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
-        if margin == 0.0:
-            return 0.0
-        if not reduce(matrix, rows, work[HALF], small, mode, n, rank, led):
-            return -1.0
+        margin = factor(ints, nums, work)
+        if margin <= 0.0:
+            return margin
         for r in range(rank):
             vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[0, r], GAIN)
-        back_substitute(rows, vectors, rank)
         for k in range(n):
             if columns[k, SIGNAL] >= 0:
                 _, _, vectors[ACC, k] = law(values, pieces, columns[k, SIGNAL], t)
-        balance(matrix, rows, small, mode, vectors, n, rank, led)
+        settle(ints, work)
         for k in range(n):
             if columns[k, SIGNAL] >= 0:
                 power += vectors[NEED, k] * y[first + k]
@@ -216,69 +135,65 @@ def move(links: Index, vectors: Table, y: Row) -> None:
         y[at + 3] = c + 0.5 * (d2 * w + d0 * b - d1 * a)
 
 
-def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float) -> tuple[float, float]:
+def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float) -> float:
     """Closes the loops in y to `closed` by least corrections, by mass, of positions and then of rates.
 
-    Quaternions get unit length. Returns (gap left, smallest pivot over that of its choice); −1 for the
-    first when a free motion has no mass.
+    Quaternions get unit length. Returns the gap left, −1 when a free motion has no mass; writes how good
+    the pivots still are to work[VECTORS][KEPT].
     """
-    counts, links, columns, closures, mode = ints[COUNTS], ints[LINKS], ints[COLUMNS], ints[CLOSURES], ints[MODE]
-    state, screws, matrix, rows, small = work[STATE], work[SCREWS], work[MASS], work[ROWS], work[REDUCED]
-    length, vectors = nums[CONSTANTS][0, LENGTH], work[VECTORS]
-    n, rank, led, first = counts[0, RATES], counts[0, RANK], counts[0, LED], counts[0, POSITIONS]
-    if led > 0:
-        impose(links, columns, nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0, LAST]), y, first)
+    counts, links, closures, mode = ints[COUNTS], ints[LINKS], ints[CLOSURES], ints[MODE]
+    state, vectors, length = work[STATE], work[VECTORS], nums[CONSTANTS][0, LENGTH]
+    n, rank, first = counts[0, RATES], counts[0, RANK], counts[0, POSITIONS]
+    if counts[0, LED] > 0:
+        impose(links, ints[COLUMNS], nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0, LAST]), y, first)
     for i in range(1, len(links)):
         if links[i, WIDTH] == 3:
             at = links[i, Q]
-            norm = math.sqrt(y[at] ** 2 + y[at + 1] ** 2 + y[at + 2] ** 2 + y[at + 3] ** 2)
+            a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
+            norm = math.sqrt(a * a + b * b + c * c + d * d)
             for j in range(4):
                 y[at + j] /= norm
+    vectors[KEPT, 0] = 1.0
     if rank == 0:
-        return 0.0, 1.0
+        return 0.0
     for k in range(n):
         vectors[FORCE, k] = 0.0
-    before, size, kept, factored = 1e300, 1e300, 1.0, False
+    before, size, factored = 1e300, 1e300, False
     for _ in range(10):
-        place_links(links, nums[LINKS], state, screws, y)
+        place_links(ints, nums, work, y)
         size = 0.0
         for r in range(rank):
-            vectors[GAP, r] = -gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, mode[0, r])
+            vectors[GAP, r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[0, r])
             size = max(size, abs(vectors[GAP, r]))
         if not factored or before > 1e-9:
-            inertias(links, nums[LINKS], state)
-            mass_matrix(links, columns, state, screws, matrix, vectors, False)
-            gather(ints, nums, work, rank)
-            margin, kept = eliminate(rows, mode, nums[SCALE], vectors, rank, n)
-            if margin == 0.0:
-                return size, 0.0
-            if not reduce(matrix, rows, work[HALF], small, mode, n, rank, led):
-                return -1.0, kept
+            inertias(ints, nums, work)
+            mass_matrix(ints, work, False)
+            margin = factor(ints, nums, work)
+            if margin <= 0.0:
+                return size if margin == 0.0 else -1.0
             factored = True
         if size <= closed or not size < before:
             break
         before = size
-        back_substitute(rows, vectors, rank)
         for k in range(n):
             vectors[ACC, k] = 0.0
-        balance(matrix, rows, small, mode, vectors, n, rank, led)
+        settle(ints, work)
         move(links, vectors, y)
     for row in range(6 * len(closures) + len(nums[GEARS])):
         # The rows that depend on the others at the start must stay closed too.
-        rest = abs(gap_of(closures, nums[CLOSURES], nums[GEARS], state, y, length, n, row))
+        rest = abs(gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, row))
         if rest > TORN:
             size = max(size, rest)
-    twist_links(links, state, screws, y, first)
+    twist_links(ints, work, y)
     for r in range(rank):
         total, gear = gained(closures, nums[CLOSURES], state, length, mode[0, r], TWIST), mode[0, r] - 6 * len(closures)
         if gear >= 0:
             for k in range(n):
                 total += nums[GEARS][gear, k] * y[first + k]
         vectors[GAP, r] = -total
-    back_substitute(rows, vectors, rank)
     for k in range(n):
         vectors[ACC, k] = 0.0
-    balance(matrix, rows, small, mode, vectors, n, rank, led)
+    settle(ints, work)
     for k in range(n):
         y[first + k] += vectors[ACC, k]
-    return size, kept
+    return size

@@ -1,8 +1,8 @@
-"""Explicit integration: the method of Dormand and Prince of order 8 with its dense output of order 7.
+"""Explicit integration: steps and their control, outputs, end stops.
 
-After Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.5 and their
-program DOP853, with their test for stiffness. Loops are closed again after every accepted step. The
-equations of motion are arguments: compiled, they are called and not compiled again into what calls them.
+Control of steps and the test for stiffness are those of Hairer, Nørsett and Wanner's program DOP853
+(Solving Ordinary Differential Equations I, sections II.4 and IV.2). Loops are closed again after every
+accepted step.
 """
 
 from __future__ import annotations
@@ -10,31 +10,23 @@ from __future__ import annotations
 import math
 
 from kinform.simulation.kernel.crossings import laid, tip
+from kinform.simulation.kernel.equations import derivative, project
 from kinform.simulation.kernel.layout import (
     ACC,
-    ATOL,
-    B_ROW,
     BUDGET,
-    C_ROW,
     CLOSED,
-    COEFFICIENTS,
     COUNTS,
     CROSSING,
-    D_ROW,
-    DENSE,
     DONE,
-    E3_ROW,
-    E5_ROW,
     END,
     FRESH,
     GIVEN,
     HIT,
     KEEP,
+    KEPT,
     LEAST,
-    MARGIN,
     MARGINS,
     MASSLESS,
-    NEAR,
     NEED,
     NEW,
     NEXT,
@@ -42,13 +34,13 @@ from kinform.simulation.kernel.layout import (
     NOW,
     OPEN,
     OPENED,
+    OUT,
     PATIENCE,
     PAUSE,
     PAUSED,
     RANK,
     RATES,
-    RTOL,
-    SLOPES,
+    SIZE,
     SPENT,
     STAGES,
     STEP,
@@ -58,12 +50,13 @@ from kinform.simulation.kernel.layout import (
     STOPPED,
     STOPS,
     STUCK,
-    TIGHTEST,
+    TIMES,
     TRIED,
     VECTORS,
     WORN,
 )
-from kinform.simulation.kernel.types import Counts, Derivative, Ints, Nums, Project, Row, Table, Work
+from kinform.simulation.kernel.steps import interpolate, prepare, slope, try_step
+from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
 
 EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""
@@ -72,146 +65,12 @@ LAYINGS = 4
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
-__all__ = ["advance", "interpolate", "prepare", "sample", "slope", "stop_reached", "try_step"]
+__all__ = ["advance", "sample", "stop_reached"]
 
 
-def slope(
-    derivative: Derivative,
-    project: Project,
-    ints: Ints,
-    nums: Nums,
-    work: Work,
-    clock: Row,
-    tally: Counts,
-    t: float,
-    y: Row,
-    dy: Row,
-) -> float:
-    """The derivative, in y closed first when a singular pose is near: accelerations depend on it there."""
-    tally[SLOPES] += 1
-    margin = derivative(ints, nums, work, t, y, dy)
-    clock[LEAST] = min(clock[LEAST], abs(margin))
-    if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0, RANK] > 0:
-        if margin < clock[MARGIN]:
-            clock[MARGIN], clock[TIGHTEST] = margin, t
-        project(ints, nums, work, t, y, clock[CLOSED])
-        margin = derivative(ints, nums, work, t, y, dy)
-    return margin
-
-
-def try_step(
-    derivative: Derivative,
-    project: Project,
-    ints: Ints,
-    nums: Nums,
-    work: Work,
-    clock: Row,
-    tally: Counts,
-    y: Row,
-    h: float,
-) -> float:
-    """Slopes of one step and the new state; its error over the tolerance."""
-    slopes, table = work[STAGES], nums[COEFFICIENTS]
-    size = len(y)
-    clock[LEAST] = 1.0
-    for s in range(1, 12):
-        for i in range(size):
-            total = 0.0
-            for j in range(s):
-                total += table[s, j] * slopes[j, i]
-            slopes[TRIED, i] = y[i] + h * total
-        margin = slope(
-            derivative,
-            project,
-            ints,
-            nums,
-            work,
-            clock,
-            tally,
-            clock[NOW] + table[C_ROW, s] * h,
-            slopes[TRIED],
-            slopes[s],
-        )
-        if margin < 0.0:
-            # So far off the motion that numbers overflow, most often: with a shorter step it may be well.
-            return 1e300
-        clock[MARGINS + s] = margin
-    third, fifth = 0.0, 0.0
-    for i in range(size):
-        total, three, five = 0.0, 0.0, 0.0
-        for j in range(12):
-            total += table[B_ROW, j] * slopes[j, i]
-            three += table[E3_ROW, j] * slopes[j, i]
-            five += table[E5_ROW, j] * slopes[j, i]
-        slopes[NEW, i] = y[i] + h * total
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i]))
-        third += (three / allowed) ** 2
-        fifth += (five / allowed) ** 2
-    if fifth == 0.0 and third == 0.0:
-        return 0.0
-    # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
-    noise = max(1.0, NOISE / max(clock[LEAST], 1e-5) / clock[RTOL])
-    return float(h * fifth / math.sqrt((fifth + 0.01 * third) * size) / noise)
-
-
-def prepare(
-    derivative: Derivative,
-    project: Project,
-    ints: Ints,
-    nums: Nums,
-    work: Work,
-    clock: Row,
-    tally: Counts,
-    y: Row,
-    h: float,
-) -> None:
-    """Coefficients of the dense output of the step from y to the new state."""
-    slopes, table, dense = work[STAGES], nums[COEFFICIENTS], work[DENSE]
-    size = len(y)
-    for s in range(13, 16):
-        for i in range(size):
-            total = 0.0
-            for j in range(s):
-                total += table[s, j] * slopes[j, i]
-            slopes[TRIED, i] = y[i] + h * total
-        slope(
-            derivative,
-            project,
-            ints,
-            nums,
-            work,
-            clock,
-            tally,
-            clock[NOW] + table[C_ROW, s] * h,
-            slopes[TRIED],
-            slopes[s],
-        )
-    for i in range(size):
-        rise = slopes[NEW, i] - y[i]
-        dense[0, i] = rise
-        dense[1, i] = h * slopes[0, i] - rise
-        dense[2, i] = 2.0 * rise - h * (slopes[12, i] + slopes[0, i])
-        for r in range(4):
-            total = 0.0
-            for j in range(16):
-                total += table[D_ROW + r, j] * slopes[j, i]
-            dense[3 + r, i] = h * total
-
-
-def interpolate(work: Work, y: Row, i: int, x: float) -> float:
-    """Component i of the state at the share x of the step from y."""
-    dense = work[DENSE]
-    total = 0.0
-    for r in range(6, -1, -1):
-        total = (total + dense[r, i]) * (x if r % 2 == 0 else 1.0 - x)
-    return float(y[i] + total)
-
-
-def sample(
-    derivative: Derivative, project: Project, ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row
-) -> None:
+def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
     """Writes an output: the state with loops closed, accelerations, efforts given and needed."""
-    n, vectors, size = ints[COUNTS][0, RATES], work[VECTORS], len(y)
+    n, size, vectors = ints[COUNTS][0, RATES], ints[COUNTS][0, SIZE], work[VECTORS]
     project(ints, nums, work, t, y, clock[CLOSED])
     derivative(ints, nums, work, t, y, work[STAGES][TRIED + 2])
     for i in range(size):
@@ -243,23 +102,12 @@ def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[
     return found, end
 
 
-def advance(
-    derivative: Derivative,
-    project: Project,
-    ints: Ints,
-    nums: Nums,
-    work: Work,
-    y: Row,
-    clock: Row,
-    tally: Counts,
-    times: Row,
-    out: Table,
-) -> int:
+def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts, outputs: Nums) -> int:
     """Integrates y from clock[NOW] towards clock[END], filling outputs; says why it came back."""
-    slopes, size = work[STAGES], len(y)
-    rank = ints[COUNTS][0, RANK]
+    slopes, times, out = work[STAGES], outputs[TIMES][0], outputs[OUT]
+    rank, size = ints[COUNTS][0, RANK], ints[COUNTS][0, SIZE]
     if tally[FRESH] == 1:
-        clock[MARGINS] = slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
+        clock[MARGINS] = slope(ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
         if clock[MARGINS] < 0.0:
             return MASSLESS
         tally[FRESH] = 0
@@ -275,7 +123,7 @@ def advance(
         h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
         if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:
             return STUCK
-        error = try_step(derivative, project, ints, nums, work, clock, tally, y, h)
+        error = try_step(ints, nums, work, clock, tally, y, h)
         if rank > 0 and error < 1e300 and layings < LAYINGS and tip(nums, clock, h):
             if error > 1.0:
                 # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
@@ -293,35 +141,38 @@ def advance(
         later = clock[NOW] + h
         if clock[END] - later < 1e-13 * max(1.0, abs(later)):
             later = clock[END]
-        gap, kept = project(ints, nums, work, later, slopes[NEW], clock[CLOSED])
+        gap = project(ints, nums, work, later, slopes[NEW], clock[CLOSED])
+        kept = work[VECTORS][KEPT, 0]
         if rank > 0 and not 0.0 <= gap < clock[OPEN]:
             clock[STEP] = 0.25 * h
             if h < 1e-9:
                 return MASSLESS if gap == -1.0 else OPENED
             continue
         rough, moved = 0.0, 0.0
-        margin = slope(derivative, project, ints, nums, work, clock, tally, later, slopes[NEW], slopes[12])
+        margin = slope(ints, nums, work, clock, tally, later, slopes[NEW], slopes[12])
         if margin < 0.0:
             return MASSLESS
         for i in range(size):
-            rough += (slopes[12, i] - slopes[11, i]) ** 2
-            moved += (slopes[NEW, i] - slopes[TRIED, i]) ** 2
+            change, way = slopes[12, i] - slopes[11, i], slopes[NEW, i] - slopes[TRIED, i]
+            rough += change * change
+            moved += way * way
         # What rounding leaves near a singular pose is no decay.
-        real = rough > (10.0 * NOISE / max(clock[LEAST], 1e-6) ** 2) ** 2
+        least = max(clock[LEAST], 1e-6)
+        real = math.sqrt(rough) > 10.0 * NOISE / (least * least)
         fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
         tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
         hit, share = -1, 1.0
-        due = tally[NEXT] < len(times) and times[tally[NEXT]] <= later
+        due = tally[NEXT] < len(out) and times[tally[NEXT]] <= later
         if due or len(ints[STOPS]) > 0:
-            prepare(derivative, project, ints, nums, work, clock, tally, y, h)
+            prepare(ints, nums, work, clock, tally, y, h)
             hit, share = stop_reached(ints, nums, work, y, 1.0)
             reached = later if hit < 0 else clock[NOW] + share * h
-            while tally[NEXT] < len(times) and times[tally[NEXT]] <= reached:
+            while tally[NEXT] < len(out) and times[tally[NEXT]] <= reached:
                 t = times[tally[NEXT]]
                 x = min(1.0, (t - clock[NOW]) / h)
                 for i in range(size):
                     slopes[TRIED, i] = interpolate(work, y, i, x)
-                sample(derivative, project, ints, nums, work, clock, t, slopes[TRIED], out[tally[NEXT]])
+                sample(ints, nums, work, clock, t, slopes[TRIED], out[tally[NEXT]])
                 tally[NEXT] += 1
             if hit >= 0:
                 for i in range(size):

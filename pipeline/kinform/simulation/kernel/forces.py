@@ -10,7 +10,6 @@ import math
 from kinform.simulation.kernel.layout import (
     AT_Q,
     AT_V,
-    CONTROLLED,
     DAMPER,
     DOES,
     EFFORT,
@@ -88,7 +87,7 @@ def drive(
             effort = -numbers[k, 0] * v
         elif does == SERVO:
             effort = controlled(actors, numbers, values, pieces, k, 0, one, y[one], t, q, v, dy)
-        elif does in (MOTOR, CONTROLLED):
+        elif does >= MOTOR:
             if does == MOTOR:
                 voltage, _, _ = law(values, pieces, actors[k, LAW], t)
             else:

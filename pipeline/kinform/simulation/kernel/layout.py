@@ -19,8 +19,8 @@ CONSTANTS, SCALE, GEARS, PIECES = COUNTS, COLUMNS, MODE, 10
 STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE = range(9)
 
 # ints[COUNTS][0]
-RANK, LED, POSITIONS, STATES, RATES = range(5)
-"""RANK of the loops for the rates that are not led; LED: how many rates are led."""
+RANK, LED, POSITIONS, STATES, RATES, SIZE = range(6)
+"""RANK of the loops for the rates that are not led; LED: how many rates are led; SIZE of the state."""
 
 # nums[CONSTANTS][0]
 GRAVITY, LENGTH, LAST = 0, 3, 4
@@ -43,12 +43,14 @@ LINK, BEFORE, SIGNAL = range(3)
 ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
 """GAIN: acceleration at constant rates. INERT: m, m·c, then xx yy zz xy xz yz about the centre."""
 
-# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is. work[VECTORS]:
-FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT = range(9)
+# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is in it. work[VECTORS]:
+FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT, KEPT = range(10)
+"""KEPT, its first number: smallest pivot over that of its choice, at the last projection."""
 
 # ints[ACTORS], and their kinds.
 DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE = range(6)
 EFFORT, SPRING, DAMPER, SERVO, MOTOR, CONTROLLED = range(6)
+"""CONTROLLED: a motor with a controller."""
 
 # nums[SIGNALS]: four numbers, the kind, first of its pieces and how many. Kinds: polynomial of degree one,
 # sine, pieces of cubics.
@@ -69,6 +71,10 @@ STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT = range(8)
 
 NOISE = 1e-13
 """Relative rounding of accelerations, times the pivots' ratio: what remains of closed loops."""
+
+# What the integrator fills.
+TIMES, OUT = range(2)
+"""A row of the times (s) at which outputs are due; a row of output for each."""
 
 # What the integrator returns.
 DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN = range(9)

@@ -1,13 +1,11 @@
 """Closes loops: independent rows and dependent rates, factors, and what follows from both.
 
-Rows and rates are chosen once by complete pivoting at a known rank, and kept while their pivots stay
-good; every evaluation eliminates in that order, never by a tolerance of its own. With the rates in the
+Rows and rates are chosen once (`choice`) and kept while their pivots stay good; every evaluation eliminates
+in that order, never by a tolerance of its own. With the rates in the
 order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (−B; 1) keep them closed.
 """
 
 from __future__ import annotations
-
-import numpy as np
 
 from kinform.simulation.kernel.layout import (
     BEFORE,
@@ -21,16 +19,13 @@ from kinform.simulation.kernel.layout import (
     LINKS,
     MODE,
     PIVOT,
-    RANK,
+    POSITIONS,
     RATES,
     REFERENCE,
     ROWS,
-    SCALE,
     SCREWS,
-    SIGNAL,
     STATE,
     TIP,
-    VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
@@ -38,7 +33,7 @@ from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
 
-__all__ = ["back_substitute", "choose", "eliminate", "gained", "gap_of", "gather", "line_of"]
+__all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 
 def line_of(
@@ -70,14 +65,14 @@ def gained(closures: Index, numbers: Table, state: Table, length: float, row: in
 
 
 def gap_of(
-    closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, n: int, row: int
+    counts: Index, closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, row: int
 ) -> float:
     """What row `row` has open in the positions."""
     loop, axis = row // 6, row % 6
     total = 0.0
     if loop >= len(closures):
-        for k in range(gears.shape[1] - n):
-            total += gears[row - 6 * len(closures), n + k] * y[k]
+        for k in range(counts[0, POSITIONS]):
+            total += gears[row - 6 * len(closures), counts[0, RATES] + k] * y[k]
         return total
     a, b = closures[loop, 0], closures[loop, 1]
     e0, e1, e2 = turned(state, a, *three(numbers, loop, 3 * (axis % 3)))
@@ -94,36 +89,6 @@ def gap_of(
     return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
 
 
-def choose(ints: Ints, nums: Nums, work: Work) -> None:
-    """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
-    mode and its pivots. Never compiled: it is called a few times a run."""
-    n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
-    count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
-    led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
-    ints[MODE][0, :count], ints[MODE][1, :n] = range(count), range(n)
-    gather(ints, nums, work, count)
-    rows = work[ROWS][:count] * scale
-    left = np.ones(count, dtype=bool)
-    chosen: list[int] = []
-    dependent: list[int] = []
-    for _ in range(rank):
-        size = np.abs(rows) * left[:, None]
-        size[:, led] = -1.0
-        size[:, dependent] = -1.0
-        preferred = np.where(closing, size, -1.0)
-        best = preferred if preferred.max() > 0.3 else size
-        row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
-        work[VECTORS][REFERENCE, len(chosen)] = max(float(best[row, column]), 1e-300)
-        left[row] = False
-        chosen.append(row)
-        dependent.append(column)
-        others = left & (rows[:, column] != 0.0)
-        rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
-    free = [k for k in range(n) if not led[k] and k not in dependent]
-    ints[MODE][0, :rank] = chosen
-    ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
-
-
 def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     """Writes the first `count` rows of the mode into work[ROWS], rates in its order.
 
@@ -133,8 +98,6 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
     links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
     state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
-    for c in range(n):
-        mode[2, mode[1, c]] = c
     for r in range(count):
         loop, axis = mode[0, r] // 6, mode[0, r] % 6
         if loop >= len(closures):

@@ -10,21 +10,29 @@ import math
 
 from kinform.simulation.kernel.layout import (
     BEFORE,
+    COLUMNS,
     COM,
+    CONSTANTS,
     FIRST,
     FORCE,
     GAIN,
     GRAVITY,
     HEAVY,
     INERT,
+    LINKS,
+    MASS,
+    MODE,
     PARENT,
+    SCREWS,
+    STATE,
     TENSOR,
     TWIST,
+    VECTORS,
     WEIGHT,
     WIDTH,
     WRENCH,
 )
-from kinform.simulation.kernel.types import Index, Row, Table
+from kinform.simulation.kernel.types import Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import add, cross, dot, place, put, three, turned
 
 __all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]
@@ -56,8 +64,9 @@ def heavy(state: Table, i: int, m: float, x: float, y: float, z: float) -> None:
     add(state, i, INERT + 7, -m * x * y, -m * x * z, -m * y * z)
 
 
-def inertias(links: Index, numbers: Table, state: Table) -> None:
+def inertias(ints: Ints, nums: Nums, work: Work) -> None:
     """Inertia of each link about the centre, at its pose; what it turns with is three pairs of weights."""
+    links, numbers, state = ints[LINKS], nums[LINKS], work[STATE]
     for i in range(1, len(links)):
         for j in range(INERT, INERT + 10):
             state[i, j] = 0.0
@@ -73,9 +82,10 @@ def inertias(links: Index, numbers: Table, state: Table) -> None:
             heavy(state, i, numbers[i, TENSOR + 4 * j], u0, u1, u2)
 
 
-def wrenches(links: Index, state: Table, constants: Table) -> None:
+def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
     """Wrench that each link needs at constant rates against inertia and gravity."""
-    g0, g1, g2 = three(constants, 0, GRAVITY)
+    links, state = ints[LINKS], work[STATE]
+    g0, g1, g2 = three(nums[CONSTANTS], 0, GRAVITY)
     for i in range(1, len(links)):
         put(state, i, WRENCH, 0.0, 0.0, 0.0)
         put(state, i, WRENCH + 3, 0.0, 0.0, 0.0)
@@ -94,10 +104,11 @@ def wrenches(links: Index, state: Table, constants: Table) -> None:
         add(state, i, WRENCH + 3, f0, f1, f2)
 
 
-def mass_matrix(
-    links: Index, before: Index, state: Table, screws: Table, matrix: Table, force: Table, with_forces: bool
-) -> None:
-    """Lower triangle of the mass matrix; with forces the wrenches of the links leave the efforts too."""
+def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
+    """The mass matrix, rates in the order of the mode; with forces the wrenches of the links leave the
+    efforts too. What links carry is added to their inertias and wrenches."""
+    links, before, mode = ints[LINKS], ints[COLUMNS], ints[MODE]
+    state, screws, matrix, force = work[STATE], work[SCREWS], work[MASS], work[VECTORS]
     for i in range(len(links) - 1, 0, -1):
         p = links[i, PARENT]
         for k in range(links[i, FIRST], links[i, FIRST] + links[i, WIDTH]):
@@ -108,7 +119,9 @@ def mass_matrix(
             while j >= 0:
                 w0, w1, w2 = three(screws, j, 0)
                 l0, l1, l2 = three(screws, j, 3)
-                matrix[k, j] = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
+                value = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
+                matrix[mode[2, k], mode[2, j]] = value
+                matrix[mode[2, j], mode[2, k]] = value
                 j = before[j, BEFORE]
             if with_forces:
                 for c in range(6):

@@ -11,19 +11,24 @@ import math
 from kinform.simulation.kernel.layout import (
     AXIS,
     BALL,
+    COUNTS,
     FIRST,
     GAIN,
     KIND,
+    LINKS,
     PARENT,
     POINT,
     POS,
+    POSITIONS,
     SCREW,
+    SCREWS,
     SLIDE,
+    STATE,
     TWIST,
     WIDTH,
     Q,
 )
-from kinform.simulation.kernel.types import Index, Row, Table
+from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import add, cross, place, put, three, turned
 
 __all__ = ["place_ball", "place_links", "place_screw", "twist_links"]
@@ -86,8 +91,9 @@ def place_ball(
         put(screws, k + j, 3, *cross(x0, x1, x2, w0, w1, w2))
 
 
-def place_links(links: Index, numbers: Table, state: Table, screws: Table, y: Row) -> None:
+def place_links(ints: Ints, nums: Nums, work: Work, y: Row) -> None:
     """Poses of all links and screws of all rates at the positions in y."""
+    links, numbers, state, screws = ints[LINKS], nums[LINKS], work[STATE], work[SCREWS]
     for i in range(1, len(links)):
         at = links[i, Q]
         if links[i, KIND] == SCREW:
@@ -96,8 +102,10 @@ def place_links(links: Index, numbers: Table, state: Table, screws: Table, y: Ro
             place_ball(links, numbers, state, screws, i, y[at], y[at + 1], y[at + 2], y[at + 3])
 
 
-def twist_links(links: Index, state: Table, screws: Table, y: Row, first: int) -> None:
-    """Twists of all links for the rates from y[first] on, and their accelerations at constant rates: V × what the own rates add."""
+def twist_links(ints: Ints, work: Work, y: Row) -> None:
+    """Twists of all links at the rates in y, and their accelerations at constant rates: V × what the own
+    rates add."""
+    links, state, screws, first = ints[LINKS], work[STATE], work[SCREWS], ints[COUNTS][0, POSITIONS]
     for i in range(1, len(links)):
         p = links[i, PARENT]
         for j in range(6):

@@ -1,0 +1,60 @@
+"""Which rows of the loops are independent and which rates dependent, at a known rank.
+
+Never compiled: it is called a few times a run.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.simulation.kernel.layout import (
+    CLOSURES,
+    COLUMNS,
+    COUNTS,
+    GEARS,
+    MASS,
+    MODE,
+    RANK,
+    RATES,
+    REFERENCE,
+    ROWS,
+    SCALE,
+    SIGNAL,
+    VECTORS,
+)
+from kinform.simulation.kernel.loops import gather
+from kinform.simulation.kernel.types import Ints, Nums, Work
+
+__all__ = ["choose"]
+
+
+def choose(ints: Ints, nums: Nums, work: Work) -> None:
+    """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
+    mode and its pivots, and empties the mass matrix, which is in its order."""
+    n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
+    count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
+    led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
+    ints[MODE][0, :count], ints[MODE][1, :n], ints[MODE][2, :n] = range(count), range(n), range(n)
+    gather(ints, nums, work, count)
+    rows = work[ROWS][:count] * scale
+    left = np.ones(count, dtype=bool)
+    chosen: list[int] = []
+    dependent: list[int] = []
+    for _ in range(rank):
+        size = np.abs(rows) * left[:, None]
+        size[:, led] = -1.0
+        size[:, dependent] = -1.0
+        preferred = np.where(closing, size, -1.0)
+        best = preferred if preferred.max() > 0.3 else size
+        row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
+        work[VECTORS][REFERENCE, len(chosen)] = max(float(best[row, column]), 1e-300)
+        left[row] = False
+        chosen.append(row)
+        dependent.append(column)
+        others = left & (rows[:, column] != 0.0)
+        rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
+    free = [k for k in range(n) if not led[k] and k not in dependent]
+    ints[MODE][0, :rank] = chosen
+    ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
+    ints[MODE][2, :n] = np.argsort(ints[MODE][1, :n])
+    work[MASS][:] = 0.0

@@ -1,0 +1,119 @@
+"""One step: the method of Dormand and Prince of order 8 with its dense output of order 7.
+
+After Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.5 and their
+program DOP853.
+"""
+
+from __future__ import annotations
+
+import math
+
+from kinform.simulation.kernel.equations import derivative, project
+from kinform.simulation.kernel.layout import (
+    ATOL,
+    B_ROW,
+    C_ROW,
+    CLOSED,
+    COEFFICIENTS,
+    COUNTS,
+    D_ROW,
+    DENSE,
+    E3_ROW,
+    E5_ROW,
+    LEAST,
+    MARGIN,
+    MARGINS,
+    NEAR,
+    NEW,
+    NOISE,
+    NOW,
+    RANK,
+    RTOL,
+    SIZE,
+    SLOPES,
+    STAGES,
+    TIGHTEST,
+    TRIED,
+)
+from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
+
+__all__ = ["interpolate", "prepare", "slope", "stage", "try_step"]
+
+
+def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: float, y: Row, dy: Row) -> float:
+    """The derivative, in y closed first when a singular pose is near: accelerations depend on it there."""
+    tally[SLOPES] += 1
+    margin = derivative(ints, nums, work, t, y, dy)
+    clock[LEAST] = min(clock[LEAST], abs(margin))
+    if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0, RANK] > 0:
+        if margin < clock[MARGIN]:
+            clock[MARGIN], clock[TIGHTEST] = margin, t
+        project(ints, nums, work, t, y, clock[CLOSED])
+        margin = derivative(ints, nums, work, t, y, dy)
+    return margin
+
+
+def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float, s: int) -> float:
+    """Evaluation number s of the step h from y, from those before; its state stays in row TRIED."""
+    slopes, table = work[STAGES], nums[COEFFICIENTS]
+    for i in range(ints[COUNTS][0, SIZE]):
+        total = 0.0
+        for j in range(s):
+            total += table[s, j] * slopes[j, i]
+        slopes[TRIED, i] = y[i] + h * total
+    return slope(ints, nums, work, clock, tally, clock[NOW] + table[C_ROW, s] * h, slopes[TRIED], slopes[s])
+
+
+def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float) -> float:
+    """Slopes of one step and the new state; its error over the tolerance."""
+    slopes, table, size = work[STAGES], nums[COEFFICIENTS], ints[COUNTS][0, SIZE]
+    clock[LEAST] = 1.0
+    for s in range(1, 12):
+        margin = stage(ints, nums, work, clock, tally, y, h, s)
+        if margin < 0.0:
+            # So far off the motion that numbers overflow, most often: with a shorter step it may be well.
+            return 1e300
+        clock[MARGINS + s] = margin
+    third, fifth = 0.0, 0.0
+    for i in range(size):
+        total, three, five = 0.0, 0.0, 0.0
+        for j in range(12):
+            total += table[B_ROW, j] * slopes[j, i]
+            three += table[E3_ROW, j] * slopes[j, i]
+            five += table[E5_ROW, j] * slopes[j, i]
+        slopes[NEW, i] = y[i] + h * total
+        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i]))
+        three, five = three / allowed, five / allowed
+        third += three * three
+        fifth += five * five
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
+    noise = max(1.0, NOISE / max(clock[LEAST], 1e-5) / clock[RTOL])
+    return float(h * fifth / math.sqrt((fifth + 0.01 * third) * size) / noise)
+
+
+def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float) -> None:
+    """Coefficients of the dense output of the step from y to the new state."""
+    slopes, table, dense = work[STAGES], nums[COEFFICIENTS], work[DENSE]
+    for s in range(13, 16):
+        stage(ints, nums, work, clock, tally, y, h, s)
+    for i in range(ints[COUNTS][0, SIZE]):
+        rise = slopes[NEW, i] - y[i]
+        dense[0, i] = rise
+        dense[1, i] = h * slopes[0, i] - rise
+        dense[2, i] = 2.0 * rise - h * (slopes[12, i] + slopes[0, i])
+        for r in range(4):
+            total = 0.0
+            for j in range(16):
+                total += table[D_ROW + r, j] * slopes[j, i]
+            dense[3 + r, i] = h * total
+
+
+def interpolate(work: Work, y: Row, i: int, x: float) -> float:
+    """Component i of the state at the share x of the step from y."""
+    dense = work[DENSE]
+    total = 0.0
+    for r in range(6, -1, -1):
+        total = (total + dense[r, i]) * (x if r % 2 == 0 else 1.0 - x)
+    return float(y[i] + total)
