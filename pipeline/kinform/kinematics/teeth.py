@@ -146,7 +146,7 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
         deviation=abs(mean) * error,
         play=abs(mean) * max(0.0, float((ahead + behind).min())),
         reach=(max(lower, other[0]), min(upper, other[1])),
-        place=place,
+        place=_pitch_point(first, second, mean) @ plane + float(axis @ place) * axis,
         normals=np.stack([normal, _mirrored(first, second, plane, normal)]),
     )
 
@@ -284,6 +284,15 @@ def _reach(outline: _Outline, row: _Row, touch: Array) -> tuple[float, float]:
     """Values of the joint between which the teeth are where the contact is."""
     lower, upper = -(row.last + 0.5 * row.pitch), -(row.first - 0.5 * row.pitch)
     return (lower, upper) if outline.sense > 0.0 else (-upper, -lower)
+
+
+def _pitch_point(first: _Outline, second: _Outline, ratio: float) -> Array:
+    """(2,) where both sides have the same velocity."""
+    one, two = first.sense * ratio, second.sense
+    if first.turns and second.turns:
+        return np.asarray((one * first.centre - two * second.centre) / (one - two))
+    wheel, slide, share = (first, second, two / one) if first.turns else (second, first, one / two)
+    return np.asarray(wheel.centre + share * np.array([slide.along[1], -slide.along[0]]))
 
 
 def _mirrored(first: _Outline, second: _Outline, plane: Array, normal: Array) -> Array:

@@ -305,9 +305,10 @@ class Meshing:
     reach: tuple[float, float]
     """Values of the first between which there are teeth at the contact; infinite for whole wheels."""
     place: Array
-    """(3,) m: in the middle of the contact, carried by the body that bears both."""
+    """(3,) m: the pitch point, at half of the contact's width; the body that bears both sides carries it."""
     normals: Array
-    """(2, 3) unit, of the flanks that touch and of the others: from the first side's body into the second's."""
+    """(2, 3) unit, of the flanks that touch and of the others, taken to be symmetric: from the first side's body into
+    the second's. Lines of action go through the pitch point."""
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.integrate import run_dynamic
 from kinform.simulation.kinematic import resting, run_kinematic
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.reactions import reactions
+from kinform.simulation.reactions import Reactions, reactions
 from kinform.simulation.record import Record, blank, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
@@ -176,11 +177,20 @@ def _with_forces(
         F_A=-found.on_second,
         F_B=found.on_second,
         undetermined=found.undetermined,
+        **_passed_on(dynamics, found),
         balance=balance.greatest,
         balance_bodies=balance.bodies,
         balance_shafts=spread(dynamics.mechanism, balance.shafts),
         drives=uses(dynamics, record),
     )
+
+
+def _passed_on(dynamics: Dynamics, found: Reactions) -> dict[str, Any]:
+    """What gears do, as fields of the results."""
+    if found.gears is None:
+        return {}
+    names = tuple(gear.subject for gear in dynamics.system.gears)
+    return {"gear_names": names, "gear_effort": found.gears.efforts, "gear_force": found.gears.forces}
 
 
 def _ajar(residual: Array) -> tuple[str, ...]:
