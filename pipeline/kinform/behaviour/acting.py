@@ -134,19 +134,18 @@ def make_gear(
 
 def mesh_gear(coupling: Found, joints: Joints) -> Gear | str:
     """The gear that teeth of constant ratio make between two joints, or why there is none."""
+    tied = " and ".join(coupling.joints)
     if coupling.meshing is None:
-        why = f": {coupling.reason}" if coupling.reason else ", and a section across them does not show one"
-        return f"the joint is a contact of {_TIES[coupling.kind]} whose ratio is known at this pose only{why}"
+        why = coupling.reason or "a section across the contact does not show teeth on both sides"
+        return f"the contact couples {tied}, in a ratio that is known at this pose only: {why}"
     if coupling.status != "determined":
-        return f"the joint couples others, and is {coupling.status}"
+        return f"the contact couples {tied}, and is {coupling.status}"
     missing = [name for name in coupling.joints if name not in joints or joints[name].kind.rates != 1]
     if missing:
-        return f"the joint couples {' and '.join(coupling.joints)}, and {missing[0]} is not simulated"
+        return f"the contact couples {tied}, and {missing[0]} is not simulated"
     teeth = coupling.meshing
-    return Gear(f"gear {coupling.through}", coupling.through, teeth.ratio, teeth.place, *teeth.normals)
-
-
-_TIES = {"gear": "teeth", "rack": "teeth", "cam": "a cam"}
+    flank, back = teeth.normals
+    return Gear(f"gear {coupling.through}", coupling.through, teeth.ratio, teeth.place, flank, back, *teeth.reach)
 
 
 def make_load(

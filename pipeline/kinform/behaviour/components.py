@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -104,6 +105,9 @@ class Gear(Component):
     """(3,) unit: from the other body of the joint at a into that of the joint at b."""
     back: Array | None = None
     """(3,) the same of the flanks behind the teeth."""
+    lower: float = -math.inf
+    """Values at a (rad or m) between which there are teeth."""
+    upper: float = math.inf
 
     @property
     def ports(self) -> tuple[Port, ...]:

@@ -212,7 +212,7 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
     # the side that leads of each tooth: they come once a tooth
     starts = np.sort(outline.apart(places[0], along[leading]))
     if len(starts) < FEWEST or 2 * len(starts) != len(along):
-        return f"only {len(starts)} teeth are found at the contact" if len(starts) < FEWEST else ""
+        return f"one side has only {len(starts)} at the contact where teeth would be" if len(starts) < FEWEST else ""
     gaps = np.diff(starts)
     if outline.turns:
         gaps = np.append(gaps, starts[0] + 2.0 * math.pi - starts[-1])
@@ -257,7 +257,8 @@ def _near(outline: _Outline, other: _Outline) -> Array:
 
 def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]:
     """How far `moving` edges can go forwards and backwards until they meet `still` ones; negative where they overlap."""
-    forwards, backwards = [], []
+    forwards: list[float] = []
+    backwards: list[float] = []
     for corners, edges, sign in ((still, moving, 1.0), (moving, still, -1.0)):
         level, place = motion.coordinates(corners[:, 0])
         along, leading = motion.crossings(level, edges)

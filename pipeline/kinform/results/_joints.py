@@ -87,9 +87,7 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     write_rows(group, "misaligned", _MISALIGNED, rows)
     write_records(group, "couplings", _COUPLINGS, kinematics.couplings)
     teeth = [(k, coupling.meshing) for k, coupling in enumerate(kinematics.couplings) if coupling.meshing is not None]
-    rows = [
-        vars(mesh) | {"coupling": k, "flank": mesh.normals[0], "back": mesh.normals[1]} for k, mesh in teeth
-    ]
+    rows = [vars(mesh) | {"coupling": k, "flank": mesh.normals[0], "back": mesh.normals[1]} for k, mesh in teeth]
     write_rows(group, "meshings", _MESHINGS, rows)
 
 

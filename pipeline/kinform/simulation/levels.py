@@ -91,7 +91,7 @@ def notes_of_drives(drives: Iterable[Drive]) -> tuple[str, ...]:
 
 def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
     """Teeth that are replaced by the ratio that they keep, and by how much that may be wrong."""
-    types = {joint.name: joint.type for joint in kinematics.joints}
+    types = {str(joint.name): joint.type for joint in kinematics.joints}
     notes = []
     for coupling in kinematics.couplings:
         teeth = coupling.meshing

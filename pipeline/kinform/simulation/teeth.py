@@ -93,4 +93,3 @@ def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) ->
         wrenches[:, index[second]] += total
         wrenches[:, index[first]] -= total
     return Transmitted(efforts, forces, wrenches)
-
