@@ -120,7 +120,8 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
             return ""
         outlines.append(outline)
     first, second = outlines
-    touch = plane @ place
+    # at the pitch point both sides have teeth, where the contact itself may be at their tips
+    touch = _pitch_point(first, second, ratio)
     rows = [_teeth(outline, touch) for outline in outlines]
     for row in rows:
         if isinstance(row, str):
