@@ -200,7 +200,7 @@ class _Row:
     pitch: float
     """rad or m."""
     first: float
-    """along of the first and the last; -inf and inf of a whole wheel."""
+    """along of the middle of the first and of the last; -inf and inf of a whole wheel."""
     last: float
 
 
@@ -230,7 +230,9 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
     if high - low + 1 < FEWEST:
         return "the teeth at the contact do not come at even distances"
     pitch = float(starts[high] - starts[low]) / (high - low)
-    return _Row(high - low + 1, pitch, float(starts[low]), float(starts[high]))
+    ends = np.sort(outline.apart(places[0], along[~leading]))
+    half = 0.5 * float(np.median(np.mod(starts - ends, pitch))) if len(ends) == len(starts) else 0.25 * pitch
+    return _Row(high - low + 1, pitch, float(starts[low]) - half, float(starts[high]) - half)
 
 
 def _rolled(first: _Outline, second: _Outline, pitch: float, follow: float) -> tuple[Array, Array]:
