@@ -11,7 +11,7 @@ from known import FIXTURES
 from kinform import stages
 from kinform.model.function import SimulationRequest
 
-GENERAL = {"ball_bearing", "gear_pair", "geneva_driven", "rack_and_pinion"}
+GENERAL = {"ball_bearing", "geneva_driven"}
 """With contacts that are no joint of a port model."""
 SINGULAR = {"parallelogram_flat", "shaky_truss"}
 """Written in a pose where their loops branch, or hold only to first order."""

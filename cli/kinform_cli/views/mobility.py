@@ -78,7 +78,11 @@ def _coupling(coupling: Coupling) -> str:
     known = f" ± {coupling.uncertainty:.1g}" if math.isfinite(coupling.uncertainty) else ""
     pose = ", at this pose" if coupling.kind == "cam" else ""
     sure = "" if coupling.status == "determined" else f" ({coupling.status})"
-    return f"{coupling.kind}: {first} = {coupling.ratio:.6g}{known} · {second} through {coupling.through}{pose}{sure}"
+    said = f"{coupling.kind}: {first} = {coupling.ratio:.6g}{known} · {second} through {coupling.through}{pose}{sure}"
+    if coupling.meshing is not None:
+        one, two = coupling.meshing.teeth
+        return f"{said}; {coupling.meshing.ratio:.6g} over whole teeth, of {one} and {two}"
+    return f"{said}; {coupling.reason}" if coupling.reason else said
 
 
 def _freedoms(design: Design) -> Rows:

@@ -39,7 +39,7 @@ def render(design: Design) -> RenderableType:
         drawn = series.render(run, lengths)
         if drawn is not None:
             items += ["", drawn]
-    items += _drives(run) + _open(run)
+    items += _drives(run) + _gears(run) + _open(run)
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += _ranges(run, lengths) + _collisions(run, lengths)
@@ -75,6 +75,18 @@ def _drives(run: Simulation) -> list[RenderableType]:
         rest = _REST * use.peak_power * float(run.time[-1] - run.time[0])
         work = use.work if abs(use.work) > rest else 0.0
         rows.add(use.joint, use.kind.replace("_", " "), *efforts, number(use.peak_power), number(work))
+    return [rows]
+
+
+def _gears(run: Simulation) -> list[RenderableType]:
+    """What each gear passed on at most: to its two joints, and between its teeth."""
+    if not run.gear_names or not len(run.gear_effort):
+        return []
+    columns = ("peak on the first joint", "on the second", "between the teeth N")
+    rows = Rows("gear", *columns, title="\nefforts that gears pass on (N·m or N)", right=columns)
+    for k, name in enumerate(run.gear_names):
+        peaks = (*abs(run.gear_effort[:, k]).max(axis=0), abs(run.gear_force[:, k]).max())
+        rows.add(name, *(number(float(peak)) if math.isfinite(peak) else "not known" for peak in peaks))
     return [rows]
 
 

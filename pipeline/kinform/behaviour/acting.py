@@ -25,10 +25,11 @@ from kinform.behaviour.signals import Constant, Signal, signal
 from kinform.function import resolve
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
+from kinform.model.kinematics import Coupling as Found
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 
-__all__ = ["make_drive", "make_gear", "make_load", "one_freedom"]
+__all__ = ["make_drive", "make_gear", "make_load", "mesh_gear", "one_freedom"]
 
 Joints = Mapping[str, JointComponent]
 
@@ -129,6 +130,22 @@ def make_gear(
         return None, ("", ""), "its ratio is not a number"
     name = f"gear {number} {coupling.joints[0]} {coupling.joints[1]}"
     return Gear(name, name, ratio), (first.subject, second.subject), ""
+
+
+def mesh_gear(coupling: Found, joints: Joints) -> Gear | str:
+    """The gear that teeth of constant ratio make between two joints, or why there is none."""
+    tied = " and ".join(coupling.joints)
+    if coupling.meshing is None:
+        why = coupling.reason or "a section across the contact does not show teeth on both sides"
+        return f"the contact couples {tied}, in a ratio that is known at this pose only: {why}"
+    if coupling.status != "determined":
+        return f"the contact couples {tied}, and is {coupling.status}"
+    missing = [name for name in coupling.joints if name not in joints or joints[name].kind.rates != 1]
+    if missing:
+        return f"the contact couples {tied}, and {missing[0]} is not simulated"
+    teeth = coupling.meshing
+    flank, back = teeth.normals
+    return Gear(f"gear {coupling.through}", coupling.through, teeth.ratio, teeth.place, flank, back, *teeth.reach)
 
 
 def make_load(

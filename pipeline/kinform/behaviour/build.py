@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.behaviour.acting import make_drive, make_gear, make_load
+from kinform.behaviour.acting import make_drive, make_gear, make_load, mesh_gear
 from kinform.behaviour.components import Component, Ground, JointComponent, Node, RigidBody, System
 from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
@@ -79,8 +79,9 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
         else:
             rigid = RigidBody(name, body.name, known.mass, known.centre_of_mass, known.inertia)
             builder.add(rigid, frame=name)
+    ties = {coupling.through: coupling for coupling in reversed(kinematics.couplings) if coupling.kind != "screw"}
     for joint in kinematics.joints:
-        if joint.type == "general" and joint.freedoms == 6:
+        if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties):
             continue
         made, why = _joint(joint)
         if made is None:
@@ -89,6 +90,12 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
         first, second = (f"body {name}" for name in joint.bodies)
         builder.add(made, a=first, b=second, shaft=f"shaft {joint.name}")
     modelled = {c.subject: c for c in builder.components if isinstance(c, JointComponent)}
+    for name, coupling in sorted(ties.items()):
+        teeth = mesh_gear(coupling, modelled)
+        if isinstance(teeth, str):
+            failures.append((name, teeth))
+        else:
+            builder.add(teeth, **{port: f"shaft {joint}" for port, joint in zip("ab", coupling.joints, strict=True)})
     for number, drive in enumerate(assembly.function.drives, start=1):
         actors, joint_name, why, by_force = make_drive(assembly, kinematics, modelled, drive, number)
         for component in actors:
@@ -96,12 +103,12 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
         if not actors:
             (forces_missing if by_force else failures).append((drive.joint, why))
     if gears:
-        for number, coupling in enumerate(assembly.function.couplings, start=1):
-            gear, sides, why = make_gear(assembly, kinematics, modelled, coupling, number)
+        for number, stated in enumerate(assembly.function.couplings, start=1):
+            gear, sides, why = make_gear(assembly, kinematics, modelled, stated, number)
             if gear is not None:
                 builder.add(gear, a=f"shaft {sides[0]}", b=f"shaft {sides[1]}")
             else:
-                failures.append(("coupling of " + " and ".join(coupling.joints), why))
+                failures.append(("coupling of " + " and ".join(stated.joints), why))
     for number, load in enumerate(assembly.function.loads, start=1):
         component_load, body_name, why = make_load(kinematics, mass, load, number)
         if component_load is not None:

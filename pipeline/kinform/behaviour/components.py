@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -90,11 +91,23 @@ class JointComponent(Component):
         return 2 * FRAME + self.kind.rates
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Gear(Component):
-    """value at a = ratio · value at b; the efforts do no work between them. Two equations."""
+    """value at a = ratio · value at b; the efforts do no work between them. Two equations.
+
+    Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes.
+    """
 
     ratio: float
+    pitch_point: Array | None = None
+    """(3,) m, at the pose of the meshes; the body that both joints have in common carries it."""
+    flank: Array | None = None
+    """(3,) unit: from the other body of the joint at a into that of the joint at b."""
+    back: Array | None = None
+    """(3,) the same of the flanks behind the teeth."""
+    lower: float = -math.inf
+    """Values at a (rad or m) between which there are teeth."""
+    upper: float = math.inf
 
     @property
     def ports(self) -> tuple[Port, ...]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.behaviour.components import (
     Component,
+    Gear,
     Ground,
     JointComponent,
     LoadComponent,
@@ -193,6 +194,9 @@ def placed(system: System, X_WS: Array) -> System:
         if isinstance(component, LoadComponent):
             force, torque = direction(component.force), direction(component.torque)
             return replace(component, force=force, torque=torque, point=point(component.point))
+        if isinstance(component, Gear) and component.pitch_point is not None:
+            normals = [None if normal is None else direction(normal) for normal in (component.flank, component.back)]
+            return replace(component, pitch_point=point(component.pitch_point), flank=normals[0], back=normals[1])
         if isinstance(component, SpringDamper):
             return replace(component, point=point(component.point), other=point(component.other))
         return component

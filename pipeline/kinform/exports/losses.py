@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
-from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
+from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo, System
 from kinform.exports.robot import Driver, Robot
 
-__all__ = ["tree_losses"]
+__all__ = ["of_teeth", "tree_losses"]
 
 _WHAT: dict[type[Driver], str] = {
     MotionDrive: "its motion follows a law",
@@ -15,6 +16,17 @@ _WHAT: dict[type[Driver], str] = {
     Servo: "a servo with its gains and target",
     DcMotor: "a DC motor with its voltage",
 }
+
+
+def of_teeth(system: System) -> Iterator[str]:
+    """What becomes of teeth where a format has gears as ratios between joints."""
+    for gear in system.gears:
+        if gear.pitch_point is not None:
+            ends = math.isfinite(gear.lower) or math.isfinite(gear.upper)
+            yield (
+                f"{gear.subject}: a ratio between its joints; what its teeth push on the bearings is left out"
+                + (", and that they end" if ends else "")
+            )
 
 
 def tree_losses(made: Robot, format: str, *, springs: bool = False) -> Iterator[str]:

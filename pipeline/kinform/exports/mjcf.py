@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from kinform.behaviour.primitives import Ball
 from kinform.exports.exported import Exported
+from kinform.exports.losses import of_teeth
 from kinform.exports.mjcf_drives import actuators, gears, load
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MJCF
@@ -95,7 +96,7 @@ def export(model: ExportModel) -> Exported:
     equalities = [row for closing in made.closing for row in _closure(made, closing, twins)]
     rows = actuators(made, lost)
     ordered = list(_walk(root))
-    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged, *of_teeth(model.system)]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(

@@ -34,6 +34,7 @@ from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Tabl
 from kinform.exports.exported import Exported
 from kinform.exports.laws import pieces
 from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
+from kinform.exports.losses import of_teeth
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
@@ -73,7 +74,7 @@ def export(model: ExportModel) -> Exported:
         (component.name for component in model.system.components), MODELICA, beside=("gravity",), suffixes=_SUFFIXES
     )
     lost = [*model.lost, *singular(model)]
-    remarks: list[str] = []
+    remarks: list[str] = [*of_teeth(model.system)]
     built = _Built()
     for component in model.system.components:
         if isinstance(component, Ground | RigidBody):

@@ -177,7 +177,11 @@ _WRITERS: dict[type[Component], Callable[[Any], dict[str, Any]]] = {
     EffortDrive: lambda c: {"law": _law(c.signal)},
     Spring: lambda c: {"stiffness": c.stiffness, "rest": c.rest},
     Damper: lambda c: {"damping": c.damping},
-    Gear: lambda c: {"ratio": c.ratio},
+    Gear: lambda c: {
+        "ratio": c.ratio,
+        **{key: _list(getattr(c, key)) for key in ("pitch_point", "flank", "back") if getattr(c, key) is not None},
+        **{key: getattr(c, key) for key in ("lower", "upper") if math.isfinite(getattr(c, key))},
+    },
     EndStop: lambda c: {"lower": _finite(c.lower), "upper": _finite(c.upper)},
     Servo: lambda c: {"target": _law(c.target), "controller": _controller(c.controller)},
     DcMotor: lambda c: {
@@ -264,7 +268,9 @@ def _read(data: Any) -> Component:
     if isinstance(data, DamperData):
         return Damper(*named, data.damping)
     if isinstance(data, GearData):
-        return Gear(*named, data.ratio)
+        point, flank, back = (_vector(values) for values in (data.pitch_point, data.flank, data.back))
+        lower = -math.inf if data.lower is None else data.lower
+        return Gear(*named, data.ratio, point, flank, back, lower, math.inf if data.upper is None else data.upper)
     if isinstance(data, EndStopData):
         lower = -math.inf if data.lower is None else data.lower
         return EndStop(*named, lower, math.inf if data.upper is None else data.upper)

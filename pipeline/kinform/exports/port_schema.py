@@ -210,10 +210,16 @@ class SpringDamperData(_Named):
 
 
 class GearData(_Named):
-    """value at a = ratio · value at b. Ports: a, b."""
+    """value at a = ratio · value at b. Ports: a, b. Of teeth the pitch point, and the directions in which either
+    flank of those at a pushes those at b, and the values at a between which there are teeth."""
 
     kind: Literal["gear"] = "gear"
     ratio: float
+    pitch_point: Vector | None = None
+    flank: Vector | None = None
+    back: Vector | None = None
+    lower: float | None = None
+    upper: float | None = None
 
 
 class LoadData(_Named):

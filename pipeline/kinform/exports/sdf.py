@@ -17,7 +17,7 @@ from kinform.behaviour.joints import KINDS
 from kinform.behaviour.primitives import OneFreedom
 from kinform.exports.chains import Hinge, chain
 from kinform.exports.exported import Exported
-from kinform.exports.losses import tree_losses
+from kinform.exports.losses import of_teeth, tree_losses
 from kinform.exports.model import ExportModel
 from kinform.exports.names import SDF
 from kinform.exports.robot import Robot, RobotLink, robot
@@ -81,7 +81,7 @@ def export(model: ExportModel) -> Exported:
     if grains or weightless:
         grain = f"links without mass have {GRAIN:g} kg, because SDF takes 1 kg where nothing is stated"
         lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
-    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged, *of_teeth(model.system)]
     text = render(
         "model.sdf.j2", robot=made, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
         ground=_free(made, "world_fixed"),

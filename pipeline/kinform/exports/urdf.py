@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from kinform.behaviour.joints import KINDS
 from kinform.exports.chains import Hinge, chain
 from kinform.exports.exported import Exported
-from kinform.exports.losses import tree_losses
+from kinform.exports.losses import of_teeth, tree_losses
 from kinform.exports.model import ExportModel
 from kinform.exports.names import XML
 from kinform.exports.robot import Robot, RobotLink, robot
@@ -38,7 +38,7 @@ def export(model: ExportModel) -> Exported:
     made = robot(model, XML, KINDS)
     lost = [*model.lost, *tree_losses(made, "URDF"), *_spherical(made)]
     taken = {link.name for link in made.links}
-    joints, remarks = [], [*made.unranged]
+    joints, remarks = [], [*made.unranged, *of_teeth(model.system)]
     mimics = _mimics(made, lost)
     for link in made.links:
         if link.link.joint is None:

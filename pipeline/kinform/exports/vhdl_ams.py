@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from kinform.behaviour import Ground, JointComponent, RigidBody
 from kinform.exports.exported import Exported
 from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
+from kinform.exports.losses import of_teeth
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import number, render, vector
@@ -35,7 +36,7 @@ def export(model: ExportModel) -> Exported:
     tree = grow(model.system)
     found = loops(model, tree)
     lost = [*model.lost, *singular(model)]
-    remarks: list[str] = []
+    remarks: list[str] = [*of_teeth(model.system)]
     writer = Writer(model)
     for scope in writer.scopes.paths[1:]:
         writer.child(scope)

@@ -15,9 +15,10 @@ from kinform.kinematics.certainty import TOUCHING
 from kinform.kinematics.higher import is_higher
 from kinform.kinematics.mobility import Closure
 from kinform.kinematics.screws import cross
+from kinform.kinematics.teeth import Side, meshing
 from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Body, Coupling, Joint
+from kinform.model.kinematics import Body, Coupling, Joint, Meshing
 
 __all__ = ["convex_turns", "couplings"]
 
@@ -57,14 +58,19 @@ def couplings(
             if found is not None:
                 pair = (joints[a], joints[b])
                 unsure = any(j.status in ("ambiguous", "blocked") for j in (through, *pair))
+                teeth = "" if through.type == "screw" else _meshing(assembly, bodies, through, pair, patches, found)
+                # teeth whose ratio is shown not to be constant are cams
+                uneven = isinstance(teeth, str) and bool(teeth)
                 out.append(
                     Coupling(
                         joints=(pair[0].name, pair[1].name),
                         ratio=found,
-                        kind=_kind(assembly, through, pair, patches),
+                        kind="cam" if uneven else _kind(assembly, through, pair, patches),
                         through=through.name,
                         status="ambiguous" if unsure else "determined",
                         uncertainty=_uncertainty(found, through, pair, patches),
+                        reason=teeth if isinstance(teeth, str) else "",
+                        meshing=None if isinstance(teeth, str) else teeth,
                     )
                 )
     return tuple(out)
@@ -93,6 +99,33 @@ def _ratio(a: Array, b: Array) -> float | None:
     if len(values) > 1 and values[1] > FIXED * values[0]:
         return None
     return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > FIXED else None
+
+
+def _meshing(
+    assembly: Assembly,
+    bodies: Sequence[Body],
+    through: Joint,
+    pair: tuple[Joint, Joint],
+    patches: Sequence[Patch],
+    ratio: float,
+) -> Meshing | str:
+    """What the teeth do beyond this pose; "" where they cannot be looked at."""
+    touch = next(patches[k] for k in through.patches if patches[k].kind in TOUCHING)
+    if not np.any(touch.axis):
+        return ""
+    sides = []
+    for joint in pair:
+        (body,) = (b for b in bodies if b.name in joint.bodies and b.name in through.bodies)
+        (part,) = (assembly.part(name) for name in touch.parts if name in body.parts)
+        if part.mesh is None or joint.type == "screw":
+            return ""
+        # values are of the joint's second body relative to its first
+        sides.append(Side(part.mesh, part.X_WP, joint.twists[0] if joint.bodies[1] == body.name else -joint.twists[0]))
+    into = touch.normals[0]
+    if touch.parts[0] not in next(b for b in bodies if b.name in pair[0].bodies and b.name in through.bodies).parts:
+        into = -into
+    middle = 0.5 * (touch.points.min(axis=0) + touch.points.max(axis=0))
+    return meshing((sides[0], sides[1]), touch.axis, middle, into, ratio)
 
 
 def _uncertainty(ratio: float, through: Joint, pair: tuple[Joint, Joint], patches: Sequence[Patch]) -> float:

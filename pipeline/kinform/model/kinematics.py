@@ -23,6 +23,7 @@ __all__ = [
     "Freedom",
     "Joint",
     "Kinematics",
+    "Meshing",
     "Misfit",
     "Mobility",
     "Redundancy",
@@ -287,6 +288,29 @@ class Mobility:
         return self.instantaneous - self.redundant
 
 
+@dataclass(frozen=True, eq=False)
+class Meshing:
+    """Teeth that keep a constant ratio: value(first) = ratio · value(second), whatever the pose."""
+
+    ratio: float
+    """That of the pitches: exact over whole pitches. SI, of the values as kinform counts them."""
+    teeth: tuple[int, int]
+    """Counted on either side: all of a whole wheel, those in an even row of a rack or a sector."""
+    pitches: tuple[float, float]
+    """rad or m."""
+    deviation: float
+    """rad or m of the first: by how much the motion of the meshes leaves the ratio while one tooth passes, peak to peak."""
+    play: float
+    """rad or m of the first, the second held: the least while one tooth passes."""
+    reach: tuple[float, float]
+    """Values of the first between which there are teeth at the contact; infinite for whole wheels."""
+    place: Array
+    """(3,) m: the pitch point, at half of the contact's width; the body that bears both sides carries it."""
+    normals: Array
+    """(2, 3) unit, of the flanks that touch and of the others, taken to be symmetric: from the first side's body into
+    the second's. Lines of action go through the pitch point."""
+
+
 @dataclass(frozen=True)
 class Coupling:
     """Two joints that one contact, or one screw, ties to each other: value(first) = ratio · value(second)."""
@@ -302,6 +326,10 @@ class Coupling:
     """determined or ambiguous."""
     uncertainty: float
     """Of the ratio; nan where it is not known."""
+    reason: str = ""
+    """Why the teeth are not known to keep a constant ratio; empty where they do, and for screws."""
+    meshing: Meshing | None = None
+    """The constant ratio of the teeth, where sections through them show one."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -77,6 +77,12 @@ class Simulation:
     """The same on its second body."""
     undetermined: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 6), dtype=np.bool_))
     """(joints, 6) components that redundancy leaves open: F_A and F_B hold the smallest that balance."""
+    gear_names: tuple[str, ...] = ()
+    """G gears: the joints whose teeth they are, or what they are called."""
+    gear_effort: Array = field(default_factory=lambda: np.zeros((0, 0, 2)))
+    """(T, G, 2) N·m or N that each gives the shafts of its two joints; no times below dynamic."""
+    gear_force: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(T, G) N between the teeth, at half of their width and without friction; nan where not known."""
     drives: tuple[DriveUse, ...] = ()
     """What acts on the shafts of joints, in order."""
     balance: Array = field(default_factory=lambda: np.zeros(0))

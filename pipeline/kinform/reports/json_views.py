@@ -323,6 +323,14 @@ def _simulation(design: Design) -> dict[str, Any]:
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
         "drives": [_fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
+        "gears": [
+            {
+                "joint": name,
+                "peak": np.abs(run.gear_effort[:, k]).max(axis=0, initial=0.0),
+                "peak_force": np.abs(run.gear_force[:, k]).max(initial=0.0),
+            }
+            for k, name in enumerate(run.gear_names)
+        ],
         "undetermined": {
             name: [label for label, flag in zip(_COMPONENTS, flags, strict=True) if flag]
             for name, flags in zip(run.joint_names, run.undetermined, strict=False)

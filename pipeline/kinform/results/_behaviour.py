@@ -60,10 +60,14 @@ _PARAMETERS: dict[str, tuple[Column, ...]] = {
         vector("point", "m"), vector("other", "m"), real("stiffness", "N/m"), real("damping", "N·s/m"),
         real("rest", "m"),
     ),
-    "gear": (real("ratio", "1"),),
+    "gear": (real("ratio", "1"), vector("pitch_point", "m"), vector("flank", "1"), vector("back", "1"),
+        real("lower", "rad or m"), real("upper", "rad or m"),
+    ),
     "load": (vector("force", "N"), vector("torque", "N·m"), vector("point", "m"), flag("turning")),
 }  # fmt: skip
 """Parameters of each kind; a law is a row of `laws`."""
+_ADDED = {"gear": ("pitch_point", "flank", "back", "lower", "upper")}
+"""Parameters that files of the same schema may lack, by kind."""
 _COMPONENTS = (
     text("name"), text("subject"), text("kind"), integer("system"), integer("place"), integer("flat"),
     integer("row"), integer("equations"),
@@ -181,7 +185,10 @@ def _law(signal: Signal) -> dict[str, Any]:
 def read(group: h5py.Group) -> Behaviour:
     """The model that `write` wrote."""
     signals = _read_laws(group)
-    kinds = {kind: read_rows(group, kind, (text("name"), *columns)) for kind, columns in _PARAMETERS.items()}
+    kinds = {
+        kind: read_rows(group, kind, (text("name"), *columns), added=_ADDED.get(kind, ()))
+        for kind, columns in _PARAMETERS.items()
+    }
     systems = read_rows(group, "systems", _SYSTEMS)
     rows = read_rows(group, "components", _COMPONENTS)
     members: dict[int, dict[int, Component]] = defaultdict(dict)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import h5py
+import numpy as np
 
-from kinform.model.kinematics import Blocker, Body, Coupling, Joint, Kinematics, Misfit, Release, Separation
+from kinform.model.kinematics import Blocker, Body, Coupling, Joint, Kinematics, Meshing, Misfit, Release, Separation
 from kinform.results._table import (
     flag,
     integer,
@@ -51,7 +52,12 @@ _WAYS_APART = (integer("separation"), *_RELEASE)
 _MISFIT = (real("angle", "rad"), real("distance", "m"), text("angle_at"), text("distance_at"))
 _COUPLINGS = (
     pair("joints", text, ("joint_a", "joint_b")), real("ratio", "rad or m over rad or m"), text("kind"),
-    text("through"), text("status"), real("uncertainty", "rad or m over rad or m"),
+    text("through"), text("status"), real("uncertainty", "rad or m over rad or m"), text("reason"),
+)  # fmt: skip
+_MESHINGS = (
+    integer("coupling"), real("ratio", "rad or m over rad or m"), pair("teeth", integer, ("teeth_a", "teeth_b")),
+    pair("pitches", real, ("pitch_a", "pitch_b"), "rad or m"), real("deviation", "rad or m"), real("play", "rad or m"),
+    pair("reach", real, ("reach_lower", "reach_upper"), "rad or m"), vector("place", "m"), vector("flank", "1"), vector("back", "1"),
 )  # fmt: skip
 _MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
 
@@ -80,6 +86,9 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     rows = [dict(zip(fields, row, strict=True)) for row in kinematics.misaligned]
     write_rows(group, "misaligned", _MISALIGNED, rows)
     write_records(group, "couplings", _COUPLINGS, kinematics.couplings)
+    teeth = [(k, coupling.meshing) for k, coupling in enumerate(kinematics.couplings) if coupling.meshing is not None]
+    rows = [vars(mesh) | {"coupling": k, "flank": mesh.normals[0], "back": mesh.normals[1]} for k, mesh in teeth]
+    write_rows(group, "meshings", _MESHINGS, rows)
 
 
 def _separations(group: h5py.Group) -> dict[str, Any]:
@@ -103,8 +112,19 @@ def read(group: h5py.Group) -> dict[str, Any]:
         "misfit": misfit,
         **_separations(group),
         "misaligned": tuple(tuple(row.values()) for row in read_rows(group, "misaligned", _MISALIGNED)),
-        "couplings": read_records(group, "couplings", _COUPLINGS, Coupling) if "couplings" in group else (),
+        "couplings": _couplings(group),
     }
+
+
+def _couplings(group: h5py.Group) -> tuple[Coupling, ...]:
+    if "couplings" not in group:
+        return ()
+    rows = read_rows(group, "couplings", _COUPLINGS, added=("reason",))
+    teeth = {}
+    for row in read_rows(group, "meshings", _MESHINGS) if "meshings" in group else ():
+        normals = np.stack([row.pop("flank"), row.pop("back")])
+        teeth[row.pop("coupling")] = Meshing(**row, normals=normals)
+    return tuple(Coupling(**row, meshing=teeth.get(k)) for k, row in enumerate(rows))
 
 
 def read_bodies(group: h5py.Group) -> Kinematics:

@@ -36,6 +36,7 @@ _ARRAYS = {
 }  # fmt: skip
 _LATER = {
     "joint_acceleration": "rad/s² or m/s²", "F_A": "N·m, N", "F_B": "N·m, N", "balance_bodies": "1", "balance_shafts": "1",
+    "gear_effort": "N·m or N", "gear_force": "N",
 }  # fmt: skip
 """Arrays that files of the same schema may lack."""
 _DRIVES = (
@@ -61,6 +62,7 @@ def write(group: h5py.Group, simulation: Simulation) -> None:
     }
     write_columns(group, "monitors", monitors)
     write_array(group, "undetermined", simulation.undetermined, "1", "|u1")
+    write_texts(group, "gear_names", simulation.gear_names)
     write_records(group, "drives", _DRIVES, simulation.drives)
     write_texts(group, "assumptions", simulation.assumptions)
     failures = [{"subject": subject, "reason": reason} for subject, reason in simulation.failures]
@@ -79,6 +81,8 @@ def read(group: h5py.Group) -> Simulation:
         known["balance"] = freeze(monitors["balance"].copy())
     if "undetermined" in group:
         known["undetermined"] = freeze(read_array(group, "undetermined").astype(np.bool_))
+    if "gear_names" in group:
+        known["gear_names"] = read_texts(group, "gear_names")
     if "drives" in group:
         known["drives"] = read_records(group, "drives", _DRIVES, DriveUse)
     return Simulation(

@@ -2,7 +2,8 @@
 its momentum, and on every shaft what the joint transmits along it is what acts there.
 
 Written apart from what found the reactions, in the bodies' own terms: mass times acceleration about the centre of mass,
-rate of change of the spin in the body's axes. What gears pass on among shafts is whatever their ratios allow.
+rate of change of the spin in the body's axes. What gears without
+teeth pass on among shafts is whatever their ratios allow.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.simulation.dynamics import Dynamics
-from kinform.simulation.reactions import Network, Reactions, applied
+from kinform.simulation.reactions import Network, Reactions, along_rates, applied
 from kinform.simulation.states import States
+from kinform.simulation.teeth import toothed
 
 __all__ = ["Balance", "imbalance"]
 
@@ -44,6 +46,8 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
     wrench, points = found.on_second, found.points
     sizes = np.concatenate([np.abs(wrench[..., :3]).max(axis=2) / length, np.abs(wrench[..., 3:]).max(axis=2)], axis=1)
     external = applied(dynamics, states)
+    if found.gears is not None:
+        external = external + found.gears.wrenches[:, dynamics.body_index]
     weights = np.abs(dynamics.mass * np.linalg.norm(dynamics.gravity)).max(initial=0.0)
     scale = np.maximum(sizes.max(axis=1, initial=0.0), weights)
     scale = np.maximum(scale, np.abs(external[..., 3:]).max(axis=(1, 2), initial=0.0))
@@ -74,12 +78,10 @@ def _shafts(dynamics: Dynamics, states: States, found: Reactions, effort: Array)
     """(T, n) N, torques over the length: what the joints transmit along their rates less what acts on their shafts."""
     mechanism, length = dynamics.mechanism, dynamics.mechanism.length
     network = Network(dynamics)
-    about = found.on_second[:, network.owner].copy()
-    about[..., :3] += np.cross(found.points[:, network.owner], about[..., 3:])
-    along = np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about)
-    rest = along - effort
-    if len(mechanism.gear_v):
-        _, values, rows = np.linalg.svd(mechanism.gear_v)
+    rest = along_rates(network, states, found) - effort
+    shafts = mechanism.gear_v[~toothed(dynamics.system)]
+    if len(shafts):
+        _, values, rows = np.linalg.svd(shafts)
         passed = rows[: int(np.count_nonzero(values > 1e-12 * values[0]))]
         rest = rest - (rest @ passed.T) @ passed
     # A slide's effort is a force, a turn's a torque: its own screw has the unit.

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, RigidBody
+from kinform.function import resolve
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
-from kinform.model.kinematics import Kinematics
+from kinform.model.kinematics import Kinematics, Meshing
 from kinform.simulation.mechanism import Mechanism
 
-__all__ = ["LEVELS", "Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level"]
+__all__ = ["LEVELS", "Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
 
 LEVELS = ("functional", "kinematic", "dynamic")
 
@@ -87,16 +89,65 @@ def notes_of_drives(drives: Iterable[Drive]) -> tuple[str, ...]:
     return tuple(out)
 
 
+def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
+    """Teeth that are replaced by the ratio that they keep, and by how much that may be wrong."""
+    types = {str(joint.name): joint.type for joint in kinematics.joints}
+    notes = []
+    for coupling in kinematics.couplings:
+        teeth = coupling.meshing
+        if teeth is None or coupling.kind == "screw":
+            continue
+        slides = types[coupling.joints[0]] == "prismatic"
+
+        def shown(value: float, slides: bool = slides) -> str:
+            return f"{1e3 * value:.2g} mm" if slides else f"{math.degrees(value):.2g}°"
+
+        notes.append(
+            f"the teeth of {coupling.through} are taken for their ratio: {coupling.joints[0]} = {teeth.ratio:.6g} · "
+            f"{coupling.joints[1]}, from {_counted(teeth, types, coupling.joints)} (at the pose of the meshes their "
+            f"normals give {coupling.ratio:.6g} ± {coupling.uncertainty:.1g}); the meshes depart from it by up to "
+            f"{shown(teeth.deviation)} of {coupling.joints[0]} within a tooth, and have play of {shown(teeth.play)}, "
+            "which is left out"
+        )
+    return tuple(notes)
+
+
+def _counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, str]) -> str:
+    """How many teeth were counted on either side."""
+    parts = []
+    for count, name, pitch in zip(teeth.teeth, joints, teeth.pitches, strict=True):
+        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < 1e-6
+        parts.append(f"{count} teeth" if whole else f"{count} teeth in a row")
+    return " and ".join(parts)
+
+
+def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> list[str]:
+    """What becomes of stated couplings where there are meshes: teeth keep their own ratio, what has none is free."""
+    tied = {frozenset(c.joints): c for c in kinematics.couplings if c.meshing is not None or c.kind == "screw"}
+    free = []
+    for coupling in assembly.function.couplings:
+        ends = [resolve(assembly, kinematics, name).joint for name in coupling.joints]
+        if frozenset(end.name for end in ends if end is not None) not in tied:
+            free.append(" and ".join(coupling.joints))
+    if not free:
+        return []
+    return [f"couplings are intended, not derived from geometry, and are not imposed: {', '.join(free)}"]
+
+
 def notes_of_level(
-    assembly: Assembly, behaviour: Behaviour, level: str, adrift: tuple[str, ...], gears: bool
+    assembly: Assembly,
+    kinematics: Kinematics,
+    behaviour: Behaviour,
+    level: str,
+    adrift: tuple[str, ...],
+    gears: bool,
 ) -> tuple[str, ...]:
     """What plays no part at this level."""
     notes = []
     if adrift:
         notes.append(f"what no joints connect with the ground stays where it is: {', '.join(adrift)}")
     if not gears and assembly.function.couplings:
-        names = ", ".join(" and ".join(coupling.joints) for coupling in assembly.function.couplings)
-        notes.append(f"couplings are intended, not derived from geometry, and are not imposed: {names}")
+        notes += _intended_ratios(assembly, kinematics)
     if level != "dynamic":
         forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
         forces += sorted({f"load on {load.part}" for load in assembly.function.loads})

@@ -9,7 +9,7 @@ Dynamics, 1989, section 6.6, for the reactions; the choice is that of the pseudo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,10 @@ from kinform.simulation.closure import rank_of
 from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.spatial import cross_force
 from kinform.simulation.states import States
+from kinform.simulation.teeth import Transmitted, toothed, transmitted
 from kinform.simulation.topology import arrange
 
-__all__ = ["Network", "Reactions", "applied", "joint_points", "needs", "reactions"]
+__all__ = ["Network", "Reactions", "along_rates", "applied", "joint_points", "needs", "reactions"]
 
 Array = NDArray[np.float64]
 
@@ -40,6 +41,8 @@ class Reactions:
     """(T, J, 3) m, about the mechanism's centre: each joint's point as its first body carries it."""
     undetermined: NDArray[np.bool_]
     """(J, 6)."""
+    gears: Transmitted | None = None
+    """What gears pass on; None without any."""
 
 
 def reactions(dynamics: Dynamics, states: States, effort: Array, free: float) -> Reactions:
@@ -47,8 +50,30 @@ def reactions(dynamics: Dynamics, states: States, effort: Array, free: float) ->
     network = Network(dynamics)
     needed = network.spread(needs(dynamics, states))
     points = joint_points(dynamics, states)
+    found = _in_chunks(network, dynamics, states, needed, points, effort, free)
+    if not len(network.gears):
+        return found
+    given = transmitted(dynamics, states, network.sign, along_rates(network, states, found) - effort)
+    teeth = toothed(dynamics.system)
+    if teeth.any():
+        network.gears = network.gears[~teeth]
+        found = _in_chunks(network, dynamics, states, needed - given.wrenches, points, effort, free)
+    return replace(found, gears=given)
+
+
+def along_rates(network: Network, states: States, found: Reactions) -> Array:
+    """(T, n) what the joints transmit along their rates."""
+    about = found.on_second[:, network.owner].copy()
+    about[..., :3] += np.cross(found.points[:, network.owner], about[..., 3:])
+    return np.asarray(np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about))
+
+
+def _in_chunks(
+    network: Network, dynamics: Dynamics, states: States, needed: Array, points: Array, effort: Array, free: float
+) -> Reactions:
+    """The wrenches for what the bodies need; shafts pass efforts on by the gears of the network."""
     parts = []
-    rank = _rank(dynamics, states, free) if network.closing else 0
+    rank = _rank(dynamics, states, network.gears, free) if network.closing else 0
     for first in range(0, len(effort), CHUNK):
         some = slice(first, first + CHUNK)
         parts.append(_solve(network, states.screws[some], needed[some], points[some], effort[some], rank))
@@ -175,13 +200,15 @@ class Network:
         return out
 
 
-def _rank(dynamics: Dynamics, states: States, free: float) -> int:
-    """Rank of the loops for all rates, fixed joints left over included, decided once."""
+def _rank(dynamics: Dynamics, states: States, gears: Array, free: float) -> int:
+    """Rank of the loops and these gears for all rates, fixed joints left over included, decided once."""
     from kinform.simulation.record import closure_rows
 
     mechanism = dynamics.mechanism
     some = States(*(getattr(states, name)[:1] for name in States.__dataclass_fields__))
-    return rank_of(closure_rows(mechanism, some)[0], mechanism.scale, free) if mechanism.closed else 0
+    rows = closure_rows(mechanism, some)[0]
+    rows = np.concatenate([rows[: len(rows) - len(mechanism.gear_v)], gears])
+    return rank_of(rows, mechanism.scale, free)
 
 
 def _solve(

@@ -14,7 +14,15 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.simulation.assemble import assemble
-from kinform.simulation.levels import LEVELS, Choice, choose, notes_of_drives, notes_of_joints, notes_of_level
+from kinform.simulation.levels import (
+    LEVELS,
+    Choice,
+    choose,
+    notes_of_drives,
+    notes_of_joints,
+    notes_of_level,
+    notes_of_teeth,
+)
 from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.record import blank
 from kinform.simulation.settings import SolverSettings
@@ -113,8 +121,9 @@ def _model(
         *_of_request(assembly),
         *choice.notes,
         *notes_of_joints(kinematics),
+        *notes_of_teeth(kinematics),
         *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
-        *notes_of_level(assembly, behaviour, choice.level, adrift, gears),
+        *notes_of_level(assembly, kinematics, behaviour, choice.level, adrift, gears),
     )
     return _Model(kinematics, behaviour, mechanism, choice.level, notes)
 

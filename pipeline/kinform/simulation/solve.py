@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.integrate import run_dynamic
 from kinform.simulation.kinematic import resting, run_kinematic
 from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.reactions import reactions
+from kinform.simulation.reactions import Reactions, reactions
 from kinform.simulation.record import Record, blank, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
@@ -142,7 +143,7 @@ def solve(
     times = _grid(course.duration, course.step)
     if not dynamic:
         notes = (*notes, *resting(mechanism, actuation, start, settings))
-        record = run_kinematic(mechanism, actuation, start, times, settings, progress)
+        record = _in_mesh(mechanism, system, run_kinematic(mechanism, actuation, start, times, settings, progress))
         return publish(mechanism, record, course.level, notes, settings.free)[0]
     stuck = _singular_start(mechanism, actuation, start, rank, settings)
     if stuck:
@@ -156,8 +157,30 @@ def solve(
     if weightless:
         why = "its motion moves no mass: the acceleration is not determined"
         return refuse("a free motion has no inertia", tuple((name, why) for name in weightless))
-    record = run_dynamic(dynamics, start, times, settings, progress, say)
+    record = _in_mesh(mechanism, system, run_dynamic(dynamics, start, times, settings, progress, say))
     return _with_forces(dynamics, record, course.level, notes, settings)
+
+
+def _in_mesh(mechanism: Mechanism, system: System, record: Record) -> Record:
+    """The record up to where the last teeth of a gear let go: from there on nothing couples its shafts."""
+    slots = {slot.name: slot for slot in mechanism.slots}
+    for gear in system.gears:
+        joint = system.joint_at(gear.name, "a").subject
+        value = record.q[:, slots[joint].q.start]
+        beyond = np.flatnonzero((value < gear.lower) | (value > gear.upper))
+        if len(beyond):
+            end = int(beyond[0])
+            limit = gear.lower if value[end] < gear.lower else gear.upper
+            cut = {
+                name: getattr(record, name)[:end]
+                for name in ("time", "q", "v", "acceleration", "effort", "needed", "extra", "work")
+            }
+            why = (
+                f"before t = {record.time[end]:.4g} s the last teeth of {gear.subject} let go of each other: "
+                f"{joint} passes {limit:.5g} (rad or m)"
+            )
+            record = replace(record, **cut, stopped=why)
+    return record
 
 
 def _with_forces(
@@ -176,11 +199,20 @@ def _with_forces(
         F_A=-found.on_second,
         F_B=found.on_second,
         undetermined=found.undetermined,
+        **_passed_on(dynamics, found),
         balance=balance.greatest,
         balance_bodies=balance.bodies,
         balance_shafts=spread(dynamics.mechanism, balance.shafts),
         drives=uses(dynamics, record),
     )
+
+
+def _passed_on(dynamics: Dynamics, found: Reactions) -> dict[str, Any]:
+    """What gears do, as fields of the results."""
+    if found.gears is None:
+        return {}
+    names = tuple(gear.subject for gear in dynamics.system.gears)
+    return {"gear_names": names, "gear_effort": found.gears.efforts, "gear_force": found.gears.forces}
 
 
 def _ajar(residual: Array) -> tuple[str, ...]:

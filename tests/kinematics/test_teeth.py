@@ -1,0 +1,140 @@
+"""Teeth that keep a constant ratio are told from those that do not, by sections of the meshes alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from gearing import WIDTH, gear_pair, rack_and_pinion, wheel
+from generators.involute import Gear, mesh_angle
+from solids import box, derived, extrusion, part, random_pose, rod
+
+from kinform.kinematics.teeth import Side, meshing
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def only(solids, seed=0):
+    kinematics, _ = derived(random_pose(np.random.default_rng(seed)), **solids)
+    (coupling,) = kinematics.couplings
+    return coupling
+
+
+@pytest.mark.parametrize(("teeth", "points"), [((20, 30), 6), ((17, 40), 12)])
+def test_teeth_are_counted_on_both_sides_whatever_the_pose_and_the_facets(teeth, points):
+    for seed, turn in enumerate((0.03, 0.17)):  # of 20 teeth, the second touches at a tip
+        found = only(gear_pair(*teeth, turn, points), seed).meshing
+        assert found.teeth == teeth
+        assert found.ratio == pytest.approx(-teeth[1] / teeth[0], rel=1e-12)
+        assert found.reach == (-np.inf, np.inf)
+
+
+def test_the_departure_from_the_ratio_is_that_of_the_facets():
+    """Chords of an involute lie off it by the square of their length."""
+    errors = [only(gear_pair(20, 30, 0.1, points)).meshing.deviation for points in (6, 12, 24)]
+    assert errors[0] > 2.5 * errors[1] > 6.25 * errors[2] > 0.0
+
+
+def test_the_play_is_that_of_the_construction():
+    """Each of both teeth is thinner by 0.04 mm at a pitch radius of 10 mm."""
+    found = only(gear_pair(20, 30, 0.13, 12, 0.04)).meshing
+    assert found.play == pytest.approx(2 * 0.04 / 10, rel=0.05)
+
+
+def test_lines_of_action_lean_by_the_pressure_angle_through_the_pitch_point():
+    kinematics, _ = derived(**gear_pair(20, 30, 0.1, 24))
+    (coupling,) = kinematics.couplings
+    np.testing.assert_allclose(coupling.meshing.place[:2], (0.01, 0.0), atol=1e-7)
+    lean = np.degrees(np.arcsin(coupling.meshing.normals[:, 0]))
+    np.testing.assert_allclose(lean, 20.0, atol=0.1)
+    assert np.prod(coupling.meshing.normals[:, 1]) < -0.8
+
+
+def test_a_rack_has_its_pitch_and_its_ends():
+    """21 teeth of π mm: half a pitch beyond the outer ones there is nothing left to touch."""
+    coupling = only(rack_and_pinion(turn=0.2))
+    found = coupling.meshing
+    assert coupling.kind == "rack"
+    assert found.teeth == (20, 21)
+    assert abs(found.ratio) == pytest.approx(100.0, rel=1e-6)
+    assert found.reach[1] - found.reach[0] == pytest.approx(21 * 2 * np.pi / 20, rel=1e-6)
+
+
+def test_an_idler_between_keeps_both_ratios():
+    kinematics, _ = derived(**gear_pair(20, 30, 0.1, 10, idler=24))
+    ratios = sorted(coupling.meshing.ratio for coupling in kinematics.couplings)
+    assert ratios == pytest.approx([-1.25, -1.2])
+
+
+def limited(outline, low, high):
+    """An outline with its tips and roots on these radii."""
+    radius = np.hypot(*outline.T)
+    return outline * (np.clip(radius, low, high) / radius)[:, None]
+
+
+def ring(teeth, outer, tips):
+    """A wheel with inner teeth, whose spaces are the teeth of an outer one; short enough not to foul a pinion's roots."""
+    outline = limited(Gear(teeth, thin=-0.08).outline(), tips, outer)
+    return rod(outer, 0, WIDTH, 96) - extrusion(outline, -1, WIDTH + 1)
+
+
+def side(solid, centre, axis=Z):
+    made = part("wheel", solid, np.eye(4))
+    return Side(made.mesh, made.X_WP, np.concatenate([axis, np.cross(centre, axis)]))
+
+
+def test_a_pinion_in_a_ring_turns_with_it():
+    """Inner teeth 20 : 50, the pinion shifted by the difference of the pitch radii, a tooth in a space."""
+    apart = 0.5 * (50 - 20)
+    pinion = wheel(limited(Gear(20, thin=0.04).outline(), 0.0, 10.7), apart)
+    sides = side(pinion, np.array([apart, 0.0, 0.0]) * 1e-3), side(ring(50, 30, 24.2), np.zeros(3))
+    found = meshing(sides, Z, np.array([25.0, 0.0, 4.0]) * 1e-3, np.array([0.3, 0.95, 0.0]), 2.5)
+    assert found.teeth == (20, 50)
+    assert found.ratio == pytest.approx(2.5)
+    np.testing.assert_allclose(found.place[:2], (0.025, 0.0), atol=1e-9)
+
+
+def square(teeth, radius, height):
+    """A wheel with straight flanks: no such teeth keep their ratio."""
+    disc = rod(radius - height, 0, WIDTH, 96)
+    half = 0.24 * 2 * np.pi * radius / teeth
+    for k in range(teeth):
+        disc += box(0, radius + height, -half, half, 0, WIDTH).rotate((0, 0, 360 * k / teeth))
+    return disc
+
+
+def test_straight_flanks_keep_no_ratio():
+    first = square(12, 12, 2).rotate((0, 0, 3))
+    second = square(18, 18, 2).rotate((0, 0, 180 + 10 - 2)).translate((30, 0, 0))
+    sides = side(first, np.zeros(3)), side(second, np.array([0.03, 0.0, 0.0]))
+    found = meshing(sides, Z, np.array([12.0, 1.0, 4.0]) * 1e-3, np.array([0.0, 1.0, 0.0]), -1.5)
+    assert isinstance(found, str)
+    assert "of a pitch from a constant ratio" in found
+
+
+def test_a_ratio_that_is_not_that_of_the_teeth_is_none():
+    first, second = Gear(20), Gear(30)
+    sides = [
+        side(wheel(first.outline(0.1)), np.zeros(3)),
+        side(wheel(second.outline(mesh_angle(first, second, 0.1)), 25.0), np.array([0.025, 0.0, 0.0])),
+    ]
+    place, normal = np.array([10.0, 0.0, 4.0]) * 1e-3, np.array([0.0, 1.0, 0.0])
+    assert meshing(tuple(sides), Z, place, normal, -1.5).ratio == pytest.approx(-1.5)
+    assert "20 and 30 teeth -1.5" in meshing(tuple(sides), Z, place, normal, -1.6)
+
+
+def test_a_gear_without_some_of_its_teeth_has_an_end():
+    """A third of the wheel is cut down to its root."""
+    plain = Gear(30).outline(mesh_angle(Gear(20), Gear(30), 0.0))
+    radius, angle = np.hypot(*plain.T), np.arctan2(plain[:, 1], plain[:, 0])
+    cut = np.where(np.abs(angle) < np.pi / 3, np.minimum(radius, 13.75), radius)
+    outline = np.stack([cut * np.cos(angle), cut * np.sin(angle)], axis=1)
+    sides = (
+        side(wheel(Gear(20).outline(0.0)), np.zeros(3)),
+        side(wheel(outline, 25.0), np.array([0.025, 0.0, 0.0])),
+    )
+    found = meshing(sides, Z, np.array([10.0, 0.0, 4.0]) * 1e-3, np.array([0.0, 1.0, 0.0]), -1.5)
+    assert found.ratio == pytest.approx(-1.5, rel=1e-3)
+    assert found.teeth[0] == 20
+    assert found.teeth[1] < 25
+    span = found.reach[1] - found.reach[0]
+    assert span == pytest.approx(found.teeth[1] * 2 * np.pi / 20, rel=1e-3)
