@@ -13,6 +13,7 @@ from kinform.consistency import check
 from kinform.errors import InputError
 from kinform.model.findings import Finding
 from kinform.reports.words import place
+from kinform.words import length
 
 
 def manifest(folder: Path, parts: dict[str, Solid], rest: str) -> Path:
@@ -106,7 +107,20 @@ ratio = {ratio!r}
 
 def test_places_are_free_of_rounding_errors():
     finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(0.0766, -2.4e-19, 0.013))
-    assert place(finding) == "(76.6, 0, 13) mm"
+    assert place(finding, "mm") == "(76.6, 0, 13) mm"
+
+
+@pytest.mark.parametrize("units", ["um", "mm", "cm", "m", "in", "ft"])
+@pytest.mark.parametrize("scale", [1e-5, 1e-2, 2.0])
+def test_a_place_has_the_unit_in_which_messages_show_such_a_length(units, scale):
+    finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(scale, 0.0, 0.0))
+    told = place(finding, units)
+    assert told is not None
+    value, unit = length(scale, units, 6).split()
+    assert told.split(") ")[1] == unit
+    size = {"um": 1e-6, "mm": 1e-3, "m": 1.0, "in": 0.0254, "ft": 0.3048}[unit]
+    for shown in (float(value), float(told[1:].split(",")[0])):
+        assert shown * size == pytest.approx(scale, abs=1e-4 * size)
 
 
 def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):

@@ -7,7 +7,7 @@ what a code means.
 
 from __future__ import annotations
 
-from kinform.consistency import _words as words
+from kinform import words
 from kinform.consistency._baseline import Baseline, adopt, read_baseline, with_baseline
 from kinform.consistency._check import check, verdict
 from kinform.consistency._compare import Comparison, compare

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._words import counted, quoted
 from kinform.function import resolve
 from kinform.model.kinematics import Kinematics
+from kinform.words import counted, quoted
 
 __all__ = ["actuated"]
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import angle, counted, length, number
 from kinform.function import Resolution, resolve
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+from kinform.words import angle, counted, length, number
 
 __all__ = [
     "Answer", "Judge", "bounds", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",

@@ -17,7 +17,7 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._coupled import derived_ratio
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import number, quoted
+from kinform.words import number, quoted
 
 __all__ = ["RULE"]
 

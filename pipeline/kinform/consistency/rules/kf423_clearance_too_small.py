@@ -34,12 +34,12 @@ from kinform.consistency._requirements import (
     violated,
 )
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import counted, length, number, quoted
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.sweeps import Swept, along, over
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
+from kinform.words import counted, length, number, quoted
 
 __all__ = ["RULE", "judge"]
 

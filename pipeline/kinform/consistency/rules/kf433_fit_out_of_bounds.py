@@ -18,9 +18,9 @@ from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided
 from kinform.consistency._rule import Outcome
 from kinform.consistency._weighed import compared
-from kinform.consistency._words import counted, length, quoted
 from kinform.function.fits import clearances
 from kinform.model.function import Requirement
+from kinform.words import counted, length, quoted
 
 __all__ = ["RULE", "judge"]
 

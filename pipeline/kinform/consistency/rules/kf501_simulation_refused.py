@@ -17,9 +17,9 @@ from collections.abc import Sequence
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Declared, Outcome, Rule, decided, inconclusive
-from kinform.consistency._words import quoted
 from kinform.function import resolve
 from kinform.model.findings import Finding
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 
