@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fixtures.generators.solids import Solid, bore, box, cut, join, rod
-from fixtures.generators.writers import binary_stl
+from fixtures.generators.solids import bore, box, cut, join, rod
+from written import manifest
 
 from kinform import stages
 from kinform.consistency import check
@@ -14,17 +14,6 @@ from kinform.errors import InputError
 from kinform.model.findings import Finding
 from kinform.reports.words import place
 from kinform.words import length
-
-
-def manifest(folder: Path, parts: dict[str, Solid], rest: str) -> Path:
-    """A manifest in mm with the parts' meshes beside it."""
-    text = 'schema = 1\n[assembly]\nname = "everyday"\nunits = "mm"\n'
-    for name, solid in parts.items():
-        binary_stl(folder / f"{name}.stl", solid.arrays())
-        text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\n'
-    path = folder / "everyday.toml"
-    path.write_text(text + rest)
-    return path
 
 
 def checked(path: Path):
