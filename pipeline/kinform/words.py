@@ -16,10 +16,11 @@ __all__ = [
     "number",
     "place",
     "quoted",
+    "rate",
     "volume",
 ]
 
-IN_METRES = {"um": 1e-6, "mm": 1e-3, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+IN_METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -73,6 +74,13 @@ def mass(value: float) -> str:
 def angle(value: float, digits: int = 3) -> str:
     """An angle (rad) in degrees: "0.5°"."""
     return f"{number(math.degrees(value), digits)}°"
+
+
+def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
+    """A rate of one joint value by another (rad or m) as manifests have them, in degrees and lengths: "0.02 mm/°"."""
+    own, per = (IN_METRES[units] if slide else math.radians(1.0) for slide in (slides, per_slides))
+    unit = "" if slides == per_slides else f" {units}/°" if slides else f" °/{units}"
+    return f"{number(value * per / own, 6)}{unit}"
 
 
 def direction(vector: Iterable[float]) -> str:

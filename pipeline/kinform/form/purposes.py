@@ -150,11 +150,18 @@ class Purposes:
             first, second = self.pair(table.joints, self.joint, *path, "joints")
             if table.ratio == 0.0:
                 self.scope.complain("the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio")
-            ratio = table.ratio * self._value_scale(first) / self._value_scale(second)
+            scales = [self._value_scale(name, *path, "joints") for name in (first, second)]
+            ratio = table.ratio * scales[0] / scales[1]
             out.append(Coupling((first, second), ratio, self.scope.file, self.scope.line(*path)))
         return out
 
-    def _value_scale(self, joint: str) -> float:
+    def _value_scale(self, joint: str, *path: str | int) -> float:
+        """Radians or metres in a manifest's value of the joint; a problem where it is not stated which it is."""
+        if joint not in self.joints and "~" in joint:
+            self.scope.complain(
+                f"whether {quoted(joint.removeprefix(self.scope.prefix))} turns or slides is not stated, so its values have no unit",
+                "state the joint as a [[function.joint]], and use its name here", *path,
+            )  # fmt: skip
         return self.scope.metres if self.joints.get(joint) in LINEAR else math.pi / 180.0
 
     def drives(self) -> list[Drive]:
@@ -313,10 +320,10 @@ class Purposes:
             resolve = self.joint if kind == "joint" else self.place
             return [resolve(v, *path) for v in value] if isinstance(value, list) else resolve(value, *path)
         if kind == "joint_value":
-            return value * self._value_scale(self.scope.prefix + getattr(table, "joint", ""))
+            return value * self._value_scale(self.scope.prefix + getattr(table, "joint", ""), *path)
         if kind == "joint_values":
             named = [{self.joint(j, *path): v for j, v in pose.items()} for pose in value]
-            return [{j: v * self._value_scale(j) for j, v in pose.items()} for pose in named]
+            return [{j: v * self._value_scale(j, *path) for j, v in pose.items()} for pose in named]
         if kind == "path":
             found = self.sources.find(value, self.scope.folder, self.scope.file, self.scope.line(*path), "the path")
             return value if found is None else self.sources.shown(found)
