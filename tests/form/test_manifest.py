@@ -56,7 +56,7 @@ def test_ranges_pitches_and_requirements_come_in_si(tmp_path):
         + joint.format(n=1, t="revolute") + "range = [-90, inf]\n"
         + joint.format(n=2, t="prismatic") + "range = [-5, 10]\n"
         + joint.format(n=3, t="screw") + "pitch = 2\n"
-        + '[[function.require]]\nname = "q"\nkind = "speed"\njoint = "j2"\nlimit = 100\n', 11),
+        + '[[function.require]]\nname = "q"\nkind = "speed"\njoint = "j2"\nlimit = 100\n',
     )  # fmt: skip
     first, second, third = assembly.function.joints
     assert first.range == (pytest.approx(-np.pi / 2), np.inf)
