@@ -10,9 +10,9 @@ from fixtures.generators.writers import binary_stl
 __all__ = ["manifest"]
 
 
-def manifest(folder: Path, parts: dict[str, Solid], rest: str, *, units: str = "mm", more: str = "") -> Path:
-    """A manifest with the parts' meshes (mm, or the units given) beside it; `more` is said of every part."""
-    text = f'schema = 1\n[assembly]\nname = "everyday"\nunits = "{units}"\n'
+def manifest(folder: Path, parts: dict[str, Solid], rest: str, *, ground: str = "", more: str = "") -> Path:
+    """A manifest in mm with the parts' meshes beside it; `more` is said of every part."""
+    text = 'schema = 1\n[assembly]\nname = "everyday"\nunits = "mm"\n' + (f'ground = "{ground}"\n' if ground else "")
     for name, solid in parts.items():
         binary_stl(folder / f"{name}.stl", solid.arrays())
         text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\n{more}'

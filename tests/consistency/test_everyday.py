@@ -44,8 +44,12 @@ kind = "effort"
 law = {type = "constant", value = 1}
 """,
     )  # fmt: skip
-    report = checked(path)
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    report = stages.check(stages.simulate(design)).report
     assert not [f for f in report.findings if f.code in ("KF401", "KF402", "KF409")]
+    (refused,) = (f for f in report.findings if f.code == "KF501" and f.subject == ("swing",))
+    assert "'pin'" in refused.message
+    assert "[[group]]" in refused.remedy
     (rule,) = (rule for rule in report.rules if rule.code == "KF409")
     assert rule.outcome == "inconclusive"
     assert "'pin'" in rule.reason
@@ -119,3 +123,18 @@ def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
     (problem,) = caught.value.problems
     assert "2e+09 output times, and 1,000,000 are the most" in problem.message
     assert problem.line == 10
+
+
+@pytest.mark.parametrize(("part", "outcome"), [("slider", "passed"), ("rail", "inconclusive")])
+def test_a_load_on_the_ground_is_not_verified(tmp_path, part, outcome):
+    rail = join(box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10))
+    text = f'[function]\nload = [{{part = "{part}", force = [1, 0, 0]}}]\n[simulation]\nduration = 0.01\n'
+    parts = {"rail": rail, "slider": box(-20, 25, -10, 10, 0, 8)}
+    path = manifest(tmp_path, parts, text, more='material = "steel"\n', ground="rail")
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    design = stages.check(stages.simulate(design))
+    assert design.simulation.level == "dynamic"
+    assert next(rule.outcome for rule in design.report.rules if rule.code == "KF905") == outcome
+    found = [f for f in design.report.findings if f.code == "KF905"]
+    assert [f.found for f in found] == (["without effect"] if part == "rail" else [])
+    assert all(f.place is not None and "load" in path.read_text().splitlines()[f.line - 1] for f in found)
