@@ -17,7 +17,7 @@ from kinform.model.simulation import Simulation
 from kinform.words import angle, counted, length, number
 
 __all__ = [
-    "Answer", "Judge", "bounds", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",
+    "Answer", "Judge", "bounds", "common", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",
     "simulated", "undecided", "violated",
 ]  # fmt: skip
 
@@ -124,6 +124,12 @@ def resolved(context: Context, name: str) -> tuple[Joint, Resolution] | Answer:
             "Require it of a joint with one freedom.",
         )
     return joint, found
+
+
+def common(context: Context, between: Sequence[str]) -> list[str]:
+    """Parts that are on both of two sides, sorted."""
+    first, second = (context.assembly.parts_of(name) for name in between)
+    return sorted(set(first) & set(second))
 
 
 def kind_of_value(joint: Joint) -> str:

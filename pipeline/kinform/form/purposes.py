@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
+from kinform.form.requirements import faults
 from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
@@ -54,11 +55,11 @@ class Purposes:
         """Full name of an intended joint, or a name that kinform will give ("a~b")."""
         if "~" in name:
             return self.scope.prefix + name if self.scope.prefix else name
-        return self._known(name, set(self.joints), "[[function.joint]]", "the intended joints", *path)
+        return self._known(name, set(self.joints), "[[function.joint]]", "[[function.joint]]", *path)
 
     def _known(self, name: str, known: set[str], what: str, all_of: str, *path: str | int) -> str:
         full = self.scope.prefix + name
-        if full not in known:
+        if full not in known and name not in self.scope.refused:
             prefix = self.scope.prefix
             near = [k.removeprefix(prefix) for k in known if k.startswith(prefix)]
             self.scope.complain(f"there is no {what} {quoted(name)}", did_you_mean(name, near, all_of), *path)
@@ -283,6 +284,9 @@ class Purposes:
         out = []
         for k, table in enumerate(function.require if function else []):
             path = ("function", "require", k)
+            for wrong, remedy, key in faults(table):
+                at = path if key is None else (*path, key)
+                self.scope.complain(f"requirement {quoted(table.name)}: {wrong}", remedy, *at)
             values = self._quantities(table, *path)
             values = {key: value for key, value in values.items() if key not in ("name", "kind") and value is not None}
             out.append(
@@ -308,7 +312,7 @@ class Purposes:
             else:
                 out[key] = self._converted(quantity.kind, value, table, *path, key)
                 if quantity.kind == "path":
-                    out["rows"] = self._path(value, *path)
+                    out["rows"] = self._path(value, *path, key)
                 if quantity.kind == "frame":
                     out["X_WF"] = self.scope.X_WF.tolist()
         return out
