@@ -34,6 +34,7 @@ DESK = Snapshot(
     interferences=((("door", "frame"), 1e-4),),
     simulation=("done", "dynamic"),
     findings=(("KF304", ("door",), "note", 1),),
+    ranges=("door~frame", "drawer~frame"),
 )  # fmt: skip
 
 
@@ -63,7 +64,7 @@ CASES = {
         with_joint(HINGE, axis=Axis((math.sin(0.01), 0.0, math.cos(0.01)), (0.1, 0.0, 0.5))),
         [("axis-tilted", "door~frame", "axis tilted by 0.573°")],
     ),
-    "upper end": (with_joint(HINGE, upper=math.radians(26.0)), [("range", "door~frame", "upper end of the range −4°")]),
+    "upper end": (with_joint(HINGE, upper=math.radians(26.0)), [("range", "door~frame", "upper end of the range -4°")]),
     "lower end of a slide": (with_joint(SLIDE, lower=-0.098), [("range", "drawer~frame", "lower end of the range +2 mm")]),
     "free": (
         with_joint(HINGE, upper=math.inf),
@@ -113,8 +114,35 @@ def test_a_change_is_told(case):
     assert compare(after, DESK).code == 1
 
 
-def test_an_axis_that_points_the_other_way_has_not_moved():
-    assert told(with_joint(HINGE, axis=Axis((0.0, 0.0, -1.0), (0.1, 0.0, -7.0)))) == []
+def test_an_axis_that_points_the_other_way_has_not_moved_and_turns_the_range_round():
+    other = Axis((0.0, 0.0, -1.0), (0.1, 0.0, -7.0))
+    assert told(with_joint(HINGE, axis=other, lower=-HINGE.upper, upper=-HINGE.lower)) == []
+    assert told(with_joint(HINGE, axis=other)) == [
+        ("range", "door~frame", "lower end of the range +60°"),
+        ("range", "door~frame", "upper end of the range +60°"),
+    ]
+
+
+@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_an_end_that_is_no_longer_known_is_told(side):
+    after = with_joint(HINGE, **{side: None})
+    assert [(kind, name) for kind, name, _ in told(after)] == [("range", "door~frame")]
+    assert "is not known" in told(after)[0][2]
+    assert compare(after, DESK).code == 1
+
+
+def test_ranges_that_only_one_side_computed_are_no_change_and_not_verified():
+    unranged = tuple(replace(joint, lower=None, upper=None, range_status="unknown") for joint in DESK.joints)
+    found = compare(DESK, replace(DESK, joints=unranged, ranges=None))
+    assert (found.changes, found.missing, found.code) == ((), (("ranges", "not computed after"),), 2)
+
+
+def test_lengths_are_told_in_the_units_of_the_assembly():
+    moved = with_joint(HINGE, axis=Axis((0.0, 0.0, 1.0), (0.1254, 0.0, 0.5)))
+    (change,) = compare(DESK, replace(moved, units="in")).changes
+    assert change.message == "axis moved by 1 in"
+    assert change.after == "(4.937, 0, 19.685) in"
+    assert (change.amount, change.place) == (pytest.approx(0.0254), (0.1254, 0.0, 0.5))
 
 
 def test_a_body_that_takes_in_another_has_fixed_their_joint():

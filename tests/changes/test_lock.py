@@ -88,3 +88,28 @@ def test_unbounded_ranges_survive(four_bar):
 def test_what_is_no_lock_is_refused_by_name(text):
     with pytest.raises(InputError, match=r"b\.json: this is no lock"):
         read_lock(text, "b.json")
+
+
+@pytest.mark.parametrize(
+    ("edit", "told"),
+    [
+        (lambda lock: lock["tolerances"].update(length_mm=math.nan), "length_mm"),
+        (lambda lock: lock["tolerances"].update(mass_percent=-1), "mass_percent"),
+        (lambda lock: lock["joints"][0].update(axis=[0, 0, 0]), "not of length 1"),
+        (lambda lock: lock["bodies"][0].pop("mass_g"), "has no mass_g"),
+    ],
+)
+def test_a_lock_edited_into_one_that_would_pass_anything_is_refused(four_bar, edit, told):
+    lock = json.loads(write_lock(snapshot(four_bar)))
+    edit(lock)
+    with pytest.raises(InputError, match=told):
+        read_lock(json.dumps(lock), "b.json")
+
+
+def test_a_joint_whose_axis_was_taken_out_of_the_lock_differs(four_bar):
+    lock = json.loads(write_lock(snapshot(four_bar)))
+    del lock["joints"][0]["axis"]
+    report = with_lock(four_bar.report, four_bar, read_lock(json.dumps(lock), "b.json"))
+    (found,) = (finding for finding in report.findings if finding.code == "KF450")
+    assert found.subject == (lock["joints"][0]["name"],)
+    assert "known now" in found.message

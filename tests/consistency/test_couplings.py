@@ -89,3 +89,16 @@ def test_a_cam_has_no_ratio_to_compare(cam):
     assert outcome(report, "KF411") == "skipped"
     assert outcome(report, "KF903") == "inconclusive"
     assert verdict(report) != 0
+
+
+@pytest.mark.parametrize(("units", "metres"), [("mm", 1e-3), ("in", 0.0254), ("m", 1.0)])
+def test_a_ratio_is_told_as_the_manifest_has_it(gears, cam, units, metres):
+    slide = IntendedJoint("b", ("frame", "follower"), "prismatic", np.eye(3)[1], None, None, None, None, "m.toml", 6)
+    # 0.5 of the unit a degree
+    cam = replace(cam, assembly=replace(cam.assembly, units=units))
+    report = stated(cam, (hinge("a", "frame", "cam"), slide), 0.5 * metres / np.radians(1.0), ("b", "a"))
+    (finding,) = (f for f in report.findings if f.code == "KF903")
+    assert finding.intended == f"ratio 0.5 {units}/°"
+    report = stated(cam, (hinge("a", "frame", "cam"), slide), np.radians(2.0) / metres)
+    (finding,) = (f for f in report.findings if f.code == "KF903")
+    assert finding.intended == f"ratio 2 °/{units}"

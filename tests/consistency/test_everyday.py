@@ -5,25 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fixtures.generators.solids import Solid, bore, box, cut, join, rod
-from fixtures.generators.writers import binary_stl
+from fixtures.generators.solids import bore, box, cut, join, rod
+from written import manifest
 
 from kinform import stages
 from kinform.consistency import check
 from kinform.errors import InputError
 from kinform.model.findings import Finding
 from kinform.reports.words import place
-
-
-def manifest(folder: Path, parts: dict[str, Solid], rest: str) -> Path:
-    """A manifest in mm with the parts' meshes beside it."""
-    text = 'schema = 1\n[assembly]\nname = "everyday"\nunits = "mm"\n'
-    for name, solid in parts.items():
-        binary_stl(folder / f"{name}.stl", solid.arrays())
-        text += f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\n'
-    path = folder / "everyday.toml"
-    path.write_text(text + rest)
-    return path
+from kinform.words import length
 
 
 def checked(path: Path):
@@ -54,8 +44,12 @@ kind = "effort"
 law = {type = "constant", value = 1}
 """,
     )  # fmt: skip
-    report = checked(path)
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    report = stages.check(stages.simulate(design)).report
     assert not [f for f in report.findings if f.code in ("KF401", "KF402", "KF409")]
+    (refused,) = (f for f in report.findings if f.code == "KF501" and f.subject == ("swing",))
+    assert "'pin'" in refused.message
+    assert "[[group]]" in refused.remedy
     (rule,) = (rule for rule in report.rules if rule.code == "KF409")
     assert rule.outcome == "inconclusive"
     assert "'pin'" in rule.reason
@@ -106,7 +100,20 @@ ratio = {ratio!r}
 
 def test_places_are_free_of_rounding_errors():
     finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(0.0766, -2.4e-19, 0.013))
-    assert place(finding) == "(76.6, 0, 13) mm"
+    assert place(finding, "mm") == "(76.6, 0, 13) mm"
+
+
+@pytest.mark.parametrize("units", ["um", "mm", "cm", "m", "in", "ft"])
+@pytest.mark.parametrize("scale", [1e-5, 1e-2, 2.0])
+def test_a_place_has_the_unit_in_which_messages_show_such_a_length(units, scale):
+    finding = Finding("KF000", "a-rule", "note", ("part",), "text", place=(scale, 0.0, 0.0))
+    told = place(finding, units)
+    assert told is not None
+    value, unit = length(scale, units, 6).split()
+    assert told.split(") ")[1] == unit
+    size = {"um": 1e-6, "mm": 1e-3, "m": 1.0, "in": 0.0254, "ft": 0.3048}[unit]
+    for shown in (float(value), float(told[1:].split(",")[0])):
+        assert shown * size == pytest.approx(scale, abs=1e-4 * size)
 
 
 def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
@@ -116,3 +123,18 @@ def test_a_step_that_would_fill_the_memory_is_refused_with_its_line(tmp_path):
     (problem,) = caught.value.problems
     assert "2e+09 output times, and 1,000,000 are the most" in problem.message
     assert problem.line == 10
+
+
+@pytest.mark.parametrize(("part", "outcome"), [("slider", "passed"), ("rail", "inconclusive")])
+def test_a_load_on_the_ground_is_not_verified(tmp_path, part, outcome):
+    rail = join(box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10))
+    text = f'[function]\nload = [{{part = "{part}", force = [1, 0, 0]}}]\n[simulation]\nduration = 0.01\n'
+    parts = {"rail": rail, "slider": box(-20, 25, -10, 10, 0, 8)}
+    path = manifest(tmp_path, parts, text, more='material = "steel"\n', ground="rail")
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    design = stages.check(stages.simulate(design))
+    assert design.simulation.level == "dynamic"
+    assert next(rule.outcome for rule in design.report.rules if rule.code == "KF905") == outcome
+    found = [f for f in design.report.findings if f.code == "KF905"]
+    assert [f.found for f in found] == (["without effect"] if part == "rail" else [])
+    assert all(f.place is not None and "load" in path.read_text().splitlines()[f.line - 1] for f in found)

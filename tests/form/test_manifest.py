@@ -154,3 +154,17 @@ def test_the_schema_describes_every_table():
         described["properties"]
     )
     assert described["additionalProperties"] is False
+
+
+@pytest.mark.parametrize(
+    ("table", "line"),
+    [
+        ('[[function.require]]\nname = "r"\nkind = "speed"\njoint = "a~b"\nlimit = 100\n', 11),
+        ('[[function.require]]\nname = "r"\nkind = "hold"\njoint = "a~b"\nlimit = 1\nposes = [{"a~b" = 5}]\n', 12),
+        ('[[function.coupling]]\njoints = ["a~b", "b~c"]\nratio = 2\n', 8),
+    ],
+    ids=["speed", "hold", "coupling"],
+)
+def test_a_value_of_a_joint_that_is_not_stated_has_no_unit_and_is_refused(tmp_path, table, line):
+    found = problems(tmp_path, HEAD + '[[part]]\nname = "a"\n' + table)
+    assert line in [at for at, message in found if '"a~b" turns or slides is not stated' in message]

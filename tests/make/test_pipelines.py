@@ -55,6 +55,20 @@ def test_reports_are_kept_when_the_gate_is_red():
     assert re.search(r"artifacts:\n\s+when: always\n", gitlab)
 
 
+def test_results_are_kept_for_the_next_run_when_the_gate_is_red():
+    github, gitlab = (path.read_text() for path in CI)
+    assert "actions/cache@" not in github
+    restored, saved = (github.index(f"actions/cache/{step}@") for step in ("restore", "save"))
+    assert restored < github.index("kinform run") < saved
+    step = github[github.rindex("- name:", 0, saved) : github.index("- name: reports")]
+    assert "if: ${{ !cancelled() }}" in step
+    keys = re.findall(r" key: (.*)", github)
+    assert len(keys) == 2
+    assert keys[0] == keys[1]
+    assert "run_attempt" in keys[0]
+    assert re.search(r"cache:\n(?:.*\n)*?\s+when: always\n", gitlab)
+
+
 @pytest.mark.parametrize("path", CI, ids=lambda path: path.name)
 def test_the_page_is_among_the_reports_that_are_kept(path):
     text = path.read_text()

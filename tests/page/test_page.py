@@ -42,6 +42,16 @@ def test_the_summary_for_pull_requests_shows_names_as_they_are(nasty):
             assert len(re.findall(r"(?<!\\)\|", line)) == 6, line
 
 
+def test_a_heading_of_the_summary_says_what_it_is_about(derive_design):
+    design = derive_design(OVERLAPS)
+    headings = [line for line in summary(design).splitlines() if line.startswith("## ") and " KF" in line]
+    told = facts.findings(design)
+    assert len(headings) == len(told) > 0
+    for heading, finding in zip(headings, told, strict=True):
+        assert finding.code in heading
+        assert heading.replace("\\", "").endswith(f": {finding.subject}")
+
+
 def test_nothing_comes_from_elsewhere_and_one_program_may_run(derive_design, page_of):
     text = page_of(derive_design(SEEKER))
     assert not re.search(r"https?://|@import|url\((?!#)", text)

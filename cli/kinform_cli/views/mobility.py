@@ -11,6 +11,7 @@ from kinform.model.design import Design
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.json_views import mobility_counts
 from kinform.reports.motions import follower_rates, freedom_text
+from kinform.words import rate
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
@@ -52,7 +53,7 @@ def render(design: Design) -> RenderableType:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
-    items += [_coupling(coupling) for coupling in design.kinematics.couplings]
+    items += [_coupling(coupling, design) for coupling in design.kinematics.couplings]
     items.append(_misfit(design))
     if mobility.named:
         items += ["", _freedoms(design)]
@@ -72,16 +73,22 @@ def _certified(mobility: Mobility) -> str:
     )
 
 
-def _coupling(coupling: Coupling) -> str:
-    """One coupling: "gear: a = -1.5 · b through c"."""
+def _coupling(coupling: Coupling, design: Design) -> str:
+    """One coupling: "gear: a = -1.5 · b through c", values in degrees and lengths."""
+    assert design.kinematics is not None
     first, second = coupling.joints
-    known = f" ± {coupling.uncertainty:.1g}" if math.isfinite(coupling.uncertainty) else ""
+    types = {joint.name: joint.type for joint in design.kinematics.joints}
+    slides = [types.get(name) == "prismatic" for name in coupling.joints]
+    ratio = rate(coupling.ratio, slides[0], slides[1], design.assembly.units)
+    share = coupling.uncertainty / abs(coupling.ratio) if coupling.ratio else math.inf
+    known = f" ± {100.0 * share:.1g} %" if math.isfinite(share) else ""
     pose = ", at this pose" if coupling.kind == "cam" else ""
     sure = "" if coupling.status == "determined" else f" ({coupling.status})"
-    said = f"{coupling.kind}: {first} = {coupling.ratio:.6g}{known} · {second} through {coupling.through}{pose}{sure}"
+    said = f"{coupling.kind}: {first} = {ratio}{known} · {second} through {coupling.through}{pose}{sure}"
     if coupling.meshing is not None:
         one, two = coupling.meshing.teeth
-        return f"{said}; {coupling.meshing.ratio:.6g} over whole teeth, of {one} and {two}"
+        whole = rate(coupling.meshing.ratio, slides[0], slides[1], design.assembly.units)
+        return f"{said}; {whole} over whole teeth, of {one} and {two}"
     return f"{said}; {coupling.reason}" if coupling.reason else said
 
 

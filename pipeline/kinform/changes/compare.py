@@ -15,10 +15,30 @@ import numpy as np
 
 from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.tolerance import Tolerance
+from kinform.words import angle, direction, length, number, place
 
 __all__ = ["Change", "Comparison", "compare"]
 
-PARTS = ("bodies", "joints", "mobility", "masses", "interferences", "simulation", "findings")
+
+@dataclass(frozen=True)
+class _Said:
+    """Lengths and places in the units of an assembly."""
+
+    units: str
+
+    def length(self, metres: float) -> str:
+        return length(metres, self.units)
+
+    def place(self, point: Vector) -> str:
+        return place(point, self.units)
+
+    def line(self, axis: Axis | None) -> str | None:
+        if axis is None:
+            return None
+        return direction(axis.direction) + ("" if axis.point is None else f" through {self.place(axis.point)}")
+
+
+PARTS = ("bodies", "joints", "ranges", "mobility", "masses", "interferences", "simulation", "findings")
 """What is compared, where both know it."""
 
 
@@ -37,6 +57,8 @@ class Change:
     amount: float | None = None
     """SI and radians, after less before, or how far."""
     unit: str | None = None
+    place: Vector | None = None
+    """m, world: where it is now, as far as it is known."""
 
 
 @dataclass(frozen=True)
@@ -69,16 +91,18 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
         (name, "not computed " + ("before" if two else "after")) for name, (one, two) in known.items() if one != two
     ]
     now = _matched(before, after)
+    say = _Said(after.units)
+    ranged = before.ranges is not None and after.ranges is not None
     steps = {
         "bodies": lambda: _bodies(before, after, now),
-        "joints": lambda: _joints(before, after, now, within),
+        "joints": lambda: _joints(before, after, now, within, say, ranged),
         "mobility": lambda: _mobility(before, after),
-        "masses": lambda: _masses(before, after, now, within),
-        "interferences": lambda: _interferences(before, after, within),
+        "masses": lambda: _masses(before, after, now, within, say),
+        "interferences": lambda: _interferences(before, after, within, say),
         "simulation": lambda: _simulation(before, after),
         "findings": lambda: _findings(before, after),
     }
-    changes = tuple(change for name in both for change in steps[name]())
+    changes = tuple(change for name in both if name in steps for change in steps[name]())
     return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
 
 
@@ -130,7 +154,9 @@ def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str]) -> Iterat
         )
 
 
-def _joints(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance) -> Iterator[Change]:
+def _joints(
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: _Said, ranged: bool
+) -> Iterator[Change]:
     into = {name: now.get(name) or _holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
     new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
     found = set()
@@ -139,7 +165,10 @@ def _joints(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: T
         pair = frozenset(str(end) for end in ends)
         if pair in new and len(pair) == 2:
             found.add(pair)
-            yield from _joint(joint, new[pair], tuple(str(end) for end in ends) != new[pair].bodies, within)
+            turned = tuple(str(end) for end in ends) != new[pair].bodies
+            yield from _joint(joint, new[pair], within, say)
+            if ranged and joint.type == new[pair].type:
+                yield from _range(joint, new[pair], turned, within, say)
         elif len(pair) == 1 and ends[0] is not None:
             yield Change(
                 "joint-type", (joint.name,), f"became fixed: both are {_q(str(ends[0]))} now",
@@ -152,7 +181,7 @@ def _joints(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: T
             yield Change("joint-new", (joint.name,), f"is new ({joint.type}, {joint.status})", None, joint.type)
 
 
-def _joint(old: JointState, new: JointState, turned: bool, within: Tolerance) -> Iterator[Change]:
+def _joint(old: JointState, new: JointState, within: Tolerance, say: _Said) -> Iterator[Change]:
     subject = (new.name,)
     if old.type != new.type:
         less = new.freedoms - old.freedoms
@@ -167,33 +196,35 @@ def _joint(old: JointState, new: JointState, turned: bool, within: Tolerance) ->
         yield Change("joint-freedoms", subject, told, str(old.freedoms), str(new.freedoms), float(less), "freedoms")
     if old.status != new.status:
         yield Change("joint-status", subject, f"was {old.status}, is {new.status}", old.status, new.status)
-    yield from _axes(subject, "axis", old.axis, new.axis, within)
-    yield from _axes(subject, "second axis", old.axis2, new.axis2, within)
+    yield from _axes(subject, "axis", old.axis, new.axis, within, say)
+    yield from _axes(subject, "second axis", old.axis2, new.axis2, within, say)
     if old.centre is not None and new.centre is not None:
         away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
         if away > within.length:
             yield Change(
-                "axis-moved", subject, f"centre moved by {_mm(away)}", _place(old.centre), _place(new.centre), away, "m"
-            )
+                "axis-moved", subject, f"centre moved by {say.length(away)}", say.place(old.centre),
+                say.place(new.centre), away, "m", new.centre,
+            )  # fmt: skip
     if (old.pitch is None) != (new.pitch is None) or (
         old.pitch is not None and new.pitch is not None and not within.lengths_agree(old.pitch, new.pitch)
     ):
-        yield Change("pitch", subject, "has another pitch", _mm_or_none(old.pitch), _mm_or_none(new.pitch))
-    # the value is of the second body relative to the first: exchanged bodies turn the range round
-    lower, upper = (new.lower, new.upper) if not turned else (_minus(new.upper), _minus(new.lower))
-    yield from _range(subject, old, new, lower, upper, within)
+        one, two = (None if pitch is None else say.length(pitch) for pitch in (old.pitch, new.pitch))
+        yield Change("pitch", subject, "has another pitch", one, two)
 
 
 def _axes(
-    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance
+    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: _Said
 ) -> Iterator[Change]:
     if old is None or new is None:
+        if old is not new:
+            told = f"{what} is {'known now' if old is None else 'no longer known'}"
+            yield Change("axis-known", subject, told, say.line(old), say.line(new))
         return
     one, two = np.array(old.direction), np.array(new.direction)
-    angle = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
-    if angle > within.angle:
+    tilt = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
+    if tilt > within.angle:
         yield Change(
-            "axis-tilted", subject, f"{what} tilted by {_deg(angle)}", _direction(one), _direction(two), angle, "rad"
+            "axis-tilted", subject, f"{what} tilted by {_deg(tilt)}", direction(one), direction(two), tilt, "rad"
         )
     if old.point is not None and new.point is not None:
         # how far the new axis is from where the old one was located
@@ -201,31 +232,35 @@ def _axes(
         away = float(np.linalg.norm(arm - two * float(two @ arm)))
         if away > within.length:
             yield Change(
-                "axis-moved", subject, f"{what} moved by {_mm(away)}", _place(old.point), _place(new.point), away, "m"
-            )
+                "axis-moved", subject, f"{what} moved by {say.length(away)}", say.place(old.point),
+                say.place(new.point), away, "m", new.point,
+            )  # fmt: skip
 
 
-def _range(
-    subject: tuple[str, ...],
-    old: JointState,
-    new: JointState,
-    lower: float | None,
-    upper: float | None,
-    within: Tolerance,
-) -> Iterator[Change]:
+def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, say: _Said) -> Iterator[Change]:
+    """How far the joint goes. Its value is of the second body relative to the first, about the axis: exchanged bodies
+    turn the range round, and so does an axis that has come to point the other way."""
+    if old.axis is not None and new.axis is not None and np.dot(old.axis.direction, new.axis.direction) < 0.0:
+        turned = not turned
+    lower, upper = (new.lower, new.upper) if not turned else (_minus(new.upper), _minus(new.lower))
+    subject = (new.name,)
     if old.range_status != new.range_status:
         told = f"range was {old.range_status}, is {new.range_status}"
         yield Change("range-status", subject, told, old.range_status, new.range_status)
-    say, agree, unit = (_mm, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
+    shown, agree, unit = (say.length, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
     for side, one, two in (("lower", old.lower, lower), ("upper", old.upper, upper)):
-        if one is None or two is None or agree(one, two):
+        if one is None or two is None:
+            if one is not two and old.range_status == new.range_status:
+                told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+                yield Change("range", subject, told, _end(one, shown), _end(two, shown))
+        elif agree(one, two):
             continue
-        if math.isfinite(one) and math.isfinite(two):
-            told = f"{side} end of the range {_signed(two - one, say)}"
-            yield Change("range", subject, told, say(one), say(two), two - one, unit)
+        elif math.isfinite(one) and math.isfinite(two):
+            told = f"{side} end of the range {_signed(two - one, shown)}"
+            yield Change("range", subject, told, shown(one), shown(two), two - one, unit)
         else:
-            told = f"{side} end of the range was {_end(one, say)}, is {_end(two, say)}"
-            yield Change("range", subject, told, _end(one, say), _end(two, say))
+            told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+            yield Change("range", subject, told, _end(one, shown), _end(two, shown))
 
 
 def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
@@ -245,15 +280,17 @@ def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
 _FREEDOMS = ("instantaneous", "finite", "effective")
 
 
-def _masses(before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance) -> Iterator[Change]:
+def _masses(
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: _Said
+) -> Iterator[Change]:
     new = {body.name: body for body in after.masses or ()}
     for old in before.masses or ():
         name = now.get(old.name, old.name)
         if name in new:
-            yield from _mass(old, new[name], within)
+            yield from _mass(old, new[name], within, say)
 
 
-def _mass(old: BodyMass, new: BodyMass, within: Tolerance) -> Iterator[Change]:
+def _mass(old: BodyMass, new: BodyMass, within: Tolerance, say: _Said) -> Iterator[Change]:
     subject = (new.name,)
     if (old.mass is None) != (new.mass is None):
         told = "mass is no longer known" if new.mass is None else "mass is known now"
@@ -264,8 +301,9 @@ def _mass(old: BodyMass, new: BodyMass, within: Tolerance) -> Iterator[Change]:
     if old.centre is not None and new.centre is not None:
         away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
         if away > within.length:
-            told = f"centre of mass moved by {_mm(away)}"
-            yield Change("centre-of-mass", subject, told, _place(old.centre), _place(new.centre), away, "m")
+            told = f"centre of mass moved by {say.length(away)}"
+            one, two = say.place(old.centre), say.place(new.centre)
+            yield Change("centre-of-mass", subject, told, one, two, away, "m", new.centre)
     if old.moments is not None and new.moments is not None:
         largest = max(max(map(abs, old.moments)), max(map(abs, new.moments)))
         worst = max(abs(two - one) for one, two in zip(old.moments, new.moments, strict=True))
@@ -274,16 +312,19 @@ def _mass(old: BodyMass, new: BodyMass, within: Tolerance) -> Iterator[Change]:
             yield Change("inertia", subject, told, _moments(old.moments), _moments(new.moments), worst, "kg·m²")
 
 
-def _interferences(before: Snapshot, after: Snapshot, within: Tolerance) -> Iterator[Change]:
+def _interferences(before: Snapshot, after: Snapshot, within: Tolerance, say: _Said) -> Iterator[Change]:
     old, new = dict(before.interferences or ()), dict(after.interferences or ())
     for pair in sorted(set(old) | set(new)):
-        if pair not in new:
-            yield Change("interference-gone", pair, "no longer overlap", _mm(old[pair]), None, -old[pair], "m")
-        elif pair not in old:
-            yield Change("interference-new", pair, f"overlap by {_mm(new[pair])}", None, _mm(new[pair]), new[pair], "m")
-        elif not within.lengths_agree(old[pair], new[pair]):
-            told = f"overlap {_signed(new[pair] - old[pair], _mm)}"
-            yield Change("interference", pair, told, _mm(old[pair]), _mm(new[pair]), new[pair] - old[pair], "m")
+        one, two = old.get(pair), new.get(pair)
+        shown = [None if depth is None else say.length(depth) for depth in (one, two)]
+        if one is not None and two is None:
+            yield Change("interference-gone", pair, "no longer overlap", shown[0], None, -one, "m")
+        elif one is None and two is not None:
+            yield Change("interference-new", pair, f"overlap by {shown[1]}", None, shown[1], two, "m")
+        elif one is not None and two is not None and not within.lengths_agree(one, two):
+            yield Change(
+                "interference", pair, f"overlap {_signed(two - one, say.length)}", shown[0], shown[1], two - one, "m"
+            )
 
 
 def _simulation(before: Snapshot, after: Snapshot) -> Iterator[Change]:
@@ -323,32 +364,25 @@ def _minus(value: float | None) -> float | None:
     return None if value is None else -value
 
 
-def _mm(metres: float) -> str:
-    return f"{1e3 * metres + 0.0:.4g} mm"
-
-
-def _mm_or_none(metres: float | None) -> str | None:
-    return None if metres is None else _mm(metres)
-
-
 def _deg(radians: float) -> str:
-    return f"{math.degrees(radians) + 0.0:.4g}°"
+    return angle(radians, 4)
 
 
 def _grams(kilograms: float) -> str:
-    return f"{1e3 * kilograms + 0.0:.4g} g"
+    return f"{number(1e3 * kilograms)} g"
 
 
 def _kg(kilograms: float | None) -> str | None:
-    return None if kilograms is None else f"{kilograms:.6g} kg"
+    return None if kilograms is None else f"{number(kilograms, 6)} kg"
 
 
 def _signed(value: float, say: Callable[[float], str]) -> str:
-    text = say(value)
-    return text.replace("-", "−", 1) if value < 0 else f"+{text}"
+    return say(value) if value < 0 else f"+{say(value)}"
 
 
-def _end(value: float, say: Callable[[float], str]) -> str:
+def _end(value: float | None, say: Callable[[float], str]) -> str:
+    if value is None:
+        return "not known"
     return "unbounded" if math.isinf(value) else say(value)
 
 
@@ -356,13 +390,5 @@ def _or_unknown(value: int | None) -> str:
     return "unknown" if value is None else str(value)
 
 
-def _direction(axis: np.ndarray) -> str:
-    return "(" + ", ".join(f"{x + 0.0:.4g}" for x in axis) + ")"
-
-
-def _place(point: Vector) -> str:
-    return "(" + ", ".join(f"{1e3 * x + 0.0:.5g}" for x in point) + ") mm"
-
-
 def _moments(moments: Vector) -> str:
-    return "(" + ", ".join(f"{x:.4g}" for x in moments) + ") kg·m²"
+    return "(" + ", ".join(number(x) for x in moments) + ") kg·m²"

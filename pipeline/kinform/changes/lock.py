@@ -7,19 +7,22 @@ not in it: a baseline keeps those, and requirements judge these.
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from kinform.changes.compare import Change, Comparison, compare
 from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.tolerance import Tolerance
 from kinform.errors import InputError, Problem
 from kinform.model.design import Design
-from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.model.findings import CheckReport, Finding
+
+if TYPE_CHECKING:
+    from kinform.consistency import Outcome
 
 __all__ = ["ACCEPTED", "CODE", "NAME", "SCHEMA", "Lock", "read_lock", "with_lock", "write_lock"]
 
@@ -28,6 +31,9 @@ CODE, NAME = "KF450", "behaviour-differs-from-lock"
 
 ACCEPTED = Tolerance(length=1e-5, angle=math.radians(0.05), mass=1e-6, share=5e-3)
 """What a lock lets pass where nothing else is stated: 0.01 mm, 0.05°, 1 mg, 0.5 %."""
+
+FREE = "free"
+"""The end of a range at which nothing stops the joint."""
 
 _PLACES = 6
 """Decimals of directions."""
@@ -40,6 +46,8 @@ class Lock:
     behaviour: Snapshot
     tolerance: Tolerance
     file: str
+    lines: Mapping[str, int]
+    """By name of a body or joint: the line on which it stands."""
 
 
 def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
@@ -79,7 +87,9 @@ def read_lock(text: str, file: str) -> Lock:
         if not isinstance(found, dict) or found.get("schema") != SCHEMA:
             stated = found.get("schema") if isinstance(found, dict) else None
             raise ValueError(f"its schema is {stated!r}, not {SCHEMA!r}")
-        return Lock(_read(found), _read_tolerance(found["tolerances"]), file)
+        behaviour = _read(found)
+        names = [name for name, _ in behaviour.bodies or ()] + [str(joint.name) for joint in behaviour.joints or ()]
+        return Lock(behaviour, _read_tolerance(found["tolerances"]), file, _lines(text, names))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         told = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
         problem = Problem(f"this is no lock of kinform: {told}", file, None, "write it anew: kinform lock F.h5 -o FILE")
@@ -89,29 +99,27 @@ def read_lock(text: str, file: str) -> Lock:
 def with_lock(report: CheckReport, design: Design, lock: Lock) -> CheckReport:
     """The report with a finding for each difference from the lock, and what became of the rule KF450."""
     from kinform.changes.snapshot import snapshot
+    from kinform.consistency import amended
 
     found = compare(lock.behaviour, snapshot(design), lock.tolerance)
+    return amended(report, design, _outcome(found, lock))
+
+
+def _outcome(found: Comparison, lock: Lock) -> Outcome:
+    from kinform.consistency import Outcome
+
     findings = tuple(_finding(change, lock) for change in found.changes)
-    kept = [finding for finding in report.findings if finding.code != CODE]
-    after = sorted([*kept, *findings], key=lambda finding: (finding.code, finding.subject))
-    outcome = _outcome(found, lock)
-    rules = {rule.code: rule for rule in report.rules} | {CODE: outcome}
-    return dataclasses.replace(report, findings=tuple(after), rules=tuple(rules[code] for code in sorted(rules)))
-
-
-def _outcome(found: Comparison, lock: Lock) -> RuleOutcome:
-    if found.changes:
-        return RuleOutcome(CODE, NAME, "failed")
     lacking = [what for what, why in found.missing if why.endswith("after")]
     if lacking:
-        return RuleOutcome(CODE, NAME, "inconclusive", f"{', '.join(lacking)} of {lock.file} have not been computed")
-    return RuleOutcome(CODE, NAME, "passed")
+        return Outcome("inconclusive", findings, f"{', '.join(lacking)} of {lock.file} have not been computed")
+    return Outcome("decided", findings)
 
 
 def _finding(change: Change, lock: Lock) -> Finding:
     return Finding(
         CODE, NAME, "error", change.subject, f"{change.message}, against {lock.file}", change.after, change.before,
-        file=lock.file, remedy="Repair the design; or accept the change: kinform lock F.h5 -o FILE, and review the file.",
+        place=change.place, file=lock.file, line=lock.lines.get(change.subject[0]),
+        remedy="Repair the design; or accept the change: kinform lock F.h5 -o FILE, and review the file.",
     )  # fmt: skip
 
 
@@ -175,7 +183,7 @@ def _joint(joint: JointState, grain: _Grain) -> dict[str, Any]:
         found["pitch_mm"] = grain.length(joint.pitch)
     if joint.range_status != "unknown" or joint.lower is not None or joint.upper is not None:
         unit, say = ("mm", grain.length) if joint.slides else ("deg", grain.angle)
-        limits = [None if x is None or math.isinf(x) else say(x) for x in (joint.lower, joint.upper)]
+        limits = [x if x is None else FREE if math.isinf(x) else say(x) for x in (joint.lower, joint.upper)]
         found["range"] = {"status": joint.range_status, unit: limits}
     return found
 
@@ -192,9 +200,23 @@ def _dumped(value: Any) -> str:
     return "{\n" + ",\n".join(lines) + "\n}"
 
 
+def _lines(text: str, names: Iterable[str]) -> dict[str, int]:
+    """The first line (from 1) that names each of them, as the lock is written."""
+    wanted = {f'"name": {json.dumps(name, ensure_ascii=False)}': name for name in names}
+    found: dict[str, int] = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        for start in re.findall(r'"name": "(?:[^"\\]|\\.)*"', line):
+            if start in wanted:
+                found.setdefault(wanted[start], number)
+    return found
+
+
 def _read(found: Mapping[str, Any]) -> Snapshot:
     bodies, joints = found["bodies"], found["joints"]
     weighed = [body for body in bodies if "mass_g" in body]
+    light = [body for body in bodies if "mass_g" not in body]
+    if weighed and light:
+        raise ValueError(f"body {light[0]['name']!r} has no mass_g, and others have")
     overlaps = found.get("overlaps")
     return Snapshot(
         assembly=str(found["assembly"]),
@@ -210,6 +232,7 @@ def _read(found: Mapping[str, Any]) -> Snapshot:
         ),
         simulation=None,
         findings=None,
+        ranges=tuple(str(joint["name"]) for joint in joints if "range" in joint) or None,
     )
 
 
@@ -224,7 +247,8 @@ def _read_mass(body: Mapping[str, Any]) -> BodyMass:
 
 
 def _read_joint(joint: Mapping[str, Any]) -> JointState:
-    kind, axis = str(joint["type"]), _read_vector(joint.get("axis"), 1.0)
+    kind, axis = str(joint["type"]), _read_direction(joint.get("axis"))
+    axis2 = _read_direction(joint.get("axis2"))
     point = _read_vector(joint.get("point_mm"), 1e-3)
     limits = joint.get("range", {})
     scale = 1e-3 if kind == "prismatic" else math.pi / 180.0
@@ -232,7 +256,6 @@ def _read_joint(joint: Mapping[str, Any]) -> JointState:
     centred = kind in ("spherical", "universal")
     first, second = joint["bodies"]
     pitch = joint.get("pitch_mm")
-    free = limits.get("status") == "unbounded"
     return JointState(
         name=str(joint["name"]),
         bodies=(str(first), str(second)),
@@ -240,11 +263,11 @@ def _read_joint(joint: Mapping[str, Any]) -> JointState:
         status=str(joint["status"]),
         freedoms=int(joint["freedoms"]),
         axis=None if axis is None else Axis(axis, None if centred else point),
-        axis2=None if "axis2" not in joint else Axis(_vector(joint["axis2"], 1.0), None),
+        axis2=None if axis2 is None else Axis(axis2, None),
         centre=point if centred else None,
         pitch=None if pitch is None else 1e-3 * float(pitch),
-        lower=(-math.inf if free else None) if lower is None else scale * float(lower),
-        upper=(math.inf if free else None) if upper is None else scale * float(upper),
+        lower=None if lower is None else -math.inf if lower == FREE else scale * float(lower),
+        upper=None if upper is None else math.inf if upper == FREE else scale * float(upper),
         range_status=str(limits.get("status", "unknown")),
     )
 
@@ -258,10 +281,21 @@ def _vector(values: Iterable[float], scale: float) -> Vector:
     return (x, y, z)
 
 
+def _read_direction(values: Iterable[float] | None) -> Vector | None:
+    found = _read_vector(values, 1.0)
+    if found is not None and abs(math.hypot(*found) - 1.0) > 1e-3:
+        raise ValueError(f"the direction {list(found)} is not of length 1")
+    return found
+
+
 def _read_tolerance(found: Mapping[str, Any]) -> Tolerance:
+    values = {key: float(found[key]) for key in ("length_mm", "angle_deg", "mass_g", "mass_percent")}
+    for key, value in values.items():
+        if not (math.isfinite(value) and value >= 0.0):
+            raise ValueError(f"the tolerance {key} is {value:g}, and has to be a finite number from 0")
     return Tolerance(
-        length=1e-3 * float(found["length_mm"]),
-        angle=math.radians(float(found["angle_deg"])),
-        mass=1e-3 * float(found["mass_g"]),
-        share=1e-2 * float(found["mass_percent"]),
+        length=1e-3 * values["length_mm"],
+        angle=math.radians(values["angle_deg"]),
+        mass=1e-3 * values["mass_g"],
+        share=1e-2 * values["mass_percent"],
     )

@@ -5,11 +5,13 @@ SI and radians, world frame. A group of values is None where the stage that give
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint
 from kinform.model.mass import MassProperties
@@ -43,7 +45,7 @@ class JointState:
     pitch: float | None
     lower: float | None
     upper: float | None
-    """rad, or m of a prismatic joint."""
+    """rad, or m of a prismatic joint; infinite where nothing stops it, None where that is not known."""
     range_status: str
 
     @property
@@ -79,18 +81,26 @@ class Snapshot:
     """Status and level."""
     findings: tuple[tuple[str, tuple[str, ...], str, int], ...] | None
     """(code, subject, severity, how many)."""
+    ranges: tuple[str, ...] | None = None
+    """Joints whose range was computed; None where no range was."""
+    units: str = "mm"
+    """Of the assembly, for people; all values are SI."""
 
 
 def snapshot(design: Design) -> Snapshot:
     """The behaviour of a design as far as it has been derived."""
     kinematics, report = design.kinematics, design.report
+    found = design.simulation.ranges if design.simulation is not None else None
+    known = {item.joint: item for item in found or ()}
     return Snapshot(
         assembly=design.assembly.name,
         bodies=None
         if kinematics is None
         else tuple((str(b.name), tuple(map(str, b.parts))) for b in kinematics.bodies),
         ground=None if kinematics is None else next((str(b.name) for b in kinematics.bodies if b.ground), None),
-        joints=None if kinematics is None else tuple(_joint(joint) for joint in kinematics.joints),
+        joints=None
+        if kinematics is None
+        else tuple(_joint(joint, known.get(joint.name)) for joint in kinematics.joints),
         mobility=None if kinematics is None else _counts(design),
         masses=None if design.mass is None else tuple(_mass(body) for body in design.mass.bodies),
         interferences=None if design.contacts is None else _overlaps(design),
@@ -103,10 +113,12 @@ def snapshot(design: Design) -> Snapshot:
                 Counter((f.code, f.subject, f.severity) for f in report.findings).items()
             )
         ),
+        ranges=None if found is None else tuple(sorted(map(str, known))),
+        units=design.assembly.units,
     )
 
 
-def _joint(joint: Joint) -> JointState:
+def _joint(joint: Joint, limits: JointRange | None) -> JointState:
     line = joint.type in ("revolute", "screw", "cylindrical")
     point = _vector(joint.point)
     return JointState(
@@ -119,10 +131,14 @@ def _joint(joint: Joint) -> JointState:
         axis2=_axis(joint.axis2, None),
         centre=point if joint.type in ("spherical", "universal") else None,
         pitch=joint.pitch,
-        lower=joint.range_lower,
-        upper=joint.range_upper,
-        range_status=joint.range_status,
+        lower=None if limits is None else _end(limits.lower, -math.inf),
+        upper=None if limits is None else _end(limits.upper, math.inf),
+        range_status="unknown" if limits is None else limits.status,
     )
+
+
+def _end(end: RangeEnd, free: float) -> float | None:
+    return free if end.status == "unbounded" else end.value
 
 
 def _counts(design: Design) -> tuple[tuple[str, int | None], ...]:

@@ -7,9 +7,9 @@ what a code means.
 
 from __future__ import annotations
 
-from kinform.consistency import _words as words
+from kinform import words
 from kinform.consistency._baseline import Baseline, adopt, read_baseline, with_baseline
-from kinform.consistency._check import check, verdict
+from kinform.consistency._check import amended, check, verdict
 from kinform.consistency._compare import Comparison, compare
 from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
 from kinform.consistency._rule import Outcome, Rule
@@ -24,6 +24,7 @@ __all__ = [
     "Rule",
     "UnknownRuleError",
     "adopt",
+    "amended",
     "check",
     "compare",
     "explain",

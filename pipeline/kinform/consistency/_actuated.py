@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._words import counted, quoted
 from kinform.function import resolve
 from kinform.model.kinematics import Kinematics
+from kinform.words import counted, quoted
 
-__all__ = ["actuated"]
+__all__ = ["actuated", "loose"]
 
 DRIVEN = ("revolute", "prismatic", "screw")
 """Joints with one freedom, on which a single value acts."""
@@ -18,7 +18,7 @@ def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, 
     resolution = resolve(context.assembly, kinematics, name)
     joint = resolution.joint
     if joint is None:
-        return _not_joined(context, name) or ("absent", resolution.reason)
+        return _unknown(loose(context, name)) or ("absent", resolution.reason)
     if joint.status == "ambiguous":
         return "unknown", f"joint '{joint.name}' is ambiguous: {joint.reason}"
     if joint.type in DRIVEN:
@@ -26,19 +26,23 @@ def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, 
     if joint.type == "general" and joint.freedoms > 0:
         return "unknown", f"joint '{joint.name}' is general, with {counted(joint.freedoms, 'freedom')}"
     short = ("absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}")
-    return _not_joined(context, name) or short
+    return _unknown(loose(context, name)) or short
 
 
-def _not_joined(context: Context, name: str) -> tuple[str, str] | None:
-    """Where the freedom is carried by loose parts, it exists but nothing can act on it yet."""
+def _unknown(reason: str) -> tuple[str, str] | None:
+    return ("unknown", reason) if reason else None
+
+
+def loose(context: Context, name: str) -> str:
+    """Where the freedom of a stated joint is carried by loose parts, it exists but nothing can act on it yet: why; else ""."""
     compared = context.comparisons
     if not isinstance(compared, tuple):
-        return None
+        return ""
     for comparison in compared:
         if comparison.intended.name == name and comparison.through and comparison.right_type:
             parts = quoted(comparison.through)
-            return "unknown", (
+            return (
                 f"joint '{name}' is carried by loose parts between its bodies, beside or through {parts}: fasten what is "
                 "loose to one of them with a [[group]]"
             )
-    return None
+    return ""

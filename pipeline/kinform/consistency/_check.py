@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 from kinform.consistency._context import Context
-from kinform.consistency._control import Applied, apply, selected, unused
+from kinform.consistency._control import Applied, apply, idle_ignore, means, selected, unused
 from kinform.consistency._located import located
-from kinform.consistency._rule import Rule, skipped
+from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
+from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as LOCKED
 from kinform.model.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome, verdict
 
-__all__ = ["check", "verdict"]
+__all__ = ["amended", "check", "verdict"]
 
 
 def check(design: Design) -> CheckReport:
@@ -25,7 +26,8 @@ def check(design: Design) -> CheckReport:
     context = Context(replace(design, kinematics=design.ranged))
     applied = {rule.code: _run(rule, context) for rule in RULES if rule is not CONTROL}
     used = [entry for one in applied.values() for entry in one.used]
-    used += [entry for entry in settings.ignore if entry.code.casefold() in (CONTROL.code.casefold(), CONTROL.name)]
+    # these two speak later: of the other rules, and where a lock is given
+    used += [entry for entry in settings.ignore if means(CONTROL, entry.code) or means(LOCKED, entry.code)]
     alone = all(one.outcome.outcome in ("skipped", "ignored") for one in applied.values())
     applied[CONTROL.code] = apply(
         CONTROL, CONTROL.check(replace(context, unused_settings=unused(RULES, settings, used))), settings
@@ -39,6 +41,28 @@ def check(design: Design) -> CheckReport:
         findings=tuple(sorted((f for one in applied.values() for f in one.findings), key=_order)),
         rules=tuple(rules),
         ignored=tuple(sorted((i for one in applied.values() for i in one.ignored), key=lambda i: _order(i.finding))),
+    )
+
+
+def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckReport:
+    """The report with what a lock says (KF450) in place of what it said before, under `[check]` as all rules are."""
+    settings = design.assembly.check
+    context = Context(replace(design, kinematics=design.ranged))
+    one = _run(replace(LOCKED, check=lambda _: outcome), context)
+    idle = [entry for entry in settings.ignore if means(LOCKED, entry.code) and entry not in one.used]
+    told = CONTROL.check(replace(context, unused_settings=tuple(map(idle_ignore, idle)))) if idle else decided()
+    control = apply(CONTROL, told, settings)
+    before = next(rule for rule in report.rules if rule.code == CONTROL.code)
+    rules = {rule.code: rule for rule in report.rules} | {LOCKED.code: one.outcome}
+    if control.findings:
+        rules[CONTROL.code] = replace(control.outcome, reason=before.reason)
+    kept = [f for f in report.findings if f.code != LOCKED.code]
+    ignored = [i for i in report.ignored if i.finding.code != LOCKED.code]
+    return replace(
+        report,
+        findings=tuple(sorted((*kept, *one.findings, *control.findings), key=_order)),
+        rules=tuple(rules[code] for code in sorted(rules)),
+        ignored=tuple(sorted((*ignored, *one.ignored, *control.ignored), key=lambda i: _order(i.finding))),
     )
 
 

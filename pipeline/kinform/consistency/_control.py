@@ -9,7 +9,7 @@ from kinform.consistency._rule import Outcome, Rule
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
 
-__all__ = ["Applied", "Unused", "accepted", "apply", "selected", "unused"]
+__all__ = ["Applied", "Unused", "accepted", "apply", "idle_ignore", "means", "selected", "unused"]
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""
@@ -43,9 +43,9 @@ def selected(rule: Rule, settings: CheckSettings) -> bool:
 
 def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     """The rule's outcome with other severities, and without what is ignored."""
-    levels = [level for word, level in settings.severity if _means(rule, word)]
+    levels = [level for word, level in settings.severity if means(rule, word)]
     found = [replace(f, severity=levels[-1]) if levels else f for f in outcome.findings]
-    entries = [entry for entry in settings.ignore if _means(rule, entry.code)]
+    entries = [entry for entry in settings.ignore if means(rule, entry.code)]
     kept, ignored, used = [], [], []
     for finding in found:
         entry = next((e for e in entries if e.subject is None or e.subject in finding.subject), None)
@@ -76,16 +76,21 @@ def unused(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore
         if not any(_chosen(rule, word) for rule in rules):
             out.append(Unused(word, f"[check] selects {word!r}, and no rule has this code or name"))
     for word, _ in settings.severity:
-        if not any(_means(rule, word) for rule in rules):
+        if not any(means(rule, word) for rule in rules):
             out.append(Unused(word, f"[check.severity] names {word!r}, and no rule has this code or name"))
     for entry in settings.ignore:
-        about = "" if entry.subject is None else f" of {entry.subject!r}"
-        if not any(_means(rule, entry.code) for rule in rules):
+        if not any(means(rule, entry.code) for rule in rules):
             message = f"[[check.ignore]] names {entry.code!r}, and no rule has this code or name"
             out.append(Unused(entry.code, message, entry))
         elif entry not in used:
-            out.append(Unused(entry.code, f"[[check.ignore]] of {entry.code}{about} ignores nothing", entry))
+            out.append(idle_ignore(entry))
     return tuple(out)
+
+
+def idle_ignore(entry: Ignore) -> Unused:
+    """An ignore that ignored nothing."""
+    about = "" if entry.subject is None else f" of {entry.subject!r}"
+    return Unused(entry.code, f"[[check.ignore]] of {entry.code}{about} ignores nothing", entry)
 
 
 def _named(
@@ -109,9 +114,10 @@ def _told(ignored: Sequence[Ignored]) -> str:
     return f"{count} ignored: {'; '.join(reasons)}"
 
 
-def _means(rule: Rule, word: str) -> bool:
+def means(rule: Rule, word: str) -> bool:
+    """Whether a word of `[check]` is the code or the name of a rule."""
     return word.casefold() in (rule.code.casefold(), rule.name)
 
 
 def _chosen(rule: Rule, word: str) -> bool:
-    return _means(rule, word) or (word[:2].casefold() == "kf" and rule.code.casefold().startswith(word.casefold()))
+    return means(rule, word) or (word[:2].casefold() == "kf" and rule.code.casefold().startswith(word.casefold()))

@@ -12,8 +12,9 @@ from kinform.consistency._context import Context
 from kinform.function import resolve
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Kinematics
+from kinform.words import rate
 
-__all__ = ["Ratio", "coupled_through", "derived_ratio"]
+__all__ = ["Ratio", "coupled_through", "derived_ratio", "shown_ratio"]
 
 TEETH = 1e-2
 """Relative: what the ratio of teeth at one pose may be off."""
@@ -55,8 +56,19 @@ def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> R
         own = 3.0 * coupling.uncertainty / abs(coupling.ratio) if known else 0.0
         relative += max(own, SCREW if coupling.kind == "screw" else TEETH)
     if relative > MOST * len(chain):
-        return f"the ratio {ratio:.4g} is uncertain by {100 * relative:.2g} %"
+        return f"the {shown_ratio(context, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
+
+
+def shown_ratio(context: Context, stated: Stated, ratio: float) -> str:
+    """A ratio of SI values as the manifest has it, of degrees and lengths in the assembly's units: "ratio 0.02 mm/°"."""
+    slides = [_slides(context, name) for name in stated.joints]
+    return f"ratio {rate(ratio, slides[0], slides[1], context.units)}"
+
+
+def _slides(context: Context, name: str) -> bool:
+    """Whether values of the joint are lengths."""
+    return any(joint.name == name and joint.type == "prismatic" for joint in context.function.joints)
 
 
 def coupled_through(context: Context, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:

@@ -45,8 +45,13 @@ def _joint(context: Context, subject: Sequence[str]) -> Joint | None:
 
 
 def _parts(context: Context, subject: Sequence[str]) -> list[Part]:
+    """The parts that the subject names, and the first of each body or group that it names."""
     by_name = {str(part.name): part for part in context.assembly.parts}
-    return [by_name[name] for name in subject if name in by_name]
+    kinematics = context.design.kinematics
+    first = {str(group.name): str(min(group.parts)) for group in context.assembly.groups}
+    first |= {str(body.name): str(min(body.parts)) for body in (kinematics.bodies if kinematics is not None else ())}
+    names = [name if name in by_name else first.get(name, "") for name in subject]
+    return [by_name[name] for name in names if name in by_name]
 
 
 def _middle(parts: Sequence[Part]) -> tuple[float, float, float] | None:

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.consistency._requirements import Answer, met, undecided, violated
-from kinform.consistency._words import number
 from kinform.model.simulation import Simulation
+from kinform.words import number
 
 __all__ = ["peak"]
 

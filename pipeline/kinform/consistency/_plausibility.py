@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency._words import length, quoted, volume
 from kinform.model.assembly import Assembly, Part, Source
+from kinform.words import length, quoted, volume
 
 __all__ = ["Doubt", "doubts", "extent"]
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from kinform.consistency._compare import Comparison, bodies_of
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import angle, length, quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
+from kinform.words import angle, length, quoted
 
 __all__ = ["Ranged", "ranged", "shown"]
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import angle, counted, length, number
 from kinform.function import Resolution, resolve
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
+from kinform.words import angle, counted, length, number
 
 __all__ = [
-    "Answer", "Judge", "bounds", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",
+    "Answer", "Judge", "bounds", "common", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",
     "simulated", "undecided", "violated",
 ]  # fmt: skip
 
@@ -124,6 +124,12 @@ def resolved(context: Context, name: str) -> tuple[Joint, Resolution] | Answer:
             "Require it of a joint with one freedom.",
         )
     return joint, found
+
+
+def common(context: Context, between: Sequence[str]) -> list[str]:
+    """Parts that are on both of two sides, sorted."""
+    first, second = (context.assembly.parts_of(name) for name in between)
+    return sorted(set(first) & set(second))
 
 
 def kind_of_value(joint: Joint) -> str:

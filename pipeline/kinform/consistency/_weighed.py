@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, bounds, met, undecided, violated
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import quoted
 from kinform.function.amounts import Amount, amount_of
+from kinform.words import quoted
 
 __all__ = ["amount", "compared", "whose"]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Collection
 
 __all__ = ["LineTable", "Path"]
 
@@ -43,6 +44,20 @@ class LineTable:
             if found is not None:
                 return found
         return 1
+
+    def without(self, dropped: Collection[Path]) -> LineTable:
+        """The lines of what is left when these tables are taken out: later elements of their arrays move up."""
+        out = LineTable("")
+        out._lines = {}
+        for path, line in self._lines.items():
+            if any(path[:length] in dropped for length in range(1, len(path) + 1)):
+                continue
+            moved = tuple(
+                step - sum((*path[:n], before) in dropped for before in range(step)) if isinstance(step, int) else step
+                for n, step in enumerate(path)
+            )
+            out._lines[moved] = line
+        return out
 
     def _scan(self) -> None:
         table: Path = ()

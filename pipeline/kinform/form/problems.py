@@ -32,7 +32,7 @@ def did_you_mean(name: str, known: Iterable[str], what: str) -> str:
     best = folded or close or tails
     if best:
         return f"did you mean {' or '.join(quoted(b) for b in best[:2])}?"
-    return f"{what}: {listed(known)}" if known else f"there are no {what}"
+    return f"{what}: {listed(known)}" if known else f"there are no {what.removeprefix('the ')}"
 
 
 class Problems:

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from kinform.form.problems import did_you_mean, quoted
+from kinform.form.requirements import faults
 from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
@@ -52,11 +53,11 @@ class Purposes:
         """Full name of an intended joint, or a name that kinform will give ("a~b")."""
         if "~" in name:
             return self.scope.prefix + name if self.scope.prefix else name
-        return self._known(name, set(self.joints), "[[function.joint]]", "the intended joints", *path)
+        return self._known(name, set(self.joints), "[[function.joint]]", "[[function.joint]]", *path)
 
     def _known(self, name: str, known: set[str], what: str, all_of: str, *path: str | int) -> str:
         full = self.scope.prefix + name
-        if full not in known:
+        if full not in known and name not in self.scope.refused:
             prefix = self.scope.prefix
             near = [k.removeprefix(prefix) for k in known if k.startswith(prefix)]
             self.scope.complain(f"there is no {what} {quoted(name)}", did_you_mean(name, near, all_of), *path)
@@ -148,11 +149,18 @@ class Purposes:
             first, second = self.pair(table.joints, self.joint, *path, "joints")
             if table.ratio == 0.0:
                 self.scope.complain("the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio")
-            ratio = table.ratio * self._value_scale(first) / self._value_scale(second)
+            scales = [self._value_scale(name, *path, "joints") for name in (first, second)]
+            ratio = table.ratio * scales[0] / scales[1]
             out.append(Coupling((first, second), ratio, self.scope.file, self.scope.line(*path)))
         return out
 
-    def _value_scale(self, joint: str) -> float:
+    def _value_scale(self, joint: str, *path: str | int) -> float:
+        """Radians or metres in a manifest's value of the joint; a problem where it is not stated which it is."""
+        if joint not in self.joints and "~" in joint:
+            self.scope.complain(
+                f"whether {quoted(joint.removeprefix(self.scope.prefix))} turns or slides is not stated, so its values have no unit",
+                "state the joint as a [[function.joint]], and use its name here", *path,
+            )  # fmt: skip
         return self.scope.metres if self.joints.get(joint) in LINEAR else math.pi / 180.0
 
     def drives(self) -> list[Drive]:
@@ -217,6 +225,9 @@ class Purposes:
         out = []
         for k, table in enumerate(function.require if function else []):
             path = ("function", "require", k)
+            for wrong, remedy, key in faults(table):
+                at = path if key is None else (*path, key)
+                self.scope.complain(f"requirement {quoted(table.name)}: {wrong}", remedy, *at)
             values = self._quantities(table, *path)
             values = {key: value for key, value in values.items() if key not in ("name", "kind") and value is not None}
             out.append(
@@ -242,7 +253,7 @@ class Purposes:
             else:
                 out[key] = self._converted(quantity.kind, value, table, *path, key)
                 if quantity.kind == "path":
-                    out["rows"] = self._path(value, *path)
+                    out["rows"] = self._path(value, *path, key)
                 if quantity.kind == "frame":
                     out["X_WF"] = self.scope.X_WF.tolist()
         return out
@@ -254,10 +265,10 @@ class Purposes:
             resolve = self.joint if kind == "joint" else self.place
             return [resolve(v, *path) for v in value] if isinstance(value, list) else resolve(value, *path)
         if kind == "joint_value":
-            return value * self._value_scale(self.scope.prefix + getattr(table, "joint", ""))
+            return value * self._value_scale(self.scope.prefix + getattr(table, "joint", ""), *path)
         if kind == "joint_values":
             named = [{self.joint(j, *path): v for j, v in pose.items()} for pose in value]
-            return [{j: v * self._value_scale(j) for j, v in pose.items()} for pose in named]
+            return [{j: v * self._value_scale(j, *path) for j, v in pose.items()} for pose in named]
         if kind == "path":
             found = self.sources.find(value, self.scope.folder, self.scope.file, self.scope.line(*path), "the path")
             return value if found is None else self.sources.shown(found)

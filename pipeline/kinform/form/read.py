@@ -80,7 +80,8 @@ class _Reader:
         parsed = parse(path, file, self.problems)
         if parsed is None:
             return
-        scope = Scope(*parsed, file, path.parent, prefix, X_WF, self.problems)
+        manifest, lines, refused = parsed
+        scope = Scope(manifest, lines, file, path.parent, prefix, X_WF, self.problems, refused)
         self.found.append(scope)
         here = (*above, Path(os.path.realpath(path)))
         for k, table in enumerate(scope.manifest.subassembly):
@@ -208,6 +209,8 @@ class _Reader:
                 for n, member in enumerate(table.parts):
                     full = scope.prefix + member
                     if full not in known:
+                        if member in scope.refused:
+                            continue
                         near = [p.removeprefix(scope.prefix) for p in known if p.startswith(scope.prefix)]
                         scope.complain(
                             f"group {quoted(table.name)}: there is no part {quoted(member)}",

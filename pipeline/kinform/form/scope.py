@@ -40,6 +40,8 @@ class Scope:
     """"" for the top manifest, else "yaw_motor/"."""
     X_WF: Array
     problems: Problems
+    refused: frozenset[str]
+    """Names of tables that cannot be used: they have been complained of."""
 
     @property
     def metres(self) -> float:
@@ -81,8 +83,9 @@ class Scope:
         return found / size
 
 
-def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTable] | None:
-    """The manifest at `path`, as far as it can be used; every problem is noted. None when nothing can."""
+def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTable, frozenset[str]] | None:
+    """The manifest at `path`, as far as it can be used, its lines, and the names of tables that cannot; every problem
+    is noted. None when nothing can be used."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
@@ -102,10 +105,12 @@ def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTabl
         return None
     lines = LineTable(text)
     try:
-        return Manifest.model_validate(raw), lines
+        return Manifest.model_validate(raw), lines, frozenset()
     except ValidationError as error:
         translate.report(error, raw, lines, file, problems)
         try:
-            return Manifest.model_validate(translate.without_errors(error, raw)), lines
+            kept, dropped = translate.without_errors(error, raw)
+            refused = frozenset(translate.names_of(dropped, raw))
+            return Manifest.model_validate(kept), lines.without(dropped), refused
         except ValidationError:
             return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from pydantic import ValidationError
@@ -11,7 +11,7 @@ from kinform.form.lines import LineTable, Path
 from kinform.form.problems import Problems, did_you_mean, listed, quoted
 from kinform.form.schema import json_schema
 
-__all__ = ["report", "without_errors"]
+__all__ = ["names_of", "report", "without_errors"]
 
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 
@@ -21,8 +21,9 @@ def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: 
     schema = json_schema()
     for item in error.errors(include_url=False):
         path = _real_path(item["loc"], raw)
-        where = _label(path if item["type"] == "missing" else path[:-1], raw)
-        line = lines.line(path)
+        tagged = item["type"].startswith("union_tag")
+        where = _label(path if item["type"] == "missing" or tagged else path[:-1], raw)
+        line = lines.line((*path, item["ctx"]["discriminator"].strip("'")) if tagged else path)
         node = _node(schema, item["loc"])
         owner = _node(schema, item["loc"][:-1])
         message, remedy = _words(item, path, where, node, owner)
@@ -44,12 +45,11 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
     name = _shown_key(path)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = context["discriminator"].strip("'")
-        inner = where if where else _label(path, {})
         if kind == "union_tag_not_found":
-            return f"{inner}: {name} has no {tag}", f"add {tag}: {_choices(node)}"
+            return f"{where}: {tag} is missing", f"add {tag}: {_choices(node)}"
         choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
         remedy = did_you_mean(str(context["tag"]), choices, f"the values of {tag}")
-        return f"{inner}: {name}: {tag} cannot be {quoted(context['tag'])}", remedy
+        return f"{where}: {tag} cannot be {quoted(context['tag'])}", remedy
     if kind == "literal_error":
         choices = node.get("enum") or [node.get("const", "")]
         remedy = did_you_mean(str(item["input"]), [str(c) for c in choices], "the choices")
@@ -71,8 +71,8 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
     return message, f"{name} is: {expected}" if expected else f"correct {name}"
 
 
-def without_errors(error: ValidationError, raw: dict[str, Any]) -> dict[str, Any]:
-    """The raw manifest less what pydantic refused, so that the rest can be checked as well.
+def without_errors(error: ValidationError, raw: dict[str, Any]) -> tuple[dict[str, Any], set[Path]]:
+    """The raw manifest less what pydantic refused, so that the rest can be checked as well; and what was refused.
 
     An unknown key goes alone; another error takes its table (`[[part]]`, a material, a joint) with it.
     """
@@ -86,7 +86,17 @@ def without_errors(error: ValidationError, raw: dict[str, Any]) -> dict[str, Any
     if isinstance(assembly, dict):
         assembly.setdefault("name", "?")
         assembly.setdefault("units", "m")
-    return kept
+    return kept, drop
+
+
+def names_of(paths: Iterable[Path], raw: Any) -> Iterator[str]:
+    """The names of those of the tables that have one."""
+    for path in paths:
+        value = raw
+        for step in path:
+            value = _entry(value, step) if _has(value, step) else None
+        if isinstance(value, dict) and isinstance(value.get("name"), str):
+            yield value["name"]
 
 
 def _unit_of(path: Path) -> Path:

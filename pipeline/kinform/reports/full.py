@@ -25,7 +25,7 @@ WIDTH = 80
 def render(report: CheckReport, design: Design) -> str:
     """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the verdict."""
     order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
-    blocks = [_finding(f) for f in sorted(report.findings, key=lambda f: order[f.severity])]
+    blocks = [_finding(f, design.assembly.units) for f in sorted(report.findings, key=lambda f: order[f.severity])]
     undecided = [r for r in report.rules if r.outcome == "inconclusive"]
     if undecided:
         lines = ["not decided:"]
@@ -40,14 +40,14 @@ def render(report: CheckReport, design: Design) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
-def _finding(finding: Finding) -> str:
+def _finding(finding: Finding, units: str) -> str:
     subject = ", ".join(one_line(s) for s in finding.subject)
     lines = _wrapped(f"{finding.severity}: {finding.code} {finding.rule}: {subject}", "", "  ")
     lines += _wrapped(one_line(finding.message), "  ", "  ")
     facts = {
         "found": finding.found,
         "intended": finding.intended,
-        "place": place(finding),
+        "place": place(finding, units),
         "at": where(finding) or None,
     }
     for key, value in facts.items():

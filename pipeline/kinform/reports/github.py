@@ -17,7 +17,7 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 def render(report: CheckReport, design: Design) -> str:
     """Annotations of findings, then of rules that could not decide, then a line with the verdict for the log."""
     manifest = design.assembly.source.file
-    lines = [_finding(finding, manifest) for finding in report.findings]
+    lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
     lines.append(
         f"{verdict_line(report)}; {severity_counts(report)}; {rule_counts(report)}; {one_line(design.assembly.name)}"
@@ -25,9 +25,9 @@ def render(report: CheckReport, design: Design) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _finding(finding: Finding, manifest: str) -> str:
+def _finding(finding: Finding, manifest: str, units: str) -> str:
     title = f"{finding.code} {finding.rule}: {', '.join(map(one_line, finding.subject))}"
-    text = "\n".join([finding.message, *(f"{key}: {value}" for key, value in details(finding).items())])
+    text = "\n".join([finding.message, *(f"{key}: {value}" for key, value in details(finding, units).items())])
     return _command(_COMMANDS[finding.severity], finding.file or manifest, finding.line, title, text)
 
 

@@ -28,7 +28,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         own = [finding for finding in report.findings if finding.code == rule.code]
         accepted = [item for item in report.ignored if item.finding.code == rule.code]
         for finding in own:
-            _case_of_finding(suite, finding, finding.severity in failing)
+            _case_of_finding(suite, finding, design.assembly.units, finding.severity in failing)
         for item in accepted:
             _case_of_accepted(suite, item)
         if not (own or accepted) or rule.outcome == "inconclusive":
@@ -36,7 +36,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     known = {rule.code for rule in report.rules}
     for finding in report.findings:
         if finding.code not in known:
-            _case_of_finding(suite, finding, finding.severity in failing)
+            _case_of_finding(suite, finding, design.assembly.units, finding.severity in failing)
     if report.ran == 0:
         case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="rules ran")
         ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report))
@@ -54,14 +54,17 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     return head + text.encode("ascii", "xmlcharrefreplace").decode("ascii") + "\n"
 
 
-def _case_of_finding(suite: ElementTree.Element, finding: Finding, fails: bool) -> None:
+def _case_of_finding(suite: ElementTree.Element, finding: Finding, units: str, fails: bool) -> None:
     subject = ", ".join(finding.subject)
     case = _case(suite, finding.code, f"{finding.rule}: {subject}")
     if finding.file is not None:
         case.set("file", _legal(finding.file))
     if finding.line is not None:
         case.set("line", str(finding.line))
-    lines = [f"{finding.severity}: {finding.message}", *(f"{key}: {value}" for key, value in details(finding).items())]
+    lines = [
+        f"{finding.severity}: {finding.message}",
+        *(f"{key}: {value}" for key, value in details(finding, units).items()),
+    ]
     if fails:
         told = ElementTree.SubElement(case, "failure", type=finding.severity, message=_legal(finding.message))
     else:

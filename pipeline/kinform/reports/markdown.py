@@ -44,7 +44,7 @@ def render(report: CheckReport, design: Design) -> str:
             for f in found
         ]
         blocks.append(table(("severity", "rule", "subject", "what is wrong", "at"), rows))
-        told = [_details(finding) for finding in found]
+        told = [_details(finding, design.assembly.units) for finding in found]
         if any(told):
             lines = "\n".join(text for text in told if text)
             blocks.append(f"<details><summary>Details and remedies</summary>\n\n{lines}\n\n</details>")
@@ -84,8 +84,8 @@ def escaped(text: str) -> str:
     return re.sub(r"([\\`*_{}\[\]<>#+!|~&@$()])", r"\\\1", one_line(text))
 
 
-def _details(finding: Finding) -> str:
-    found = details(finding)
+def _details(finding: Finding, units: str) -> str:
+    found = details(finding, units)
     if not found:
         return ""
     lines = [f"- {finding.code} {', '.join(map(code, finding.subject))}"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from kinform import words
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
 __all__ = [
@@ -29,19 +30,17 @@ def where(finding: Finding) -> str:
     return finding.file if finding.line is None else f"{finding.file}:{finding.line}"
 
 
-def place(finding: Finding) -> str | None:
-    """ "(1, 0, -20) mm", or None; no millionths, which are the noise of what is computed."""
-    if finding.place is None:
-        return None
-    return "(" + ", ".join(f"{round(1e3 * x, 6) + 0.0:.4g}" for x in finding.place) + ") mm"
+def place(finding: Finding, units: str) -> str | None:
+    """ "(1, 0, -20) mm", in the unit in which messages show lengths of an assembly of these units; or None."""
+    return None if finding.place is None else words.place(finding.place, units)
 
 
-def details(finding: Finding) -> dict[str, str]:
-    """Found, intended, place and remedy, as far as they are known, by these names."""
+def details(finding: Finding, units: str) -> dict[str, str]:
+    """Found, intended, place and remedy, as far as they are known, by these names; lengths by the units of the assembly."""
     facts = {
         "found": finding.found,
         "intended": finding.intended,
-        "place": place(finding),
+        "place": place(finding, units),
         "remedy": finding.remedy,
     }
     return {key: value for key, value in facts.items() if value}

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import volume
+from kinform.words import volume
 
 __all__ = ["RULE"]
 

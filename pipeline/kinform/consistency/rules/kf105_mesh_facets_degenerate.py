@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import counted, length
+from kinform.words import counted, length
 
 __all__ = ["RULE"]
 

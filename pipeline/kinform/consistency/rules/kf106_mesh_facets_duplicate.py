@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import counted
+from kinform.words import counted
 
 __all__ = ["RULE"]
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import quoted
 from kinform.model.assembly import Assembly, Part
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -18,9 +18,9 @@ import numpy as np
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import mass, number, quoted
 from kinform.model.assembly import Part
 from kinform.model.mass import MassProperties
+from kinform.words import mass, number, quoted
 
 __all__ = ["RULE"]
 

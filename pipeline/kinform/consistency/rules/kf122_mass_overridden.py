@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import mass, quoted
 from kinform.model.assembly import Part
+from kinform.words import mass, quoted
 
 __all__ = ["RULE"]
 

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
+from kinform.words import length, quoted, volume
 
 __all__ = ["RULE"]
 

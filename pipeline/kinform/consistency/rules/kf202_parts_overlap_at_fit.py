@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import length, quoted
+from kinform.words import length, quoted
 
 __all__ = ["RULE"]
 

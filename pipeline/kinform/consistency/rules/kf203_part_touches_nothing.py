@@ -17,10 +17,10 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import quoted
 from kinform.kinematics.graph import UnionFind
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -16,9 +16,9 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
+from kinform.words import area, counted, length, number, quoted
 
 __all__ = ["RULE"]
 

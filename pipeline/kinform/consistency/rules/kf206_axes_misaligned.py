@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import angle, length, listed, quoted
+from kinform.words import angle, length, listed, quoted
 
 __all__ = ["RULE"]
 

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import counted, quoted
 from kinform.model.kinematics import Kinematics
+from kinform.words import counted, quoted
 
 __all__ = ["RULE"]
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import quoted
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import counted, listed, quoted
+from kinform.words import counted, listed, quoted
 
 __all__ = ["RULE"]
 

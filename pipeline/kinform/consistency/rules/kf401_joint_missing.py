@@ -15,8 +15,8 @@ from __future__ import annotations
 from kinform.consistency._compare import Comparison
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import counted, length, quoted
 from kinform.model.kinematics import Body
+from kinform.words import counted, length, quoted
 
 __all__ = ["RULE"]
 

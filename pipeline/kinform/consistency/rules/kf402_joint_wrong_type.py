@@ -18,8 +18,8 @@ from __future__ import annotations
 from kinform.consistency._compare import Comparison
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
-from kinform.consistency._words import counted, direction, quoted
 from kinform.model.findings import Finding
+from kinform.words import counted, direction, quoted
 
 __all__ = ["RULE"]
 

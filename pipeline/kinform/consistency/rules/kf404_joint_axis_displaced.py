@@ -17,8 +17,8 @@ from __future__ import annotations
 from kinform.consistency._compare import Comparison
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import counted, length, place
 from kinform.model.findings import Finding
+from kinform.words import counted, length, place
 
 __all__ = ["RULE"]
 

@@ -16,9 +16,9 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
 from kinform.consistency._unintended import unintended
-from kinform.consistency._words import direction, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
+from kinform.words import direction, quoted
 
 __all__ = ["RULE"]
 

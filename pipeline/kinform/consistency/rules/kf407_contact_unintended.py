@@ -15,9 +15,9 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
 from kinform.consistency._unintended import unintended
-from kinform.consistency._words import area, counted, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
+from kinform.words import area, counted, quoted
 
 __all__ = ["RULE"]
 

@@ -15,9 +15,9 @@ Example: `ratio = -2.5` where gears of 20 and 48 teeth give −2.4.
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._coupled import derived_ratio
+from kinform.consistency._coupled import derived_ratio, shown_ratio
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._words import number, quoted
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 
@@ -37,15 +37,15 @@ def check(context: Context) -> Outcome:
             continue
         count += 1
         if abs(found.value - coupling.ratio) > found.allowed:
+            has, wanted = (shown_ratio(context, coupling, ratio) for ratio in (found.value, coupling.ratio))
             findings.append(
                 RULE.finding(
                     coupling.joints,
-                    f"{quoted(coupling.joints)} are coupled with the ratio {number(found.value, 5)} through "
-                    f"{quoted(found.through)}, intended is {number(coupling.ratio, 5)}",
-                    found=f"ratio {number(found.value, 6)}",
-                    intended=f"ratio {number(coupling.ratio, 6)}",
+                    f"{quoted(coupling.joints)} are coupled with the {has} through {quoted(found.through)}, intended is {wanted}",
+                    found=has,
+                    intended=wanted,
                     declared=coupling,
-                    remedy="Correct the teeth or the pitch, or `ratio` (values in SI units: radians and metres).",
+                    remedy="Correct the teeth or the pitch, or `ratio`: value of the first for one of the second; mind the sign.",
                 )
             )
     return decided(findings) if count else skipped("no coupling can be compared")

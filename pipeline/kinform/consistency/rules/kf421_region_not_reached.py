@@ -25,12 +25,12 @@ from kinform.consistency._context import Context
 from kinform.consistency._plausibility import extent
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import angle, counted, direction, length, place, quoted
 from kinform.function import resolve
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.coverage import cover
 from kinform.function.regions import Targets, targets_of
 from kinform.model.function import Requirement
+from kinform.words import angle, counted, direction, length, place, quoted
 
 __all__ = ["RULE", "judge"]
 

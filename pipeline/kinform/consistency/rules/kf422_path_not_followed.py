@@ -17,10 +17,10 @@ import numpy as np
 
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, simulated, undecided, violated
-from kinform.consistency._words import angle, length, number
 from kinform.function.paths import Deviation, deviation
 from kinform.model.function import Requirement
 from kinform.model.simulation import Simulation
+from kinform.words import angle, length, number
 
 __all__ = ["RULE", "judge"]
 

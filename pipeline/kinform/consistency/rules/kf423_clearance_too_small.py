@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import (
     Answer,
+    common,
     met,
     requirement_rule,
     shown_value,
@@ -34,12 +35,12 @@ from kinform.consistency._requirements import (
     violated,
 )
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import counted, length, number, quoted
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.sweeps import Swept, along, over
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
+from kinform.words import counted, length, number, quoted
 
 __all__ = ["RULE", "judge"]
 
@@ -60,7 +61,10 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     simulation = simulated(context) if motion else None
     if isinstance(simulation, Answer):
         return simulation
-    pairs = _pairs(context, kinematics, requirement.values.get("between"))
+    between = requirement.values.get("between")
+    if between is not None and (shared := common(context, between)):
+        return undecided(f"{quoted(shared)} would be on both sides", "Name two that share no part.")
+    pairs = _pairs(context, kinematics, between)
     answers = [_one(context, kinematics, requirement, pair, simulation) for pair in pairs]
     known = [one for one in answers if one is not None]
     short = [one for one in known if one.state == "violated"]

@@ -31,13 +31,13 @@ from kinform.consistency._requirements import (
     violated,
 )
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import counted
 from kinform.function import resolve
 from kinform.function.configurations import Chain, mechanism_of
 from kinform.function.holding import holding_effort, posed
 from kinform.model.function import Requirement, SimulationRequest
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
+from kinform.words import counted
 
 __all__ = ["RULE", "judge"]
 

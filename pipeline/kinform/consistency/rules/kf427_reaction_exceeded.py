@@ -23,10 +23,10 @@ from kinform.consistency._context import Context
 from kinform.consistency._peaks import peak
 from kinform.consistency._requirements import Answer, met, requirement_rule, simulated, undecided
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import number
 from kinform.function import resolve
 from kinform.model.function import Requirement
 from kinform.model.simulation import Simulation
+from kinform.words import number
 
 __all__ = ["RULE", "judge"]
 

@@ -15,8 +15,8 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, requirement_rule
 from kinform.consistency._weighed import amount, compared, whose
-from kinform.consistency._words import mass
 from kinform.model.function import Requirement
+from kinform.words import mass
 
 __all__ = ["RULE", "judge"]
 

@@ -14,8 +14,8 @@ import numpy as np
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, violated
 from kinform.consistency._weighed import amount, whose
-from kinform.consistency._words import length, place
 from kinform.model.function import Requirement
+from kinform.words import length, place
 
 __all__ = ["RULE", "judge"]
 

@@ -17,8 +17,8 @@ import numpy as np
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, requirement_rule
 from kinform.consistency._weighed import amount, compared, whose
-from kinform.consistency._words import direction, number
 from kinform.model.function import Requirement
+from kinform.words import direction, number
 
 __all__ = ["RULE", "judge"]
 

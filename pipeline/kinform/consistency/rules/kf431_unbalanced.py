@@ -18,9 +18,9 @@ from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
 from kinform.consistency._rule import Outcome
 from kinform.consistency._weighed import amount
-from kinform.consistency._words import length, mass, number, quoted
 from kinform.function import resolve
 from kinform.model.function import Requirement
+from kinform.words import length, mass, number, quoted
 
 __all__ = ["RULE", "judge"]
 

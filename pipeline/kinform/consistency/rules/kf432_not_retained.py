@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
 from kinform.consistency._rule import Outcome
-from kinform.consistency._words import direction, quoted
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Kinematics, Release, Separation
+from kinform.words import direction, quoted
 
 __all__ = ["RULE", "judge"]
 

@@ -15,12 +15,12 @@ Example: `kind = "fit"`, `between = ["shaft", "bush"]`, `minimum = 0.01`, `maxim
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, met, requirement_rule, undecided
+from kinform.consistency._requirements import Answer, common, met, requirement_rule, undecided
 from kinform.consistency._rule import Outcome
 from kinform.consistency._weighed import compared
-from kinform.consistency._words import counted, length, quoted
 from kinform.function.fits import clearances
 from kinform.model.function import Requirement
+from kinform.words import counted, length, quoted
 
 __all__ = ["RULE", "judge"]
 
@@ -32,6 +32,8 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     contacts, values = context.contacts, requirement.values
     if isinstance(contacts, Outcome):
         return undecided(contacts.reason, "Give both parts meshes.")
+    if shared := common(context, values["between"]):
+        return undecided(f"{quoted(shared)} would be on both sides", "Name two that share no part.")
     first, second = (context.assembly.parts_of(name) for name in values["between"])
     found = clearances(contacts, first, second)
     if not found:

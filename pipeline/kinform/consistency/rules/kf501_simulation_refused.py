@@ -15,13 +15,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from kinform.consistency._actuated import loose
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Declared, Outcome, Rule, decided, inconclusive
-from kinform.consistency._words import quoted
 from kinform.function import resolve
 from kinform.model.findings import Finding
+from kinform.words import quoted
 
 __all__ = ["RULE"]
+
+GROUP = "Fasten what is loose, such as a pin, to one of the two parts with a [[group]]."
 
 
 def check(context: Context) -> Outcome:
@@ -43,14 +46,16 @@ def _finding(context: Context, subject: str, reason: str) -> Finding:
     request = context.assembly.simulation
     asked = request if request is not None and request.file is not None else None
     level = request.level if request is not None else None
+    carried = next(filter(None, (loose(context, name) for name in names)), "")
+    told = f"{reason}; {carried}" if carried else reason
     return RULE.finding(
         names,
-        f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {reason}",
+        f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {told}",
         found="not simulated",
         intended=f"a {level} simulation" if level else "a simulation",
         place=context.place_of(joint) if joint is not None else None,
         declared=_declaring(context, subject, names) or asked or context.assembly.source,
-        remedy="Remove the cause, or ask for a lower `level`.",
+        remedy=GROUP if carried else "Remove the cause, or ask for a lower `level`.",
     )
 
 

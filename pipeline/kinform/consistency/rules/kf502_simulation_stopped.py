@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._words import number
+from kinform.words import number
 
 __all__ = ["RULE"]
 

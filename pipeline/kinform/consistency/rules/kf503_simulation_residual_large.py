@@ -16,7 +16,7 @@ import numpy as np
 from kinform.consistency._context import Context
 from kinform.consistency._plausibility import extent
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import number
+from kinform.words import number
 
 __all__ = ["RULE"]
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import counted, length, number, place, quoted
+from kinform.words import counted, length, number, place, quoted
 
 __all__ = ["RULE"]
 

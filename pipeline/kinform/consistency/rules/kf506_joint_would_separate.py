@@ -22,8 +22,8 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.consistency._separating import Lift, lifts
-from kinform.consistency._words import number, quoted
 from kinform.model.findings import Finding
+from kinform.words import number, quoted
 
 __all__ = ["RULE"]
 

@@ -16,8 +16,8 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency._separating import SLIDES, Slip, slips
-from kinform.consistency._words import angle, length, number
 from kinform.model.findings import Finding
+from kinform.words import angle, length, number
 
 __all__ = ["RULE"]
 

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
-from kinform.consistency._words import quoted
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
+from kinform.words import quoted
 
 __all__ = ["RULE"]
 

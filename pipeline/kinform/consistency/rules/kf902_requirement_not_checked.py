@@ -15,7 +15,6 @@ from __future__ import annotations
 from kinform.consistency._context import Context
 from kinform.consistency._requirements import Judge, answer
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import counted
 from kinform.consistency.rules import (
     kf421_region_not_reached,
     kf422_path_not_followed,
@@ -31,6 +30,7 @@ from kinform.consistency.rules import (
     kf432_not_retained,
     kf433_fit_out_of_bounds,
 )
+from kinform.words import counted
 
 __all__ = ["JUDGES", "RULE"]
 

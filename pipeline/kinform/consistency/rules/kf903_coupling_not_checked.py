@@ -15,9 +15,9 @@ Example: `ratio = -2.5` between two shafts whose gears are drawn as plain discs.
 from __future__ import annotations
 
 from kinform.consistency._context import Context
-from kinform.consistency._coupled import derived_ratio
+from kinform.consistency._coupled import derived_ratio, shown_ratio
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._words import counted, number, quoted
+from kinform.words import counted, quoted
 
 __all__ = ["RULE"]
 
@@ -39,7 +39,7 @@ def check(context: Context) -> Outcome:
             coupling.joints,
             f"the coupling of {quoted(coupling.joints)} is not checked: {reason}",
             found="not checked",
-            intended=f"ratio {number(coupling.ratio, 6)}",
+            intended=shown_ratio(context, coupling, coupling.ratio),
             declared=coupling,
             remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )

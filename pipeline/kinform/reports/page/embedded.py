@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency import words
+from kinform import words
 from kinform.form.units import metres_per
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency import words
+from kinform import words
 from kinform.function import resolve
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.design import Design

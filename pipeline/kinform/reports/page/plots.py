@@ -277,5 +277,4 @@ def _thinned(y: Array) -> Sequence[int]:
 
 
 def _number(value: float) -> str:
-    text = f"{value + 0.0:.4g}"
-    return text.replace("-", "−")
+    return f"{value + 0.0:.4g}"

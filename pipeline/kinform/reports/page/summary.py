@@ -51,7 +51,7 @@ def summary(design: Design) -> str:
     named = _named(design)
     for file, finding in named:
         lines += [
-            f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}",
+            f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}: {_plain(finding.subject)}",
             "",
             _plain(finding.message),
             "",

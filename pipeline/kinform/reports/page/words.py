@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kinform.consistency import words
+from kinform import words
 from kinform.model.assembly import Assumption
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
@@ -12,14 +12,15 @@ from kinform.model.kinematics import Joint
 __all__ = ["assumption", "axis", "contact", "gap_words", "joint_sentence", "number", "patch_words", "place"]
 
 number = words.number
+place = words.place
 
 
 def axis(direction: Iterable[float]) -> str:
-    """x, −z, or the components."""
+    """x, -z, or the components."""
     values = [round(float(v), 4) + 0.0 for v in direction]
     for name, place in (("x", 0), ("y", 1), ("z", 2)):
         unit = [0.0, 0.0, 0.0]
-        for sign, text in ((1.0, name), (-1.0, "−" + name)):
+        for sign, text in ((1.0, name), (-1.0, "-" + name)):
             unit[place] = sign
             if values == unit:
                 return text
@@ -69,16 +70,6 @@ def assumption(item: Assumption) -> str:
     return "do not touch" if item.ignore else f"are joined: {item.type}"
 
 
-def place(point: Iterable[float], units: str) -> str:
-    """A point (m) as "(12.345, 0, −4) mm", to a thousandth of the unit."""
-    values = [float(v) for v in point]
-    unit, metres = ("m", 1.0) if max(map(abs, values), default=0.0) >= 1.0 else ("mm", 1e-3)
-    if units in ("in", "ft"):
-        unit, metres = "in", 0.0254
-    texts = (f"{round(v / metres, 3) + 0.0:.3f}".rstrip("0").rstrip(".").replace("-", "−") for v in values)
-    return f"({', '.join(texts)}) {unit}"
-
-
 def gap_words(gap: float, units: str) -> str:
     """ ", gap 0.05 mm"; nothing below a ten-millionth of a metre."""
-    return "" if abs(gap) < 1e-7 else f", gap {words.length(gap, units, 3)}".replace("-", "−")
+    return "" if abs(gap) < 1e-7 else f", gap {words.length(gap, units, 3)}"

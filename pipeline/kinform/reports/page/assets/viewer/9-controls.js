@@ -387,7 +387,7 @@ class Controls {
     if (motion.kind === "simulation") return `${time.toFixed(2)} s`;
     if (!motion.unit) return `${Math.round(100 * time)} %`;
     const value = Math.abs(time) * (time < 0 ? motion.ends[0] : motion.ends[1]);
-    return `${value.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−")}${motion.unit}`;
+    return `${value.toFixed(1).replace(/^-0\.0$/, "0.0")}${motion.unit}`;
   }
 
   // The names of parts that have run into each other, where they did.

@@ -1,4 +1,4 @@
-"""Numbers, names and places in an engineer's words."""
+"""Numbers, names and places in an engineer's words; they cost no import, so that a run with nothing to do stays quick."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ __all__ = [
     "number",
     "place",
     "quoted",
+    "rate",
     "volume",
 ]
 
@@ -73,6 +74,13 @@ def mass(value: float) -> str:
 def angle(value: float, digits: int = 3) -> str:
     """An angle (rad) in degrees: "0.5°"."""
     return f"{number(math.degrees(value), digits)}°"
+
+
+def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
+    """A rate of one joint value by another (rad or m) as manifests have them, in degrees and lengths: "0.02 mm/°"."""
+    own, per = (IN_METRES[units] if slide else math.radians(1.0) for slide in (slides, per_slides))
+    unit = "" if slides == per_slides else f" {units}/°" if slides else f" °/{units}"
+    return f"{number(value * per / own, 6)}{unit}"
 
 
 def direction(vector: Iterable[float]) -> str:

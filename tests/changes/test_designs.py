@@ -1,0 +1,91 @@
+"""What `diff` and a lock say of designs that were made, derived and changed in one known way."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import pytest
+from fixtures.generators.solids import box, join
+from written import manifest
+
+from kinform import stages
+from kinform.changes import compare, read_lock, snapshot, with_lock, write_lock
+from kinform.consistency import verdict
+
+
+def drawer(folder, stop=50.0, extra="", material='material = "steel"\n', long=25.0):
+    """A slider of 45 × 20 × 8 mm (x, y, z) in a rail along x, between a stop at -50 mm and one at `stop`."""
+    folder.mkdir()
+    rail = [box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10)]
+    ends = [box(-55, -50, -11, 11, -1, 10), box(stop, stop + 5, -11, 11, -1, 10)]
+    parts = {"rail": join(*rail, *ends), "slider": box(-20, long, -10, 10, 0, 8)}
+    return derived(manifest(folder, parts, extra, more=material))
+
+
+def derived(path):
+    """The design with its findings, ranges computed."""
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    return stages.check(stages.simulate(design, ranges=True))
+
+
+@pytest.fixture(scope="module")
+def before(tmp_path_factory):
+    return drawer(tmp_path_factory.mktemp("drawer") / "before")
+
+
+@pytest.fixture(scope="module")
+def shorter(tmp_path_factory):
+    return drawer(tmp_path_factory.mktemp("drawer") / "shorter", stop=46.0)
+
+
+def test_a_stop_that_was_moved_is_a_change_of_the_range(before, shorter):
+    changes = compare(snapshot(before), snapshot(shorter)).changes
+    (found,) = (change for change in changes if change.kind == "range")
+    assert found.amount == pytest.approx(-4e-3, abs=4e-6)
+    assert found.message == "upper end of the range -4 mm"
+    assert compare(snapshot(before), snapshot(before)).code == 0
+
+
+def test_a_lock_keeps_the_range_and_says_where_it_differs(before, shorter):
+    text = write_lock(snapshot(before))
+    (joint,) = json.loads(text)["joints"]
+    assert joint["range"]["mm"] == pytest.approx([-30.0, 25.0], abs=0.01)
+    report = with_lock(shorter.report, shorter, read_lock(text, "b.json"))
+    (found,) = (f for f in report.findings if f.code == "KF450" and "range" in f.message)
+    assert f'"name": "{joint["name"]}"' in text.splitlines()[found.line - 1]
+    assert all(f.place is not None for f in report.findings if f.code == "KF450" and f.subject[0] in text)
+    assert verdict(report) == 1
+    unranged = dataclasses.replace(before, simulation=dataclasses.replace(before.simulation, ranges=None))
+    (rule,) = (r for r in with_lock(before.report, unranged, read_lock(text, "b.json")).rules if r.code == "KF450")
+    assert (rule.outcome, "ranges" in rule.reason) == ("inconclusive", True)
+
+
+@pytest.mark.parametrize(
+    ("settings", "outcome", "code"),
+    [
+        ("", "failed", 1),
+        ('[check]\nseverity = {KF450 = "note"}\n', "passed", 0),
+        ('[[check.ignore]]\ncode = "KF450"\nreason = "the stop is being moved"\n', "ignored", 0),
+        ('[check]\nselect = ["KF1"]\n', "skipped", 0),
+    ],
+    ids=["", "severity", "ignore", "select"],
+)
+def test_the_manifest_controls_what_a_lock_says_as_any_other_rule(tmp_path, before, settings, outcome, code):
+    lock = read_lock(write_lock(snapshot(before)), "b.json")
+    design = drawer(tmp_path / "new", stop=46.0, extra=settings)
+    report = with_lock(design.report, design, lock)
+    assert next(rule.outcome for rule in report.rules if rule.code == "KF450") == outcome
+    assert verdict(report) == code
+    assert not [f for f in report.findings if f.code == "KF440"]
+
+
+def test_an_ignore_of_the_lock_that_ignores_nothing_is_a_finding_where_a_lock_is_given(tmp_path, before):
+    lock = read_lock(write_lock(snapshot(before)), "b.json")
+    said = '[[check.ignore]]\ncode = "KF450"\nsubject = "nobody"\nreason = "long ago"\n'
+    design = drawer(tmp_path / "new", extra=said)
+    assert not [f for f in design.report.findings if f.code == "KF440"]
+    report = with_lock(design.report, design, lock)
+    (found,) = (f for f in report.findings if f.code == "KF440")
+    assert "ignores nothing" in found.message
+    assert next(rule.outcome for rule in report.rules if rule.code == "KF440") == "failed"

@@ -1,0 +1,59 @@
+"""Requirements that contradict themselves, or ask for nothing, are refused at the line of their key."""
+
+from __future__ import annotations
+
+import pytest
+
+from kinform.errors import InputError
+from kinform.form import load
+
+HEAD = """schema = 1
+[assembly]
+name = "x"
+units = "mm"
+[[part]]
+name = "a"
+[[part]]
+name = "b"
+[[function.joint]]
+name = "j"
+between = ["a", "b"]
+type = "revolute"
+axis = [0, 0, 1]
+point = [0, 0, 0]
+[[function.require]]
+name = "r"
+"""
+REACH = 'kind = "reach"\npart = "b"\n'
+WRONG = {
+    "bounds the wrong way round": ('kind = "mass"\nminimum = 2\nmaximum = 1', "minimum, 2, is above", 2),
+    "fit the wrong way round": ('kind = "fit"\nbetween = ["a", "b"]\nminimum = 0.2\nmaximum = -0.1', "is above", 3),
+    "no bounds": ('kind = "inertia"\naxis = [0, 0, 1]', "neither minimum nor maximum", 0),
+    "point and direction": (REACH + "point = [0, 0, 0]\ndirection = [1, 0, 0]\nregion = {type = 'poses', points = [[0, 0, 0]]}", "either a point or a direction", 0),
+    "neither point nor direction": (REACH + "region = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "either a point or a direction", 0),
+    "cone of points": (REACH + "point = [0, 0, 0]\nregion = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "region of directions", 4),
+    "box of directions": (REACH + "direction = [1, 0, 0]\nregion = {type = 'box', lower = [0, 0, 0], upper = [1, 1, 1]}", "region of points", 4),
+    "box inside out": (REACH + "point = [0, 0, 0]\nregion = {type = 'box', lower = [0, 2, 0], upper = [1, 1, 1]}", "lower corner", 4),
+    "no poses": (REACH + "point = [0, 0, 0]\nregion = {type = 'poses', points = []}", "list no points", 4),
+    "poses that would not be looked at": (REACH + "point = [0, 0, 0]\nregion = {type = 'poses', points = [[0, 0, 0]], directions = [[1, 0, 0]]}", "list directions", 4),
+    "tolerance that says nothing": (REACH + "direction = [1, 0, 0]\ntolerance = 1\nregion = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "says nothing", 4),
+    "reaction without limit": ('kind = "reaction"\njoint = "j"', "neither force nor torque", 0),
+    "balance without axis": ('kind = "balance"\nof = "b"\naxis = [0, 0, 1]\nlimit = 1', "neither a joint nor axis and point", 0),
+    "balance with two axes": ('kind = "balance"\nof = "b"\njoint = "j"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\nlimit = 1', "too", 3),
+    "fit of a part with itself": ('kind = "fit"\nbetween = ["a", "a"]\nminimum = 0', 'both sides are "a"', 2),
+    "clear of a part with itself": ('kind = "clear"\nbetween = ["a", "a"]', 'both sides are "a"', 2),
+}  # fmt: skip
+"""By what is wrong: the requirement, what is told, and the line after `name` of its key, 0 for the table."""
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_requirement_that_makes_no_sense_is_refused(tmp_path, case):
+    text, told, after = WRONG[case]
+    (tmp_path / "m.toml").write_text(HEAD + text + "\n")
+    with pytest.raises(InputError) as caught:
+        load(tmp_path / "m.toml")
+    (problem,) = caught.value.problems
+    assert told in problem.message
+    assert '"r"' in problem.message
+    assert problem.line == (15 if after == 0 else 16 + after)
+    assert problem.remedy
