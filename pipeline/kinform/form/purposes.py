@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
-from scipy.spatial.transform import Rotation
 
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.schema.common import Quantity
@@ -224,6 +223,8 @@ class Purposes:
 
     def _path(self, name: str, *path: str | int) -> list[list[float]]:
         """Rows of time, point (m) and perhaps quaternion wxyz, in the world, of a CSV file."""
+        from scipy.spatial.transform import Rotation
+
         scope = self.scope
         found = self.sources.find(name, scope.folder, scope.file, scope.line(*path), "the path")
         if found is None:
