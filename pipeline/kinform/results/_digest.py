@@ -129,8 +129,7 @@ def _result(out: Chunks, value: Any) -> None:
     out.append(f"r{_known[value]};".encode())
 
 
-@functools.cache
-def _fields(cls: type) -> tuple[bytes, Callable[[Any], tuple[Any, ...]]]:
+def _fields_of(cls: type) -> tuple[bytes, Callable[[Any], tuple[Any, ...]]]:
     """What stands before the fields of a class, and what gets them all."""
     names = [field.name for field in dataclasses.fields(cls)]
     if cls.__name__ == "Mesh":
@@ -139,8 +138,7 @@ def _fields(cls: type) -> tuple[bytes, Callable[[Any], tuple[Any, ...]]]:
     return f"c{cls.__name__};".encode(), get if len(names) != 1 else lambda record: (get(record),)
 
 
-@functools.cache
-def _feeder(kind: type) -> Callable[[Chunks, Any], None]:
+def _feeder_of(kind: type) -> Callable[[Chunks, Any], None]:
     """What feeds values of exactly this type."""
     if issubclass(kind, bool | int | np.bool_ | np.integer | types.NoneType):
         return _count
@@ -159,3 +157,7 @@ def _feeder(kind: type) -> Callable[[Chunks, Any], None]:
     if issubclass(kind, types.FunctionType):
         return _function
     raise TypeError(f"cannot hash a {kind.__name__}")
+
+
+_feeder: Callable[[Any], Callable[[Chunks, Any], None]] = functools.cache(_feeder_of)
+_fields: Callable[[Any], tuple[bytes, Callable[[Any], tuple[Any, ...]]]] = functools.cache(_fields_of)

@@ -322,4 +322,5 @@ def write_ragged(
 def read_ragged(group: h5py.Group, name: str) -> list[NDArray[Any]]:
     """The arrays that `write_ragged` wrote, read-only."""
     data, offset = read_array(group, name), read_array(group, f"{name}_offset")
-    return [freeze(data[start:end].copy()) for start, end in zip(offset[:-1], offset[1:], strict=True)]
+    bounds = offset.tolist()
+    return [data[start:end] for start, end in zip(bounds[:-1], bounds[1:], strict=True)]
