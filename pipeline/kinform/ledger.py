@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kinform.model.design import Design
+
+if TYPE_CHECKING:
+    from kinform.results import Earlier
 
 __all__ = ["Ledger"]
 
@@ -15,7 +19,7 @@ __all__ = ["Ledger"]
 class Ledger:
     """Earlier results of the same output, if any, and the account of what became of them."""
 
-    previous: Design | None = None
+    previous: Design | Earlier | None = None
     reused: list[str] = field(default_factory=list)
     """Sentences, in the order of the stages."""
     recomputed: list[str] = field(default_factory=list)
@@ -34,7 +38,12 @@ class Ledger:
 
         results.check_output(output)
         path = Path(output)
-        return cls(results.read(path) if path.exists() and path.stat().st_size > 0 else None)
+        return cls(results.Earlier(path) if path.exists() and path.stat().st_size > 0 else None)
+
+    def close(self) -> None:
+        """Let go of the earlier file: it is about to be replaced."""
+        if self.previous is not None and not isinstance(self.previous, Design):
+            self.previous.close()
 
     def keep(self, what: str) -> None:
         """Note that `what` is taken over."""

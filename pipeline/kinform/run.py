@@ -49,11 +49,12 @@ def run(
     design = stages.mass(design, ledger=ledger)
     design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
     design = stages.check(design, ledger=ledger)
+    account = ledger.account(design.fingerprints.files)
     if output is not None:
         from kinform import results
 
+        ledger.close()
         results.write(design, output)
-    account = ledger.account(design.fingerprints.files)
     return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
 
 

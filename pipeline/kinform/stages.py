@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kinform.model.kinematics import Kinematics
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
+    from kinform.results import Earlier
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
@@ -56,7 +57,7 @@ def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger
     return replace(design, fingerprints=marks)
 
 
-def _current_import(design: Design) -> bool:
+def _current_import(design: Design | Earlier) -> bool:
     """Whether the present code read this assembly."""
     from kinform.results import fingerprints
 
@@ -222,8 +223,9 @@ def _without(design: Design, stage: str) -> Design:
     if "simulation" in later:
         design = replace(design, behaviour=None)
     lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}
+    inputs = {name: found for name, found in marks.inputs.items() if name not in later}
     cleared: dict[str, Any] = {_FIELDS[name]: None for name in later}
-    return replace(design, **cleared, fingerprints=replace(marks, stages=stages, lineage=lineage))
+    return replace(design, **cleared, fingerprints=replace(marks, stages=stages, lineage=lineage, inputs=inputs))
 
 
 def _descended(marks: Fingerprints, stage: str, level: str | None = None) -> Fingerprints:
@@ -253,14 +255,19 @@ def _advance(
     found = fingerprints.of_stage(stage, start, level, ranges)
     mark = fingerprints.mark(stage, found)
     previous = ledger.previous
-    result = None if previous is None else getattr(previous, _FIELDS[stage])
-    if result is not None and previous is not None and previous.fingerprints.stages.get(stage) == mark:
+    before = Fingerprints() if previous is None else previous.fingerprints
+    result = None if before.stages.get(stage) != mark else getattr(previous, _FIELDS[stage])
+    if result is not None:
         ledger.keep(stage)
     else:
-        before = None if result is None or previous is None else _before(stage, previous)
-        ledger.compute(stage, fingerprints.changes(before, found))
+        known = before.inputs.get(stage, {}) if stage in before.stages else None
+        ledger.compute(stage, fingerprints.changes(known, found))
         result = compute(inputs.assembly_for(stage, design.assembly))
-    marks = replace(start.fingerprints, stages=start.fingerprints.stages | {stage: mark})
+    marks = replace(
+        start.fingerprints,
+        stages=start.fingerprints.stages | {stage: mark},
+        inputs=start.fingerprints.inputs | {stage: dict(found)},
+    )
     return replace(
         start,
         **{_FIELDS[stage]: result},
@@ -274,9 +281,11 @@ def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> di
     from kinform.results._digest import digest
 
     before = None if ledger is None else ledger.previous
-    if before is None or before.mass is None or before.assembly.tolerances != view.tolerances:
+    if before is None or before.assembly.tolerances != view.tolerances or "mass" not in before.fingerprints.inputs:
         return {}
-    if before.fingerprints.stages.get("mass") != fingerprints.mark("mass", _before("mass", before)):
+    if before.fingerprints.stages.get("mass") != fingerprints.mark("mass", before.fingerprints.inputs["mass"]):
+        return {}
+    if before.mass is None:
         return {}
     known, now = before.fingerprints.meshes, design.fingerprints.meshes
     old = {part.name: digest(part) for part in inputs.assembly_for("mass", before.assembly).parts}
@@ -287,11 +296,3 @@ def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> di
         and (part.mesh is None or known.get(part.mesh.digest) == now.get(part.mesh.digest) is not None)
     }
     return {item.name: item for item in before.mass.parts if item.name in same}
-
-
-def _before(stage: str, previous: Design) -> dict[str, str]:
-    from kinform.results import fingerprints
-
-    known = previous.simulation if stage == "simulation" else None
-    ranges = None if known is None else known.ranges is not None
-    return dict(fingerprints.of_stage(stage, _without(previous, stage), ranges=ranges))

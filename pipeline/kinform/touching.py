@@ -11,6 +11,7 @@ import multiprocessing
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from typing import TypeVar
 
 from kinform import contacts as contacts_stage
@@ -130,8 +131,9 @@ def _why_pairs(view: Assembly, parts: Mapping[str, fingerprints.Inputs], wanted:
         return "not computed before"
     if before.assembly.tolerances != view.tolerances:
         return "the tolerances changed"
-    old = fingerprints.of_parts(inputs.assembly_for("contacts", before.assembly), before.surfaces)
     names = sorted({name for pair in wanted for name in pair})
+    asked = replace(before.assembly, parts=tuple(part for part in before.assembly.parts if part.name in set(names)))
+    old = fingerprints.of_parts(inputs.assembly_for("contacts", asked), before.surfaces)
     reasons = [f"{name} is new" for name in names if name not in old]
     for name in names:
         changed = [key for key, mark in parts[name].items() if name in old and old[name].get(key) != mark]

@@ -25,9 +25,10 @@ def contacts(source: Results, output: Output, jobs: Jobs = None, quiet: Quiet = 
     from kinform import results, stages
     from kinform.ledger import Ledger
 
-    design = files.read(source)
+    design, ledger = files.read(source), Ledger.of(output)
     with files.needing(source), Working("contacts") as progress:
-        design = stages.contacts(design, jobs=cores(jobs), progress=progress, ledger=Ledger.of(output))
+        design = stages.contacts(design, jobs=cores(jobs), progress=progress, ledger=ledger)
+    ledger.close()
     results.write(design, output)
     found = design.contacts
     assert found is not None

@@ -7,7 +7,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
@@ -84,6 +83,8 @@ def along(
 
 
 def _displacements(simulation: Simulation) -> Array:
+    from scipy.spatial.transform import Rotation
+
     steps, bodies = simulation.p_WB.shape[:2]
     out = np.zeros((steps, bodies, 4, 4))
     w, x, y, z = np.moveaxis(simulation.q_WB.reshape(-1, 4), 1, 0)
@@ -94,6 +95,8 @@ def _displacements(simulation: Simulation) -> Array:
 
 
 def _nodes(simulation: Simulation) -> Nodes:
+    from scipy.spatial.transform import Rotation
+
     displacements, time = _displacements(simulation), simulation.time
     R = displacements[..., :3, :3]
     turned = (np.swapaxes(R[:-1], 2, 3) @ R[1:]).reshape(-1, 3, 3)

@@ -104,12 +104,14 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
 def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
     """Parts that dwarf all others together: perhaps their own `units` are wrong."""
     boxes = _boxes(assembly)
+    if len(boxes) < 2:
+        return ()
+    rests = dict(zip(boxes, _rests(np.array(list(boxes.values()))), strict=True))
     found = []
     for part in assembly.parts:
-        others = [box for name, box in boxes.items() if name != part.name]
-        if part.name not in boxes or not others:
+        if part.name not in boxes:
             continue
-        rest = float(np.linalg.norm(np.ptp(np.concatenate(others), axis=0)))
+        rest = float(np.linalg.norm(rests[part.name]))
         size = float(np.linalg.norm(np.ptp(boxes[part.name], axis=0)))
         if rest > 0.0 and size > OUTLIER * rest:
             text = length(size, assembly.units)
@@ -121,6 +123,18 @@ def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
     return tuple(found)
 
 
+def _rests(boxes: Array) -> Array:
+    """(n, 3) sizes of the box around all boxes (n, 2, 3) but one, for each that is left out."""
+    none = np.full((1, 3), np.inf)
+
+    def least_of_others(values: Array) -> Array:
+        before = np.minimum.accumulate(np.concatenate([none, values[:-1]]))
+        after = np.minimum.accumulate(np.concatenate([none, values[:0:-1]]))[::-1]
+        return np.asarray(np.minimum(before, after))
+
+    return -least_of_others(-boxes[:, 1]) - least_of_others(boxes[:, 0])
+
+
 def _boxes(assembly: Assembly) -> dict[str, Array]:
     """Box of each part with a mesh, by name."""
     return {part.name: _box(part) for part in assembly.parts if part.mesh is not None and len(part.mesh.vertices)}
@@ -129,8 +143,7 @@ def _boxes(assembly: Assembly) -> dict[str, Array]:
 def _box(part: Part) -> Array:
     """(2, 3) corners of the part's box in the world (m)."""
     assert part.mesh is not None
-    points = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-    return np.array([points.min(axis=0), points.max(axis=0)])
+    return np.array(part.mesh.placed_box(part.X_WP))
 
 
 def _material(part: Part) -> float:

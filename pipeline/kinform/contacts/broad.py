@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.contacts.mates import EDGE
-from kinform.model.assembly import Assembly, Part
+from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
 __all__ = ["candidate_pairs", "excluded_pairs"]
@@ -26,12 +26,6 @@ def excluded_pairs(assembly: Assembly) -> frozenset[Pair]:
             first, second = (assembly.parts_of(name) for name in assumption.between)
             excluded |= {(min(a, b), max(a, b)) for a in first for b in second if a != b}
     return frozenset(excluded)
-
-
-def _world_box(part: Part) -> tuple[Array, Array]:
-    assert part.mesh is not None
-    placed = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-    return placed.min(axis=0), placed.max(axis=0)
 
 
 def _collect(first: fcl.CollisionObject, second: fcl.CollisionObject, met: list[tuple[int, int]]) -> bool:
@@ -56,7 +50,7 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
     boxes, objects, lows, highs, sizes = [], [], [], [], []
     for number, part in enumerate(parts):
         assert part.mesh is not None
-        low, high = _world_box(part)
+        low, high = part.mesh.placed_box(part.X_WP)
         size = part.mesh.diagonal
         grow = 2.0 * EDGE * tolerances.contact_of(size, size)
         box = fcl.Box(*(high - low + grow))

@@ -11,16 +11,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, PPoly
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from kinform.contacts.charts import perpendicular
 from kinform.contacts.placed import PlacedPart
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 __all__ = ["Curve", "Segments", "Sheet", "across", "curves", "segments"]
 
@@ -63,6 +65,8 @@ class Curve:
     @cached_property
     def spline(self) -> PPoly:
         """The curve by its knots."""
+        from scipy.interpolate import CubicSpline, PPoly
+
         points, knots = self.points, self.knots
         if len(points) == 2:
             return PPoly(np.stack([(points[1] - points[0]) / knots[1], points[0]])[:, None], knots)
@@ -211,6 +215,8 @@ def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
 
 def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
     """Points (n, 2) with those nearer than `grain` made one: index of each, and the points."""
+    from scipy.spatial import cKDTree
+
     order = np.lexsort((points[:, 1], points[:, 0]))
     pairs = cKDTree(points[order]).query_pairs(grain, output_type="ndarray")
     leader = np.arange(len(points))

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from kinform.contacts.charts import perpendicular
 from kinform.contacts.coaxial import aligned
@@ -222,6 +221,8 @@ def _places(profile: _Profile, pitch: float) -> tuple[Ints, Array, Array, Array,
 
 def _resting(own: _Profile, other: _Profile, pitch: float, limit: float) -> _Samples:
     """Samples of one side that lie within `limit` (m) of the other side's profile, and half their areas."""
+    from scipy.spatial import cKDTree
+
     kept = np.arange(0, len(own.area), max(1, math.ceil(len(own.area) / _FACETS)))
     share = len(own.area) / max(len(kept), 1)
     facet, points, normal, azimuth, height = _places(own.select(kept), pitch)

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from kinform.form.scope import Scope
 
@@ -37,6 +36,8 @@ def columns(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tu
 
 def path_rows(scope: Scope, path: Path, shown: str) -> list[list[float]]:
     """Rows of time, point (m) and perhaps quaternion wxyz, in the world; problems as in `columns`."""
+    from scipy.spatial.transform import Rotation
+
     out: list[list[float]] = []
     turn = Rotation.from_matrix(scope.X_WF[:3, :3])
     for number, row, _ in _rows(path):

@@ -21,8 +21,7 @@ class Extents:
         self._known: dict[tuple[PartName, ...], float] = {}
         for part in assembly.parts:
             if part.mesh is not None and len(part.mesh.vertices):
-                placed = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-                self._boxes[part.name] = np.array([placed.min(axis=0), placed.max(axis=0)])
+                self._boxes[part.name] = np.array(part.mesh.placed_box(part.X_WP))
 
     def diagonal(self, names: Iterable[PartName]) -> float:
         """Diagonal of the box of some parts (m); 0 without meshes."""

@@ -5,7 +5,7 @@ Arrays are float64 and read-only. `X_WP` is the pose of the part frame P in the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -93,6 +93,32 @@ class Mesh:
             return np.zeros(3), np.zeros(3)
         columns = np.ascontiguousarray(self.vertices.T)
         return columns.min(axis=1), columns.max(axis=1)
+
+    @cached_property
+    def bare(self) -> Mesh:
+        """The shape, without the file that it came from."""
+        return self if not self.path and self.body is None else replace(self, path="", body=None)
+
+    @cached_property
+    def _placed(self) -> dict[bytes, tuple[Array, Array]]:
+        """Boxes that were asked for, by pose."""
+        return {}
+
+    def placed_box(self, X_WP: Array) -> tuple[Array, Array]:
+        """Lowest and highest corner (3,) m of the bounding box in the world, the mesh placed there; zeros without
+        vertices."""
+        if self.bare is not self:
+            return self.bare.placed_box(X_WP)
+        known, key = self._placed, X_WP.tobytes()
+        if key not in known:
+            R_WP, p_WP = X_WP[:3, :3], X_WP[:3, 3]
+            if np.array_equal(R_WP, np.eye(3)) or not len(self.vertices):
+                low, high = self.box  # to the last bit what placing all vertices would give
+                known[key] = (low + p_WP, high + p_WP) if len(self.vertices) else (low, high)
+            else:
+                placed = np.ascontiguousarray((self.vertices @ R_WP.T + p_WP).T)
+                known[key] = (placed.min(axis=1), placed.max(axis=1))
+        return known[key]
 
     @property
     def diagonal(self) -> float:

@@ -27,3 +27,6 @@ class Fingerprints:
     lineage: dict[str, str] = field(default_factory=dict)
     """By stage as above, without surfaces: hash of the files, and of the settings and versions of the code of this
     stage and all before it. Where it is what a run would give, nothing needs to be looked at; empty: not known."""
+    inputs: dict[str, dict[str, str]] = field(default_factory=dict)
+    """By stage, of joints, mass, simulation and findings: hash of each input, by its name in words. What `stages` was
+    made of, to say what changed."""

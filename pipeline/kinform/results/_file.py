@@ -9,7 +9,10 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import importlib
+import json
 from collections.abc import Iterator
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,10 +25,16 @@ from kinform.model.fingerprints import Fingerprints
 from kinform.results import _assembly, _findings, _store, _table, lineage
 
 if TYPE_CHECKING:
+    from kinform.behaviour import Behaviour
     from kinform.model.assembly import Assembly
+    from kinform.model.contacts import Contacts
+    from kinform.model.findings import CheckReport
     from kinform.model.kinematics import Kinematics
+    from kinform.model.mass import MassReport
+    from kinform.model.simulation import Simulation
+    from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["SCHEMA", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
+__all__ = ["SCHEMA", "Earlier", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
 SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"
@@ -34,6 +43,10 @@ _DAMAGE = (
     ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
 )  # fmt: skip
 """What h5py and the codecs raise on a file whose content makes no sense."""
+_NONSENSE = (
+    ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
+)  # fmt: skip
+"""The same without want of memory."""
 _COMPUTE = "compute it from the manifest: kinform run MANIFEST -o FILE"
 _RECOMPUTE = f"delete it, and {_COMPUTE}"
 _NAME_ONE = "name a results file of kinform"
@@ -71,19 +84,110 @@ def read(path: str | Path) -> Design:
     Raises ResultsError when there is no file, or it is not HDF5, of another program, of another schema,
     or damaged.
     """
-    with _opened(path) as file:
+    with Earlier(path) as found:
+        return found.design
+
+
+class Earlier:
+    """The design in a results file, each part of it read when it is first asked for: most of what an earlier run left
+    is of no use to one whose input changed. Fields as of Design; raises ResultsError as `read` does, also later.
+    """
+
+    def __init__(self, path: str | Path):
+        self._path = path
+        self._open = contextlib.ExitStack()
+        self._file = self._open.enter_context(_opened(path))
+
+    def __enter__(self) -> Earlier:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the file; what was not asked for can no longer be read."""
+        self._open.close()
+
+    def _read(self, codec: str, *groups: str) -> tuple[Any, ...]:
+        """What a codec reads of some groups, one after the other; empty where the first is not there."""
         try:
-            return _read_groups(file)
-        except (
-            ArithmeticError,
-            AttributeError,
-            LookupError,
-            OSError,
-            RuntimeError,
-            TypeError,
-            ValueError,
-        ) as error:
-            raise _store.refuse(path, f"the results file is damaged ({error})", _RECOMPUTE) from error
+            if groups[0] not in self._file:
+                return ()
+            codecs = [importlib.import_module(f"kinform.results._{name}") for name in codec.split()]
+            return tuple(one.read(self._file[group]) for one, group in zip(codecs, groups, strict=True))
+        except _NONSENSE as error:
+            raise self._damaged(error) from error
+
+    def _damaged(self, error: BaseException) -> ResultsError:
+        return _store.refuse(self._path, f"the results file is damaged ({error})", _RECOMPUTE)
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """As written; KeyError is damage, for every results file has one."""
+        try:
+            return _assembly.read(self._file["assembly"])
+        except _NONSENSE as error:
+            raise self._damaged(error) from error
+
+    @cached_property
+    def _surfaces(self) -> tuple[Any, ...]:
+        return self._read("surfaces", "surfaces")
+
+    @cached_property
+    def surfaces(self) -> dict[str, MeshSurfaces]:
+        """By mesh digest."""
+        return self._surfaces[0][0] if self._surfaces else {}
+
+    @cached_property
+    def _contacts(self) -> tuple[Any, ...]:
+        return self._read("contacts", "contacts")
+
+    @cached_property
+    def contacts(self) -> Contacts | None:
+        """As of Design; so are those below."""
+        return self._contacts[0][0] if self._contacts else None
+
+    @cached_property
+    def kinematics(self) -> Kinematics | None:
+        from kinform.model.kinematics import Kinematics
+
+        found = self._read("joints constraints mobility", "joints", "constraints", "mobility")
+        return Kinematics(**found[0], matrix=found[1], mobility=found[2]) if found else None
+
+    @cached_property
+    def mass(self) -> MassReport | None:
+        return next(iter(self._read("mass", "mass")), None)
+
+    @cached_property
+    def behaviour(self) -> Behaviour | None:
+        return next(iter(self._read("behaviour", "behaviour")), None)
+
+    @cached_property
+    def simulation(self) -> Simulation | None:
+        return next(iter(self._read("simulation", "simulation")), None)
+
+    @cached_property
+    def report(self) -> CheckReport | None:
+        return next(iter(self._read("findings", "findings")), None)
+
+    @cached_property
+    def fingerprints(self) -> Fingerprints:
+        try:
+            return Fingerprints(
+                stages=_read_marks(self._file),
+                meshes=self._surfaces[0][1] if self._surfaces else {},
+                pairs=self._contacts[0][1] if self._contacts else {},
+                files=_read_contents(self._file),
+                lineage=_read_lineage(self._file),
+                inputs=_read_inputs(self._file),
+            )
+        except _NONSENSE as error:
+            raise self._damaged(error) from error
+
+    @property
+    def design(self) -> Design:
+        """All of it."""
+        return Design(**{field.name: getattr(self, field.name) for field in dataclasses.fields(Design)})
 
 
 def to_bytes(design: Design) -> bytes:
@@ -104,6 +208,8 @@ def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
     group.attrs["fingerprint"] = marks.stages.get(_STAGE_OF.get(name, name), "")
     if name in marks.lineage:
         group.attrs["lineage"] = marks.lineage[name]
+    if name in marks.inputs:
+        group.attrs["inputs"] = json.dumps(marks.inputs[name], sort_keys=True)
     return group
 
 
@@ -137,37 +243,6 @@ def _write_groups(file: h5py.File, design: Design) -> None:
         _findings.write(_group(file, "findings", marks), design.report)
 
 
-def _read_groups(file: h5py.File) -> Design:
-    from kinform.model.kinematics import Kinematics
-    from kinform.results import _constraints, _contacts, _joints, _mass, _mobility, _simulation, _surfaces
-
-    parts: dict[str, Any] = {"assembly": _assembly.read(file["assembly"])}
-    marks = Fingerprints(stages=_read_marks(file), files=_read_contents(file), lineage=_read_lineage(file))
-    if "surfaces" in file:
-        parts["surfaces"], meshes = _surfaces.read(file["surfaces"])
-        marks = dataclasses.replace(marks, meshes=meshes)
-    if "contacts" in file:
-        parts["contacts"], pairs = _contacts.read(file["contacts"])
-        marks = dataclasses.replace(marks, pairs=pairs)
-    if "joints" in file:
-        parts["kinematics"] = Kinematics(
-            **_joints.read(file["joints"]),
-            matrix=_constraints.read(file["constraints"]),
-            mobility=_mobility.read(file["mobility"]),
-        )
-    if "mass" in file:
-        parts["mass"] = _mass.read(file["mass"])
-    if "behaviour" in file:
-        from kinform.results import _behaviour
-
-        parts["behaviour"] = _behaviour.read(file["behaviour"])
-    if "simulation" in file:
-        parts["simulation"] = _simulation.read(file["simulation"])
-    if "findings" in file:
-        parts["report"] = _findings.read(file["findings"])
-    return Design(**parts, fingerprints=marks)
-
-
 def _read_marks(file: h5py.File) -> dict[str, str]:
     marks = {name: str(group.attrs["fingerprint"]) for name, group in file.items() if name not in _STAGE_OF}
     return {name: mark for name, mark in marks.items() if mark}
@@ -180,6 +255,10 @@ def _read_contents(file: h5py.File) -> dict[str, str]:
 
 def _read_lineage(file: h5py.File) -> dict[str, str]:
     return {name: str(group.attrs["lineage"]) for name, group in file.items() if "lineage" in group.attrs}
+
+
+def _read_inputs(file: h5py.File) -> dict[str, dict[str, str]]:
+    return {name: json.loads(group.attrs["inputs"]) for name, group in file.items() if "inputs" in group.attrs}
 
 
 def files_of(path: str | Path) -> tuple[str, ...]:

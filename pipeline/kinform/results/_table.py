@@ -57,8 +57,8 @@ Record = TypeVar("Record")
 
 TEXT = h5py.string_dtype()
 _NOTHING = "␀"
-_MISSING_BITS = struct.pack("<Q", 0x7FF8_0000_0000_0000 | 1954)
-(_MISSING,) = struct.unpack("<d", _MISSING_BITS)
+_MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
+(_MISSING,) = struct.unpack("<d", struct.pack("<Q", _MISSING_NUMBER))
 
 
 @dataclass(frozen=True)
@@ -71,10 +71,10 @@ class Column:
     """Names of the columns."""
     dtype: Any
     unit: str
-    split: Callable[[Any], Sequence[Any]]
-    """The field's value → one scalar a label."""
-    join: Callable[[Sequence[Any]], Any]
-    """The scalars → the field's value."""
+    split: Callable[[Sequence[Any]], Sequence[Any]]
+    """The field of all records → one list or array a label."""
+    join: Callable[[Sequence[NDArray[Any]]], list[Any]]
+    """The arrays → the field of all records."""
 
 
 def stored_text(value: str | None) -> str:
@@ -90,27 +90,40 @@ def _has_surrogates(value: str) -> bool:
     return any("\ud800" <= character <= "\udfff" for character in value)
 
 
-def _read_text(stored: bytes | str) -> str | None:
-    value = stored.decode() if isinstance(stored, bytes) else stored
-    if not value.startswith(_NOTHING):
-        return value
-    return None if value == _NOTHING else str(json.loads(value[1:]))
+def _read_texts(stored: NDArray[Any]) -> list[str | None]:
+    found: list[str | None] = [v.decode() if isinstance(v, bytes) else v for v in stored.tolist()]
+    for i, value in enumerate(found):
+        if value.startswith(_NOTHING):  # type: ignore[union-attr]
+            found[i] = None if value == _NOTHING else str(json.loads(value[1:]))  # type: ignore[index]
+    return found
 
 
-def _write_real(value: float | None) -> float:
-    return _MISSING if value is None else float(value)
+def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
+    return np.array([_MISSING if value is None else value for value in values], dtype="<f8")
 
 
-def _read_real(value: float) -> float | None:
-    return None if struct.pack("<d", value) == _MISSING_BITS else float(value)
+def _read_reals(stored: NDArray[np.float64]) -> list[float | None]:
+    found: list[float | None] = stored.tolist()
+    for i in np.flatnonzero(_missing(stored)).tolist():
+        found[i] = None
+    return found
 
 
-def _write_integer(value: int | None) -> int:
-    if value is None:
-        return -1
-    if value < 0:
-        raise ResultsError(f"the count {value} is negative: the results file has no place for it")
-    return int(value)
+def _missing(stored: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which numbers of an array say that there is none."""
+    bits = np.ascontiguousarray(stored, dtype="<f8").view("<u8")
+    return np.asarray(bits == _MISSING_NUMBER)
+
+
+def _write_counts(values: Sequence[int | None]) -> list[int]:
+    for value in values:
+        if value is not None and value < 0:
+            raise ResultsError(f"the count {value} is negative: the results file has no place for it")
+    return [-1 if value is None else int(value) for value in values]
+
+
+def _read_counts(stored: NDArray[np.int64]) -> list[int | None]:
+    return [None if value == -1 else value for value in stored.tolist()]
 
 
 def _write_json(value: Any) -> str:
@@ -118,36 +131,40 @@ def _write_json(value: Any) -> str:
     return json.dumps(value, sort_keys=True) if _has_surrogates(dumped) else dumped
 
 
+def _each(function: Callable[[Any], Any], values: Sequence[Any]) -> list[Any]:
+    """The function of each value, computed once a distinct one."""
+    known: dict[Any, Any] = {}
+    return [known[value] if value in known else known.setdefault(value, function(value)) for value in values]
+
+
 def text(field: str) -> Column:
     """A text, or None."""
-    return Column(field, (field,), TEXT, "", lambda v: (stored_text(v),), lambda s: _read_text(s[0]))
+    return Column(field, (field,), TEXT, "", lambda v: ([stored_text(x) for x in v],), lambda s: _read_texts(s[0]))
 
 
 def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
     """An integer; with `optional`, a count or a line number, or None."""
     if optional:
-        return Column(
-            field, (field,), "<i8", unit,
-            lambda v: (_write_integer(v),), lambda s: None if s[0] == -1 else int(s[0]),
-        )  # fmt: skip
-    return Column(field, (field,), "<i8", unit, lambda v: (int(v),), lambda s: int(s[0]))
+        return Column(field, (field,), "<i8", unit, lambda v: (_write_counts(v),), lambda s: _read_counts(s[0]))
+    return Column(field, (field,), "<i8", unit, lambda v: ([int(x) for x in v],), lambda s: s[0].tolist())
 
 
 def real(field: str, unit: str) -> Column:
     """A float, or None."""
-    return Column(field, (field,), "<f8", unit, lambda v: (_write_real(v),), lambda s: _read_real(s[0]))
+    return Column(field, (field,), "<f8", unit, lambda v: (_write_reals(v),), lambda s: _read_reals(s[0]))
 
 
 def flag(field: str) -> Column:
     """A bool."""
-    return Column(field, (field,), np.bool_, "1", lambda v: (bool(v),), lambda s: bool(s[0]))
+    return Column(field, (field,), np.bool_, "1", lambda v: ([bool(x) for x in v],), lambda s: s[0].tolist())
 
 
 def texts(field: str) -> Column:
     """A tuple of texts, as a JSON list."""
     return Column(
         field, (field,), TEXT, "",
-        lambda v: (_write_json(list(v)),), lambda s: tuple(json.loads(s[0])),
+        lambda v: (_each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),),
+        lambda s: _each(lambda x: tuple(json.loads(x)), s[0].tolist()),
     )  # fmt: skip
 
 
@@ -155,21 +172,20 @@ def values(field: str) -> Column:
     """A dict of free-form values, as JSON."""
     return Column(
         field, (field,), TEXT, "",
-        lambda v: (_write_json(v),), lambda s: json.loads(s[0]),
+        lambda v: ([_write_json(x) for x in v],), lambda s: [json.loads(x) for x in s[0].tolist()],
     )  # fmt: skip
 
 
 def pair(field: str, kind: Callable[..., Column], labels: tuple[str, ...], *unit: str) -> Column:
     """A tuple of scalars (or None) of one kind, a column each."""
-    scalar = kind(field, *unit)
+    scalar, none = kind(field, *unit), (None,) * len(labels)
 
-    def split(value: Sequence[Any] | None) -> Sequence[Any]:
-        parts = [None] * len(labels) if value is None else value
-        return [scalar.split(part)[0] for part in parts]
+    def split(values: Sequence[Any]) -> Sequence[Any]:
+        given = [none if value is None else value for value in values]
+        return [scalar.split([value[k] for value in given])[0] for k in range(len(labels))]
 
-    def join(stored: Sequence[Any]) -> tuple[Any, ...] | None:
-        parts = tuple(scalar.join((item,)) for item in stored)
-        return None if all(part is None for part in parts) else parts
+    def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
+        return [None if v == none else v for v in zip(*(scalar.join((item,)) for item in stored), strict=True)]
 
     return Column(field, labels, scalar.dtype, scalar.unit, split, join)
 
@@ -186,19 +202,21 @@ def matrix(field: str, unit: str, axes: Sequence[str] = ("x", "y", "z")) -> Colu
 
 def _numbers(field: str, unit: str, suffixes: Sequence[str], shape: tuple[int, ...]) -> Column:
     labels = tuple(f"{field}_{suffix}" for suffix in suffixes)
+    none = np.full(shape, _MISSING)
 
-    def split(value: NDArray[np.float64] | None) -> Sequence[float]:
-        if value is None:
-            return [_MISSING] * len(labels)
-        array = np.asarray(value, dtype=np.float64)
-        if array.shape != shape:
-            raise ResultsError(f"{field} has the shape {array.shape}; expected {shape}")
-        return array.ravel().tolist()
+    def split(values: Sequence[Any]) -> Sequence[Any]:
+        arrays = [none if value is None else np.asarray(value, dtype=np.float64) for value in values]
+        for array in arrays:
+            if array.shape != shape:
+                raise ResultsError(f"{field} has the shape {array.shape}; expected {shape}")
+        return list(np.array(arrays, dtype="<f8").reshape(len(arrays), len(labels)).T)
 
-    def join(stored: Sequence[float]) -> NDArray[np.generic] | None:
-        if _read_real(stored[0]) is None:
-            return None
-        return freeze(np.array(stored, dtype=np.float64).reshape(shape))
+    def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
+        table = freeze(np.stack(stored, axis=1).astype(np.float64).reshape(-1, *shape))
+        found: list[Any] = list(table)
+        for i in np.flatnonzero(_missing(stored[0])).tolist():
+            found[i] = None
+        return found
 
     return Column(field, labels, "<f8", unit, split, join)
 
@@ -220,17 +238,17 @@ def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = No
 
 def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) -> None:
     """Write a table from rows: field → value."""
-    split = [[scalar for column in columns for scalar in column.split(row[column.field])] for row in rows]
-    flat = [(label, column) for column in columns for label in column.labels]
-    data = list(zip(*split, strict=True)) if split else [()] * len(flat)
-    write_columns(
-        group,
-        name,
-        {
-            label: (column.unit, np.array(stored, dtype=column.dtype))
-            for (label, column), stored in zip(flat, data, strict=True)
-        },
-    )
+    rows = list(rows)
+    _write_fields(group, name, columns, [[row[column.field] for row in rows] for column in columns])
+
+
+def _write_fields(group: h5py.Group, name: str, columns: Sequence[Column], fields: Sequence[Sequence[Any]]) -> None:
+    """Write a table from the fields of all records, a list a column."""
+    table: dict[str, tuple[str, Any]] = {}
+    for column, found in zip(columns, fields, strict=True):
+        for label, stored in zip(column.labels, column.split(found), strict=True):
+            table[label] = (column.unit, np.array(stored, dtype=column.dtype))
+    write_columns(group, name, table)
 
 
 def read_rows(
@@ -240,17 +258,17 @@ def read_rows(
     table = read_columns(group, name)
     known = set(table.dtype.names or ())
     columns = [column for column in columns if column.field not in added or known.issuperset(column.labels)]
-    stored = {label: table[label].tolist() for column in columns for label in column.labels}
-    return [
-        {column.field: column.join([stored[label][i] for label in column.labels]) for column in columns}
-        for i in range(len(table))
-    ]
+    fields = [column.field for column in columns]
+    if not fields:
+        return [{} for _ in table]
+    found = [column.join([table[label] for label in column.labels]) for column in columns]
+    return [dict(zip(fields, row, strict=True)) for row in zip(*found, strict=True)]
 
 
 def write_records(group: h5py.Group, name: str, columns: Sequence[Column], records: Iterable[object]) -> None:
     """Write a table with one row a record; fields are attributes."""
-    fields = [column.field for column in columns]
-    write_rows(group, name, columns, ({f: getattr(record, f) for f in fields} for record in records))
+    records = list(records)
+    _write_fields(group, name, columns, [[getattr(record, column.field) for record in records] for column in columns])
 
 
 def read_records(
@@ -284,7 +302,7 @@ def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
 
 def read_texts(group: h5py.Group, name: str) -> tuple[Any, ...]:
     """The texts that `write_texts` wrote."""
-    return tuple(_read_text(item) for item in group[name][()])
+    return tuple(_read_texts(group[name][()]))
 
 
 def write_ragged(
@@ -304,4 +322,5 @@ def write_ragged(
 def read_ragged(group: h5py.Group, name: str) -> list[NDArray[Any]]:
     """The arrays that `write_ragged` wrote, read-only."""
     data, offset = read_array(group, name), read_array(group, f"{name}_offset")
-    return [freeze(data[start:end].copy()) for start, end in zip(offset[:-1], offset[1:], strict=True)]
+    bounds = offset.tolist()
+    return [data[start:end] for start, end in zip(bounds[:-1], bounds[1:], strict=True)]

@@ -158,10 +158,10 @@ def of_stage(stage: str, design: Design, level: str | None = None, ranges: bool 
 
 
 def changes(before: Inputs | None, after: Inputs) -> str:
-    """In words, why a result with the inputs `before` is not one with the inputs `after`."""
+    """In words, why a result with the inputs `before` is not one with the inputs `after`; {}: nobody noted them."""
     if before is None:
         return "not computed before"
-    changed = [name for name in after if before.get(name) != after[name]]
+    changed = [name for name in after if before.get(name) != after[name]] if before else []
     return f"{listed(changed)} changed" if changed else "computed by another version of kinform"
 
 

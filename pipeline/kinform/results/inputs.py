@@ -32,7 +32,7 @@ def assembly_for(stage: str, assembly: Assembly) -> Assembly:
 
 def bare_mesh(mesh: Mesh) -> Mesh:
     """The shape, without the file that it came from."""
-    return replace(mesh, path="", body=None)
+    return mesh.bare
 
 
 def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:

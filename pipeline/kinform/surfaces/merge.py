@@ -6,7 +6,6 @@ Two surfaces are one when kind and side agree and the vertices of the smaller li
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from kinform.surfaces._batch import Array, Ints, Mask, components
 from kinform.surfaces.kind import Batch, Kind, Params
@@ -24,6 +23,8 @@ SAMPLES = 24
 
 def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     """Renumbers planes (P,), -1 elsewhere, so that coplanar faces of one sense share a number."""
+    from scipy.spatial import cKDTree
+
     count = int(number.max()) + 1 if len(number) else 0
     if count < 2:
         return number
@@ -71,6 +72,8 @@ def coincident_regions(
     work: Patchwork, kind: Kind, polygons: list[Ints], params: Params, side: Ints, scale: Scale
 ) -> Ints:
     """Number of the region that each of these regions, all of one kind, becomes part of."""
+    from scipy.spatial import cKDTree
+
     count = len(polygons)
     batch = _batch(work, polygons)
     size = np.bincount(batch.region, work.area[batch.polygon], count)

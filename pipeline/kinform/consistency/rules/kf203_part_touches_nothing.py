@@ -104,8 +104,8 @@ def _middle(assembly: Assembly, name: str) -> tuple[float, float, float]:
     """Middle of the part's box in the world (m)."""
     part = assembly.part(name)
     assert part.mesh is not None
-    points = part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]
-    x, y, z = (float(v) for v in 0.5 * (points.min(axis=0) + points.max(axis=0)))
+    low, high = part.mesh.placed_box(part.X_WP)
+    x, y, z = (float(v) for v in 0.5 * (low + high))
     return (x, y, z)
 
 
