@@ -21,12 +21,25 @@ from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Hits", "MeshIndex", "MeshStore", "Region", "cross", "fcl_model", "partial_model"]
+__all__ = [
+    "Hits",
+    "MeshIndex",
+    "MeshStore",
+    "Region",
+    "cross",
+    "fcl_distance",
+    "fcl_model",
+    "fcl_pose",
+    "partial_model",
+]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+_UNIT = 2.0**20
+"""What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
+2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
 _WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
 _RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
@@ -57,12 +70,25 @@ class Hits:
 
 
 def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
-    """FCL's model of triangles: vertices (V, 3) and faces (F, 3)."""
+    """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
-    model.addSubModel(np.ascontiguousarray(vertices), np.ascontiguousarray(faces))
+    model.addSubModel(np.ascontiguousarray(_UNIT * vertices), np.ascontiguousarray(faces))
     model.endModel()
     return model
+
+
+def fcl_pose(X: Array) -> fcl.Transform:
+    """FCL's form of a pose (4, 4) of such a model."""
+    return fcl.Transform(X[:3, :3], _UNIT * X[:3, 3])
+
+
+def fcl_distance(
+    first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
+) -> float:
+    """m between two such models, 0 where they touch or cross."""
+    found = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
+    return max(float(found), 0.0) / _UNIT
 
 
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
@@ -272,12 +298,12 @@ class Region:
         speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
         corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         point = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
-        mesh, request = fcl.CollisionObject(self.bvh), fcl.DistanceRequest()
+        mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
-        for k, p in enumerate(points):
+        for k, p in enumerate(_UNIT * points):
             point.setTranslation(p)
             result = fcl.DistanceResult()
-            distance[k] = max(fcl.distance(mesh, point, request, result), 0.0)
+            distance[k] = fcl_distance(mesh, point, result)
             facet[k] = result.b1
         return distance, facet if self.facets is None else self.facets[facet]
 
@@ -286,7 +312,7 @@ class Region:
         if self.bvh is None or other.bvh is None:
             return False
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
-        placed = fcl.CollisionObject(other.bvh, fcl.Transform(X_SO[:3, :3], X_SO[:3, 3]))
+        placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
         return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
 
 
