@@ -6,18 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from solids import assembly, box, part, random_pose, rod
+from slots import SLOT, block_in_slot, derived, moved
+from solids import box, random_pose, rod
 
-from kinform import collisions, contacts, kinematics, surfaces
-from kinform.model.simulation import Simulation
-
-SLOT = (-40, 30)
-
-
-def block_in_slot(gap=0.0):
-    lever = box(-60, 60, -20, 20, 0, 8) - box(*SLOT, -9, 9, -1, 9) - box(*SLOT, -11, 11, 3, 5)
-    block = box(-12, 12, -9 + gap, 9 - gap, 0, 8) + box(-12, 12, -11 + gap, 11 - gap, 3 + gap, 5 - gap)
-    return {"lever": lever, "block": block}
+from kinform import collisions
 
 
 def loose_block_in_slot():
@@ -39,14 +31,6 @@ def narrowing_slot():
     lever = box(-60, 60, -20, 20, 0, 8) - box(-70, 29, -9, 9, -1, 9) - box(28, 70, -9, 7.5, -1, 9)
     lever -= box(-70, 70, -11, 0, 3, 5)
     return {"lever": lever, "block": box(-12, 12, -9, 9, 0, 8) + box(-12, 12, -11, 0, 3, 5)}
-
-
-def derived(solids, X=None, ground=None):
-    X = np.eye(4) if X is None else X
-    made = assembly(*(part(name, solid, X) for name, solid in solids.items()), ground=ground)
-    known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
-    touching = contacts.find(made, known)
-    return made, known, touching, kinematics.derive(made, known, touching)
 
 
 def ends(solids, along, X=None):
@@ -103,18 +87,6 @@ def test_a_tenon_stops_at_the_bottom_of_its_mortise(seed):
 def test_a_narrow_step_stops_a_flush_block():
     lower, upper = ends(narrowing_slot(), x)
     assert (lower, upper) == (None, pytest.approx(0.017, abs=1e-6))
-
-
-def moved(kin, places, X):
-    """A run in which the block is at `places` (m) along its slot, a second apart."""
-    names = tuple(sorted(str(body.name) for body in kin.bodies))
-    p, q = np.zeros((len(places), 2, 3)), np.zeros((len(places), 2, 4))
-    q[..., 0] = 1.0
-    p[:, names.index("block")] = np.outer(places, X[:3, 0])
-    made = object.__new__(Simulation)
-    for name, value in {"time": np.arange(float(len(places))), "body_names": names, "p_WB": p, "q_WB": q}.items():
-        object.__setattr__(made, name, value)
-    return made
 
 
 @pytest.mark.parametrize("seed", [None, 5])

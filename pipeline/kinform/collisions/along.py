@@ -30,7 +30,7 @@ TIME = 1e-4
 SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
 DEPTHS = 12
-"""Output times after the first contact at which the depth is measured, besides that at once after it."""
+"""Output times after the first contact at which the depth is measured: so many spread over the rest, and about the worst."""
 
 
 def along(
@@ -73,7 +73,7 @@ def along(
                 continue
             place = (nodes.between(found.hit)[item.first] @ np.append(found.place, 1.0))[:3]
             depth = _depth(test, item.course, simulation.time, found.hit)
-            if depth <= SAME * found.before + test.scrape:
+            if found.before > 0.0 and depth <= SAME * found.before + test.scrape:
                 untested.append((first, second, "they overlap from the start, and again later"))
                 continue
             out.append(Collision(test.part_names, found.hit, place, depth))
@@ -119,7 +119,20 @@ def _nodes(simulation: Simulation) -> Nodes:
 
 
 def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
-    """m: how deep two parts are in each other at the worst of some output times from the first contact on."""
-    after = time[time >= hit]
-    chosen = after[np.unique(np.linspace(0, len(after) - 1, DEPTHS).astype(int))] if len(after) else np.array([hit])
-    return max(test.deepest(way.displacement(float(s))) for s in chosen)
+    """m: how deep two parts are in each other at the worst of some output times from the first contact on: soon after it,
+    spread over the run, and about the worst of these."""
+    after = time[time >= hit] if (time >= hit).any() else np.array([hit])
+    last = len(after) - 1
+    known: dict[int, float] = {}
+
+    def deep(n: int) -> float:
+        if n not in known:
+            known[n] = test.deepest(way.displacement(float(after[n])))
+        return known[n]
+
+    tried = {int(n) for n in np.linspace(0, last, DEPTHS)} | {2**k - 1 for k in range(DEPTHS) if 2**k - 1 <= last}
+    worst, step = max(sorted(tried), key=deep), max(last // DEPTHS, 1)
+    while step:
+        better = max((n for n in (worst, worst - step, worst + step) if 0 <= n <= last), key=deep)
+        worst, step = better, step if better != worst else step // 2
+    return deep(worst)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import Shapes
+from kinform.contacts.bvh import fcl_distance, fcl_pose
 
 __all__ = ["Wholes"]
 
@@ -56,8 +57,8 @@ class Wholes:
         bound = float((np.sqrt(np.maximum(square, 0.0)) - r[:, None] - s).min())
         if bound > FAR * self._size:
             return CERTAIN * bound
-        self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
-        return CERTAIN * float(fcl.distance(*self._objects, fcl.DistanceRequest(), fcl.DistanceResult()))
+        self._objects[1].setTransform(fcl_pose(X))
+        return CERTAIN * fcl_distance(*self._objects)
 
     def touch(self, D: Array) -> bool:
         """Whether they touch, or nearly."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.bvh import MeshIndex
+from kinform.contacts.bvh import MeshIndex, inner_weights
 from kinform.model.assembly import Mesh
 
 __all__ = ["Probes", "probes"]
@@ -45,8 +45,10 @@ class Probes:
         out = -np.linalg.norm(beyond, axis=1)
         near = np.flatnonzero(out > -FAR * other.mesh.diagonal)
         if len(near):
-            away = other.whole().depths(placed[near])[0]
-            out[near] = np.where(other.contains(placed[near]), away, -away)
+            inside = other.contains(placed[near])
+            out[near] = np.where(inside, 0.0, -other.away(placed[near]))
+            deep = near[inside]
+            out[deep] = other.whole().depths(placed[deep])[0]
         return np.asarray(out)
 
 
@@ -67,7 +69,7 @@ def _spread(corners: Array, count: int) -> Array:
     points = []
     parts = np.clip(np.ceil(FINE * sides / max(size, 1e-300)), 1, FINE).astype(int)
     for number in np.unique(parts):
-        points.append((_inner(int(number)) @ corners[parts == number]).reshape(-1, 3))
+        points.append((inner_weights(int(number)) @ corners[parts == number]).reshape(-1, 3))
     candidates = np.concatenate(points)
     away = np.linalg.norm(candidates - candidates.mean(axis=0), axis=1)
     taken = [int(np.argmin(away))]
@@ -79,11 +81,3 @@ def _spread(corners: Array, count: int) -> Array:
             break
         taken.append(farthest)
     return np.asarray(candidates[np.sort(taken)])
-
-
-def _inner(number: int) -> Array:
-    """(m, 3) weights of a triangle's corners for the middles of those that it is divided into, `number` a side."""
-    up = [(3 * a + 1, 3 * b + 1) for a in range(number) for b in range(number - a)]
-    down = [(3 * a + 2, 3 * b + 2) for a in range(number - 1) for b in range(number - 1 - a)]
-    two = np.array(up + down, dtype=float) / (3.0 * number)
-    return np.column_stack([two, 1.0 - two.sum(axis=1)])

@@ -42,6 +42,8 @@ RANK = 1e-4
 SINGULAR = 2e-3
 
 
+NARROW = 1e-2
+"""Share of the assembly's size that a block's size is at least: its joints may be on one point."""
 CLOSED = 1e-6
 """rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
 
@@ -50,14 +52,19 @@ class _Linkage:
     """One block of joints, with the assembly's bodies hanging on it."""
 
     def __init__(
-        self, kinematics: Kinematics, edges: Sequence[Edge], block: Sequence[int], idle: Sequence[Freedom] = ()
+        self,
+        kinematics: Kinematics,
+        edges: Sequence[Edge],
+        block: Sequence[int],
+        idle: Sequence[Freedom] = (),
+        size: float = 1.0,
     ):
         joints = [kinematics.joints[k] for k in block]
         placed = [j.point for j in joints if j.point is not None]
-        centre, length = np.zeros(3), 1.0
+        centre, length = np.zeros(3), size
         if placed:
             low, high = np.min(placed, axis=0), np.max(placed, axis=0)
-            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), 1e-3)
+            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), NARROW * size)
         self.system: LoopSystem = loop_system(
             [edges[k] for k in block], [j.twists for j in joints], Frame(centre, length)
         )
@@ -172,7 +179,7 @@ def drive_loops(
     if doubtful:
         return f"its loops run through {kinematics.joints[doubtful[0]].name}, whose motion is not known"
     idle = _idle(kinematics, block)
-    linkage = _Linkage(kinematics, edges, block, idle)
+    linkage = _Linkage(kinematics, edges, block, idle, shapes.size)
     first = linkage.tangent(np.zeros(linkage.system.coordinates))
     if first is None:
         return "the loops do not move"

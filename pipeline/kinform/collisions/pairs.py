@@ -19,7 +19,7 @@ from kinform.collisions.crossing import crossings
 from kinform.collisions.entering import Probes, probes
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
 from kinform.contacts.boxes import together
-from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
+from kinform.contacts.bvh import MeshIndex, MeshStore, fcl_distance, fcl_pose, partial_model
 from kinform.kinematics.screws import cross
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
@@ -47,6 +47,9 @@ SPHERES = 96
 """Spheres about the facets of a part."""
 MOST = 200_000
 """Crossing facets that one question may return."""
+SCRAPE = 1e-3
+"""Share of the smaller part's diagonal by which parts may overlap as they slide along each other: by rounding of their
+files and by what is left over where joints were fitted. In no unit, so that an assembly of any size answers the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,15 +103,24 @@ class Shapes:
         assert mesh is not None
         return mesh
 
+    @cached_property
+    def size(self) -> float:
+        """m: diagonal of the assembly's box at the pose of the meshes; 1 without meshes."""
+        corners = []
+        for name in sorted(name for own in self.body_parts.values() for name in own):
+            X, index = self.part(name).X_WP, self.index(name)
+            bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
+            corners.append(np.where(bits, index.high, index.low) @ X[:3, :3].T + X[:3, 3])
+        return float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0))) if corners else 1.0
+
     def surfaces_of(self, name: str) -> MeshSurfaces:
         """Its surfaces."""
         return self.surfaces[self.mesh(name).digest]
 
     def allowed(self, first: str, second: str) -> Allowed:
         """What surfaces of a pair may be off an exact invariance."""
-        tolerances = self.assembly.tolerances
-        contact = tolerances.contact_of(self.mesh(first).diagonal, self.mesh(second).diagonal)
-        return Allowed(0.25 * contact, 1.5 * tolerances.alignment)
+        size = min(self.mesh(first).diagonal, self.mesh(second).diagonal)
+        return Allowed(SCRAPE * size, 1.5 * self.assembly.tolerances.alignment)
 
     def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
@@ -220,7 +232,7 @@ class PairTest:
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
         X = np.linalg.solve(self.X_WA, D @ self.X_WB)
-        self._objects[1].setTransform(fcl.Transform(X[:3, :3], X[:3, 3]))
+        self._objects[1].setTransform(fcl_pose(X))
         return np.asarray(X)
 
     def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
@@ -229,8 +241,7 @@ class PairTest:
             return float("inf"), (0, 0)
         self._place(D)
         result = fcl.DistanceResult()
-        found = fcl.distance(*self._objects, fcl.DistanceRequest(), result)
-        return max(float(found), 0.0), (result.b1, result.b2)
+        return fcl_distance(*self._objects, result), (result.b1, result.b2)
 
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
         """m: of the middle of one of the second's facets that count above the plane of one of the first's."""

@@ -23,6 +23,8 @@ HIGHER = ("point", "line")
 """Patches whose place on the parts changes as they move."""
 LOWER = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
+STILL = 1e-9
+"""rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
 SLACK = 1.05
 """Points between two poses may travel more than their straight distance."""
 
@@ -59,7 +61,8 @@ def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], 
         for b in range(a + 1, len(names)):
             second = names[b]
             relative = np.asarray(np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b]), float)
-            if np.abs(relative - relative[0]).max() < 1e-9:
+            change = np.abs(relative - relative[0]).max(axis=0)
+            if max(change[:3, :3].max(), change[:3, 3].max() / shapes.size) < STILL:
                 continue
             joint = joined.get(frozenset((first, second)))
             for one, other in _parts(shapes, first, second):

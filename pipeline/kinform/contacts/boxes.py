@@ -15,9 +15,10 @@ _CHUNK = 48
 """Facets of a chunk."""
 _OFTEN = 6
 """Questions that are cheaper to answer without chunks than the chunks are to make."""
-_OCTAVES = 20
-"""Octaves of size that are told apart."""
-_BEFORE = np.array([[0, 0], [0, 1], [1, 0], [1, 1]])
+_FINEST = 512
+"""Cells along the side of a grid, at most."""
+_LISTED = 12
+"""Cells of a grid that a facet is listed in on average, at most."""
 
 
 def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
@@ -55,40 +56,45 @@ class FacetBoxes:
 
 
 class FlatBoxes:
-    """Boxes (F, 2) of facets in a plane, on grids by octave of their size: which of many points are in which of them."""
+    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid: which of many points are in which of them."""
 
     def __init__(self, low: Array, high: Array):
         self.low, self.high = low, high
-        size = (high - low).max(axis=1, initial=0.0)
         self._origin = low.min(axis=0, initial=np.inf)
-        whole = max(float((high - self._origin).max(initial=0.0)), 1e-300)
-        level = np.clip(np.ceil(np.log2(np.maximum(size, 1e-300) / whole)), -_OCTAVES, 0).astype(np.int64)
-        self._levels = np.unique(level)
-        self._cells = whole * 2.0**self._levels
-        rank = np.searchsorted(self._levels, level)
-        key = self._key(rank, np.floor((low - self._origin) / self._cells[rank, None]).astype(np.int64))
-        self._facets = np.argsort(key, kind="stable")
-        self._keys = key[self._facets]
+        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, _FINEST))
+        while True:
+            self._cell, self._side = whole / side, side
+            first, last = self._cells(low), self._cells(high)
+            wide = last - first + 1
+            count = wide.prod(axis=1)
+            if side == 1 or count.sum() <= _LISTED * len(low) + 4096:
+                break
+            side = (side + 1) // 2
+        box = np.repeat(np.arange(len(low)), count)
+        step = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
+        cell = first[box] + np.stack([step // wide[box, 1], step % wide[box, 1]], axis=1)
+        key = cell[:, 0] * side + cell[:, 1]
+        self._facets = box[np.argsort(key, kind="stable")]
+        self._starts = np.concatenate([[0], np.cumsum(np.bincount(key, minlength=side * side))])
 
     def around(self, points: Array) -> tuple[Ints, Ints]:
         """Indices of points (n, 2), ascending, and of facets whose box they are in."""
-        cell = np.floor((points[:, None] - self._origin) / self._cells[:, None]).astype(np.int64)
-        # a box is no larger than its cell: it began in the cell of the point or in one before
-        cell = (cell[:, :, None] - _BEFORE).reshape(len(points), -1, 2)
-        key = self._key(np.repeat(np.arange(len(self._levels)), len(_BEFORE)), np.clip(cell, -1, 2**_OCTAVES))
-        first, last = np.searchsorted(self._keys, key, "left"), np.searchsorted(self._keys, key, "right")
-        count = (last - first).sum(axis=1)
-        lengths = (last - first).ravel()
-        ends = np.cumsum(lengths)
-        at = np.arange(int(lengths.sum())) + np.repeat(first.ravel() - ends + lengths, lengths)
-        which, facets = np.repeat(np.arange(len(points)), count), self._facets[at]
-        held = ((self.low[facets] <= points[which]) & (self.high[facets] >= points[which])).all(axis=1)
+        cell = self._cells(points)
+        key = cell[:, 0] * self._side + cell[:, 1]
+        start = self._starts[key]
+        count = self._starts[key + 1] - start
+        which = np.repeat(np.arange(len(points)), count)
+        facets = self._facets[np.arange(len(which)) + np.repeat(start - np.cumsum(count) + count, count)]
+        x, y = points[which].T
+        low, high = self.low[facets], self.high[facets]
+        held = np.flatnonzero((low[:, 0] <= x) & (high[:, 0] >= x) & (low[:, 1] <= y) & (high[:, 1] >= y))
         return which[held], facets[held]
 
-    def _key(self, rank: Ints, cell: Ints) -> Ints:
-        """One number for a level and a cell (…, 2)."""
-        side = np.int64(2 ** (_OCTAVES + 1))
-        return np.asarray((rank * side + cell[..., 0] + 1) * side + cell[..., 1] + 1)
+    def _cells(self, points: Array) -> Ints:
+        """(n, 2) the cells that points are in, or nearest to."""
+        cell = np.floor((points - self._origin) / self._cell)
+        return np.asarray(np.clip(cell, 0, self._side - 1).astype(np.int64))
 
 
 def together(low: Array, high: Array) -> Ints:

@@ -15,20 +15,37 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from kinform.contacts.boxes import FacetBoxes, FlatBoxes, facet_boxes
 from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Hits", "MeshIndex", "MeshStore", "Region", "cross", "fcl_model", "partial_model"]
+__all__ = [
+    "Hits",
+    "MeshIndex",
+    "MeshStore",
+    "Region",
+    "cross",
+    "fcl_distance",
+    "fcl_model",
+    "fcl_pose",
+    "inner_weights",
+    "partial_model",
+]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
+_UNIT = 2.0**20
+"""What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
+2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
 _WIDTH = 1e-3
 """Width of a sliver relative to its length: zero width misses most facets."""
+_BALL, _PARTS = 0.012, 6
+"""Share of a mesh's diagonal that balls about its facets are as small as, and divisions of a facet's side for it at most."""
 _RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
 """Directions along which no designer lays an edge."""
 
@@ -57,12 +74,25 @@ class Hits:
 
 
 def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
-    """FCL's model of triangles: vertices (V, 3) and faces (F, 3)."""
+    """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
     model = fcl.BVHModel()
     model.beginModel(len(vertices), len(faces))
-    model.addSubModel(np.ascontiguousarray(vertices), np.ascontiguousarray(faces))
+    model.addSubModel(np.ascontiguousarray(_UNIT * vertices), np.ascontiguousarray(faces))
     model.endModel()
     return model
+
+
+def fcl_pose(X: Array) -> fcl.Transform:
+    """FCL's form of a pose (4, 4) of such a model."""
+    return fcl.Transform(X[:3, :3], _UNIT * X[:3, 3])
+
+
+def fcl_distance(
+    first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
+) -> float:
+    """m between two such models, 0 where they touch or cross."""
+    found = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
+    return max(float(found), 0.0) / _UNIT
 
 
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
@@ -81,6 +111,7 @@ class MeshIndex:
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
         self._rays: list[_Ray] | None = None
+        self._near: list[tuple[cKDTree, float]] | None = None
         self._table: SurfaceTable | None = None
         self.low: Array = mesh.vertices.min(axis=0)
         self.high: Array = mesh.vertices.max(axis=0)
@@ -178,6 +209,15 @@ class MeshIndex:
         np.maximum.at(rims, own, chords[other])
         return rims
 
+    def away(self, points: Array) -> Array:
+        """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and quickly."""
+        if self._near is None:
+            self._near = _balls(self.mesh)
+        out = np.full(len(points), np.inf)
+        for tree, radius in self._near:
+            out = np.minimum(out, tree.query(points)[0] - radius)
+        return np.maximum(out, 0.0)
+
     def contains(self, points: Array) -> Flags:
         """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.
 
@@ -198,6 +238,38 @@ class MeshIndex:
             count[doubtful] = np.median(np.vstack([crossings[:, doubtful], third]), axis=0)
         out[out] = np.abs(count) > 0.5
         return out
+
+
+def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
+    """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
+    corners = mesh.vertices[mesh.faces]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    parts = np.clip(np.ceil(longest / max(_BALL * mesh.diagonal, 1e-300)), 1, _PARTS).astype(np.int64)
+    middles, radii = [], []
+    for number in np.unique(parts).tolist():
+        some = parts == number
+        middles.append((inner_weights(number) @ corners[some]).reshape(-1, 3))
+        radii.append(np.repeat(2.0 / 3.0 * longest[some] / number, number * number))
+    points, radius = np.concatenate(middles), np.concatenate(radii)
+    size = max(mesh.diagonal, 1e-300)
+    level = np.ceil(np.log2(np.maximum(radius / size, _BALL)))
+    out = []
+    for k in np.unique(level):
+        # one for all that are in one cell of a grid
+        largest, cell = float(radius[level == k].max()), 0.5 * float(2.0**k) * size
+        place = np.round((points[level == k] - mesh.vertices.min(axis=0)) / cell).astype(np.int64)
+        _, kept = np.unique((place[:, 0] << 40) + (place[:, 1] << 20) + place[:, 2], return_index=True)
+        centres = mesh.vertices.min(axis=0) + cell * place[kept]
+        out.append((cKDTree(centres), largest + 0.5 * float(np.sqrt(3.0)) * cell))
+    return out
+
+
+def inner_weights(number: int) -> Array:
+    """(number², 3) weights of a triangle's corners for the middles of those that it is divided into, `number` a side."""
+    up = [(3 * a + 1, 3 * b + 1) for a in range(number) for b in range(number - a)]
+    down = [(3 * a + 2, 3 * b + 2) for a in range(number - 1) for b in range(number - 1 - a)]
+    two = np.array(up + down, dtype=float) / (3.0 * number)
+    return np.column_stack([two, 1.0 - two.sum(axis=1)])
 
 
 class _Ray:
@@ -272,12 +344,12 @@ class Region:
         speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
         corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
         point = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
-        mesh, request = fcl.CollisionObject(self.bvh), fcl.DistanceRequest()
+        mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
-        for k, p in enumerate(points):
+        for k, p in enumerate(_UNIT * points):
             point.setTranslation(p)
             result = fcl.DistanceResult()
-            distance[k] = max(fcl.distance(mesh, point, request, result), 0.0)
+            distance[k] = fcl_distance(mesh, point, result)
             facet[k] = result.b1
         return distance, facet if self.facets is None else self.facets[facet]
 
@@ -286,7 +358,7 @@ class Region:
         if self.bvh is None or other.bvh is None:
             return False
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
-        placed = fcl.CollisionObject(other.bvh, fcl.Transform(X_SO[:3, :3], X_SO[:3, 3]))
+        placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
         return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
 
 

@@ -15,7 +15,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.bvh import fcl_model
+from kinform.contacts.bvh import fcl_distance, fcl_model, fcl_pose
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -179,11 +179,11 @@ def _inside(triangles: Array, others: Array, tolerance: float) -> Flags:
 def _within(triangles: Array, others: Array, tolerance: float) -> Flags:
     """Which triangles (n, 3, 3) are within the tolerance of any of the others."""
     model = fcl_model(others.reshape(-1, 3), np.arange(3 * len(others)).reshape(-1, 3))
-    whole, request = fcl.CollisionObject(model), fcl.DistanceRequest()
+    whole = fcl.CollisionObject(model)
     out = np.zeros(len(triangles), dtype=np.bool_)
     for k, corners in enumerate(triangles):
         one = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
-        out[k] = fcl.distance(one, whole, request, fcl.DistanceResult()) <= tolerance
+        out[k] = fcl_distance(one, whole) <= tolerance
     return out
 
 
@@ -221,10 +221,10 @@ def _boxes_apart(a: Array, X_a: Array, b: Array, X_b: Array) -> float:
 def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, tuple[int, int]]:
     """Distance (0 where they cross), and the facets between which it is."""
     result = fcl.DistanceResult()
-    objects = [fcl.CollisionObject(side.model, fcl.Transform(X[:3, :3], X[:3, 3])) for side, X in ((a, X_a), (b, X_b))]
-    distance = fcl.distance(*objects, fcl.DistanceRequest(), result)
+    objects = [fcl.CollisionObject(side.model, fcl_pose(X)) for side, X in ((a, X_a), (b, X_b))]
+    distance = fcl_distance(*objects, result)
     facets = [k if 0 <= k < len(side.triangles) else 0 for k, side in ((int(result.b1), a), (int(result.b2), b))]
-    return max(float(distance), 0.0), (facets[0], facets[1])
+    return distance, (facets[0], facets[1])
 
 
 def _placed(side: _Side, facet: int, X: Array) -> Array:
