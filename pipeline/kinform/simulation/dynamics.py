@@ -45,7 +45,7 @@ class Dynamics:
         """Positions and rates nearest, by the mass matrix, on closed loops; prescribed joints on their laws."""
         tables = self.tables
         y = tables.pack(q, v)
-        equations.project(tables.ints, tables.nums, tables.work, t, y, closed)
+        equations.project(tables.ints, tables.nums, tables.work, t, y, closed, False)
         return tables.unpack(y)
 
     def mass_matrix(self, q: Array) -> Array:
@@ -54,8 +54,10 @@ class Dynamics:
         motion.place_links(tables.ints, tables.nums, tables.work, tables.pack(q, np.zeros(self.mechanism.rates)))
         masses.inertias(tables.ints, tables.nums, tables.work)
         masses.mass_matrix(tables.ints, tables.work, False)
-        order = tables.ints[layout.MODE][2, np.argsort(tables.v_order)]
-        return tables.work[layout.MASS][np.ix_(order, order)]
+        lower = np.tril(tables.work[layout.MASS])
+        full = lower + np.tril(lower, -1).T
+        inverse = np.argsort(tables.v_order)
+        return full[np.ix_(inverse, inverse)]
 
     def weightless(self, q: Array) -> tuple[str, ...]:
         """Joints that take part in free motions without mass: their acceleration is undetermined."""

@@ -39,7 +39,7 @@ class Engine:
 
     def project(self, run: Run, t: float, y: Array) -> tuple[float, float]:
         """(gap left, smallest pivot over that of its choice); see `kernel.equations.project`."""
-        gap = float(self._call("project", run, t, y, run.settings.closed))
+        gap = float(self._call("project", run, t, y, run.settings.closed, False))
         return gap, float(run.dynamics.tables.work[layout.VECTORS][layout.KEPT, 0])
 
     def sample(self, run: Run, t: float, y: Array, out: Array) -> None:

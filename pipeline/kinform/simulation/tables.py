@@ -100,9 +100,9 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     scale = np.column_stack([mechanism.scale, ~mechanism.moves[mechanism.link_of].any(axis=0)])[order.v_order]
     gears = np.hstack([mechanism.gear_v[:, order.v_order], mechanism.gear_q[:, order.q_order]])
     values, pieces = signals.tables()
-    mode = np.zeros((3, width), dtype=np.int64)
-    mode[1, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
-    mode[2, :n] = np.argsort(mode[1, :n])
+    mode = np.zeros((5, width), dtype=np.int64)
+    mode[layout.ORDER, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
+    mode[layout.PLACE, :n] = np.argsort(mode[layout.ORDER, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
         np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors, loads, springs,
@@ -114,7 +114,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     )  # fmt: skip
     L = len(mechanism.parent)
     shapes = (
-        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (19, size), (7, size),
+        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (19, size), (7, size), (n, n),
     )  # fmt: skip
     work = tuple(np.zeros(shape) for shape in shapes)
     work[layout.STATE][0, [0, 4, 8]] = 1.0

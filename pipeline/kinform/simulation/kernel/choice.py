@@ -8,12 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.simulation.kernel.layout import (
+    CHOSEN,
     CLOSURES,
     COLUMNS,
     COUNTS,
     GEARS,
-    MASS,
     MODE,
+    ORDER,
+    PLACE,
     RANK,
     RATES,
     REFERENCE,
@@ -30,11 +32,12 @@ __all__ = ["choose"]
 
 def choose(ints: Ints, nums: Nums, work: Work) -> None:
     """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
-    mode and its pivots, and empties the mass matrix, which is in its order."""
+    mode and its pivots."""
     n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
     count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
     led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
-    ints[MODE][0, :count], ints[MODE][1, :n], ints[MODE][2, :n] = range(count), range(n), range(n)
+    ints[MODE][CHOSEN, :count] = range(count)
+    ints[MODE][[ORDER, PLACE], :n] = range(n)
     gather(ints, nums, work, count)
     rows = work[ROWS][:count] * scale
     left = np.ones(count, dtype=bool)
@@ -54,7 +57,6 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
         others = left & (rows[:, column] != 0.0)
         rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
     free = [k for k in range(n) if not led[k] and k not in dependent]
-    ints[MODE][0, :rank] = chosen
-    ints[MODE][1, :n] = dependent + free + np.flatnonzero(led).tolist()
-    ints[MODE][2, :n] = np.argsort(ints[MODE][1, :n])
-    work[MASS][:] = 0.0
+    ints[MODE][CHOSEN, :rank] = chosen
+    ints[MODE][ORDER, :n] = dependent + free + np.flatnonzero(led).tolist()
+    ints[MODE][PLACE, :n] = np.argsort(ints[MODE][ORDER, :n])

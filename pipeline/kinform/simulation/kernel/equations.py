@@ -8,6 +8,7 @@ from kinform.simulation.kernel.forces import between, drive, loads
 from kinform.simulation.kernel.layout import (
     ACC,
     ACTORS,
+    CHOSEN,
     CLOSURES,
     COLUMNS,
     CONSTANTS,
@@ -50,6 +51,9 @@ from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 
 TORN = 1e-4
 """Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+
+SLOW = 0.05
+"""Corrections that leave more than this share of a gap are made by new factors."""
 
 __all__ = ["derivative", "impose", "move", "project"]
 
@@ -96,7 +100,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         if margin <= 0.0:
             return margin
         for r in range(rank):
-            vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[0, r], GAIN)
+            vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[CHOSEN, r], GAIN)
         for k in range(n):
             if columns[k, SIGNAL] >= 0:
                 _, _, vectors[ACC, k] = law(values, pieces, columns[k, SIGNAL], t)
@@ -135,11 +139,13 @@ def move(links: Index, vectors: Table, y: Row) -> None:
         y[at + 3] = c + 0.5 * (d2 * w + d0 * b - d1 * a)
 
 
-def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float) -> float:
+def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float, factored: bool) -> float:
     """Closes the loops in y to `closed` by least corrections, by mass, of positions and then of rates.
 
-    Quaternions get unit length. Returns the gap left, −1 when a free motion has no mass; writes how good
-    the pivots still are to work[VECTORS][KEPT].
+    `factored`: `derivative` was just called at y, and what it left serves for all corrections while they
+    shrink fast; else they are made anew as they must for loops closed to rounding. Quaternions get unit
+    length. Returns the gap left, −1 when a free motion has no mass; writes how good the pivots still are to
+    work[VECTORS][KEPT].
     """
     counts, links, closures, mode = ints[COUNTS], ints[LINKS], ints[CLOSURES], ints[MODE]
     state, vectors, length = work[STATE], work[VECTORS], nums[CONSTANTS][0, LENGTH]
@@ -158,20 +164,20 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
         return 0.0
     for k in range(n):
         vectors[FORCE, k] = 0.0
-    before, size, factored = 1e300, 1e300, False
-    for _ in range(10):
+    before, size = 1e300, 1e300
+    for count in range(10):
         place_links(ints, nums, work, y)
         size = 0.0
         for r in range(rank):
-            vectors[GAP, r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[0, r])
+            vectors[GAP, r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[CHOSEN, r])
             size = max(size, abs(vectors[GAP, r]))
-        if not factored or before > 1e-9:
+        stale = count > 0 and size > SLOW * before if factored else before > 1e-9
+        if stale:
             inertias(ints, nums, work)
             mass_matrix(ints, work, False)
             margin = factor(ints, nums, work)
             if margin <= 0.0:
                 return size if margin == 0.0 else -1.0
-            factored = True
         if size <= closed or not size < before:
             break
         before = size
@@ -179,21 +185,24 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
             vectors[ACC, k] = 0.0
         settle(ints, work)
         move(links, vectors, y)
-    for row in range(6 * len(closures) + len(nums[GEARS])):
-        # The rows that depend on the others at the start must stay closed too.
-        rest = abs(gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, row))
-        if rest > TORN:
-            size = max(size, rest)
-    twist_links(ints, work, y)
-    for r in range(rank):
-        total, gear = gained(closures, nums[CLOSURES], state, length, mode[0, r], TWIST), mode[0, r] - 6 * len(closures)
-        if gear >= 0:
-            for k in range(n):
-                total += nums[GEARS][gear, k] * y[first + k]
-        vectors[GAP, r] = -total
-    for k in range(n):
-        vectors[ACC, k] = 0.0
-    settle(ints, work)
-    for k in range(n):
-        y[first + k] += vectors[ACC, k]
+    if not factored:
+        for row in range(6 * len(closures) + len(nums[GEARS])):
+            # The rows that depend on the others at the start must stay closed too.
+            rest = abs(gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, row))
+            if rest > TORN:
+                size = max(size, rest)
+    for _ in range(2 if factored else 1):
+        twist_links(ints, work, y)
+        for r in range(rank):
+            total = gained(closures, nums[CLOSURES], state, length, mode[CHOSEN, r], TWIST)
+            gear = mode[CHOSEN, r] - 6 * len(closures)
+            if gear >= 0:
+                for k in range(n):
+                    total += nums[GEARS][gear, k] * y[first + k]
+            vectors[GAP, r] = -total
+        for k in range(n):
+            vectors[ACC, k] = 0.0
+        settle(ints, work)
+        for k in range(n):
+            y[first + k] += vectors[ACC, k]
     return size

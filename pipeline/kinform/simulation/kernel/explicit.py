@@ -71,7 +71,7 @@ __all__ = ["advance", "sample", "stop_reached"]
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
     """Writes an output: the state with loops closed, accelerations, efforts given and needed."""
     n, size, vectors = ints[COUNTS][0, RATES], ints[COUNTS][0, SIZE], work[VECTORS]
-    project(ints, nums, work, t, y, clock[CLOSED])
+    project(ints, nums, work, t, y, clock[CLOSED], False)
     derivative(ints, nums, work, t, y, work[STAGES][TRIED + 2])
     for i in range(size):
         out[i] = y[i]
@@ -141,7 +141,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         later = clock[NOW] + h
         if clock[END] - later < 1e-13 * max(1.0, abs(later)):
             later = clock[END]
-        gap = project(ints, nums, work, later, slopes[NEW], clock[CLOSED])
+        gap = project(ints, nums, work, later, slopes[NEW], clock[CLOSED], False)
         kept = work[VECTORS][KEPT, 0]
         if rank > 0 and not 0.0 <= gap < clock[OPEN]:
             clock[STEP] = 0.25 * h

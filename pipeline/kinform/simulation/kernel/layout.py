@@ -16,7 +16,8 @@ COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, ACTORS, LOADS, SPRINGS, MODE, STOPS =
 CONSTANTS, SCALE, GEARS, PIECES = COUNTS, COLUMNS, MODE, 10
 
 # Tables of scratch.
-STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE = range(9)
+STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE, MOTIONS = range(10)
+"""MOTIONS: columns keep the loops closed. HALF: the mass matrix times them."""
 
 # ints[COUNTS][0]
 RANK, LED, POSITIONS, STATES, RATES, SIZE = range(6)
@@ -43,7 +44,12 @@ LINK, BEFORE, SIGNAL = range(3)
 ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
 """GAIN: acceleration at constant rates. INERT: m, m·c, then xx yy zz xy xz yz about the centre."""
 
-# ints[MODE]: independent rows, rates in the order dependent, free, led, and where each is in it. work[VECTORS]:
+# ints[MODE]: independent rows; rates in the order dependent, free, led; where each is in it. Of the rows as
+# gathered and factored: for each dependent rate how far down rows reach that touch it or one before, and
+# for each row the last dependent rate that it touches.
+CHOSEN, ORDER, PLACE, LOWEST, REACH = range(5)
+
+# work[VECTORS]:
 FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT, KEPT = range(10)
 """KEPT, its first number: smallest pivot over that of its choice, at the last projection."""
 

@@ -9,18 +9,25 @@ from __future__ import annotations
 
 from kinform.simulation.kernel.layout import (
     BEFORE,
+    CHOSEN,
     CLOSURES,
     COLUMNS,
     CONSTANTS,
     COUNTS,
     GAP,
     GEARS,
+    KEPT,
     LENGTH,
     LINKS,
+    LOWEST,
     MODE,
+    ORDER,
     PIVOT,
+    PLACE,
     POSITIONS,
+    RANK,
     RATES,
+    REACH,
     REFERENCE,
     ROWS,
     SCREWS,
@@ -96,37 +103,57 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     tip of loop c, along the axes of a frame that the tip carries; then come the gears.
     """
     n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
+    rank = ints[COUNTS][0, RANK]
     links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
     state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
     for r in range(count):
-        loop, axis = mode[0, r] // 6, mode[0, r] % 6
+        mode[LOWEST, r] = r
+    for r in range(count):
+        loop, axis = mode[CHOSEN, r] // 6, mode[CHOSEN, r] % 6
         if loop >= len(closures):
             for c in range(n):
-                rows[r, c] = gears[mode[0, r] - 6 * len(closures), mode[1, c]]
+                rows[r, c] = gears[mode[CHOSEN, r] - 6 * len(closures), mode[ORDER, c]]
+            mode[LOWEST, 0], mode[REACH, r] = r, rank - 1
             continue
         for c in range(n):
             rows[r, c] = 0.0
+        first, last = r, r
         m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
-        for side in range(2):
-            k = links[closures[loop, side], TIP]
-            sign = 2.0 * side - 1.0
-            while k >= 0:
-                w0, w1, w2 = three(screws, k, 0)
-                l0, l1, l2 = three(screws, k, 3)
-                rows[r, mode[2, k]] += sign * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
-                k = before[k, BEFORE]
+        # Both chains down to where they meet: what carries both moves neither relative to the other.
+        one, other = links[closures[loop, 0], TIP], links[closures[loop, 1], TIP]
+        while one != other:
+            k = one if one > other else other
+            w0, w1, w2 = three(screws, k, 0)
+            l0, l1, l2 = three(screws, k, 3)
+            power = dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2)
+            if k == one:
+                one = before[k, BEFORE]
+                power = -power
+            else:
+                other = before[k, BEFORE]
+            c = mode[PLACE, k]
+            rows[r, c] = power
+            if c < rank:
+                first = c if c < first else first
+                last = c if c > last else last
+        mode[REACH, r] = last
+        if mode[LOWEST, first] < r:
+            mode[LOWEST, first] = r
 
 
-def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> tuple[float, float]:
+def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> float:
     """Factors the gathered rows in place, and reorders them, in the mode too, for stable pivots; the
     columns after the dependent ones become B. What [GAP] holds by rows is put in their order.
 
-    Returns (smallest pivot over the largest, smallest pivot over that of its choice).
+    Returns the smallest pivot over the largest; [KEPT] gets the smallest over that of its choice.
     """
-    low, high, kept = 1e300, 0.0, 1.0
+    low, high, last = 1e300, 0.0, 0
+    vectors[KEPT, 0] = 1.0
     for k in range(rank):
         best = k
-        for i in range(k + 1, rank):
+        last = mode[LOWEST, k] if mode[LOWEST, k] > last else last
+        mode[LOWEST, k] = last
+        for i in range(k + 1, last + 1):
             if abs(rows[i, k]) > SWAP * abs(rows[best, k]):
                 best = i
         if best != k:
@@ -134,41 +161,45 @@ def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int,
             # multiplies the roundings of each.
             for j in range(n):
                 rows[k, j], rows[best, j] = rows[best, j], rows[k, j]
-            mode[0, k], mode[0, best] = mode[0, best], mode[0, k]
+            mode[CHOSEN, k], mode[CHOSEN, best] = mode[CHOSEN, best], mode[CHOSEN, k]
+            mode[REACH, k], mode[REACH, best] = mode[REACH, best], mode[REACH, k]
             vectors[GAP, k], vectors[GAP, best] = vectors[GAP, best], vectors[GAP, k]
         pivot = rows[k, k]
-        size = abs(pivot) * scale[mode[1, k], 0]
+        size = abs(pivot) * scale[mode[ORDER, k], 0]
         low, high = min(low, size), max(high, size)
-        kept = min(kept, size / vectors[REFERENCE, k])
+        vectors[KEPT, 0] = min(vectors[KEPT, 0], size / vectors[REFERENCE, k])
         if pivot == 0.0:
-            return 0.0, 0.0
+            return 0.0
         vectors[PIVOT, k] = 1.0 / pivot
-        for i in range(k + 1, rank):
+        reach = mode[REACH, k]
+        for i in range(k + 1, last + 1):
             if rows[i, k] != 0.0:
                 factor = rows[i, k] * vectors[PIVOT, k]
                 rows[i, k] = factor
-                for j in range(k + 1, n):
+                if mode[REACH, i] < reach:
+                    mode[REACH, i] = reach
+                for j in range(k + 1, reach + 1):
+                    rows[i, j] -= factor * rows[k, j]
+                for j in range(rank, n):
                     rows[i, j] -= factor * rows[k, j]
     for k in range(rank - 1, -1, -1):
-        for i in range(k + 1, rank):
+        for i in range(k + 1, mode[REACH, k] + 1):
             factor = rows[k, i]
             if factor != 0.0:
                 for j in range(rank, n):
                     rows[k, j] -= factor * rows[i, j]
         for j in range(rank, n):
             rows[k, j] *= vectors[PIVOT, k]
-    return (low / high if rank > 0 else 1.0), kept
+    return low / high if rank > 0 else 1.0
 
 
-def back_substitute(rows: Table, vectors: Table, rank: int) -> None:
+def back_substitute(rows: Table, mode: Index, vectors: Table, rank: int) -> None:
     """Turns work[VECTORS][GAP], by independent rows, into the dependent rates that make it up."""
-    for k in range(rank):
-        total = vectors[GAP, k]
-        for i in range(k):
-            total -= rows[k, i] * vectors[GAP, i]
-        vectors[GAP, k] = total
+    for i in range(rank):
+        for k in range(i + 1, mode[LOWEST, i] + 1):
+            vectors[GAP, k] -= rows[k, i] * vectors[GAP, i]
     for k in range(rank - 1, -1, -1):
         total = vectors[GAP, k]
-        for i in range(k + 1, rank):
+        for i in range(k + 1, mode[REACH, k] + 1):
             total -= rows[k, i] * vectors[GAP, i]
         vectors[GAP, k] = total * vectors[PIVOT, k]

@@ -21,7 +21,6 @@ from kinform.simulation.kernel.layout import (
     INERT,
     LINKS,
     MASS,
-    MODE,
     PARENT,
     SCREWS,
     STATE,
@@ -105,9 +104,9 @@ def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
 
 
 def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
-    """The mass matrix, rates in the order of the mode; with forces the wrenches of the links leave the
-    efforts too. What links carry is added to their inertias and wrenches."""
-    links, before, mode = ints[LINKS], ints[COLUMNS], ints[MODE]
+    """Lower triangle of the mass matrix; with forces the wrenches of the links leave the efforts too. What
+    links carry is added to their inertias and wrenches."""
+    links, before = ints[LINKS], ints[COLUMNS]
     state, screws, matrix, force = work[STATE], work[SCREWS], work[MASS], work[VECTORS]
     for i in range(len(links) - 1, 0, -1):
         p = links[i, PARENT]
@@ -119,9 +118,7 @@ def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
             while j >= 0:
                 w0, w1, w2 = three(screws, j, 0)
                 l0, l1, l2 = three(screws, j, 3)
-                value = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
-                matrix[mode[2, k], mode[2, j]] = value
-                matrix[mode[2, j], mode[2, k]] = value
+                matrix[k, j] = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
                 j = before[j, BEFORE]
             if with_forces:
                 for c in range(6):

@@ -1,22 +1,26 @@
 """Efforts and rates with loops closed: the mass matrix of the motions that keep them so, and solutions by it.
 
-Rates x (accelerations, or corrections) with x_d = g − B x_il balance the efforts, or are least by the mass
-matrix when there are none. Rates are in the order of the mode throughout: dependent, free, led.
+With the rates in the order dependent d, free i, led l the loops say x_d = g − B x_il, and motions E = (−B; 1)
+keep them closed. Rates x (accelerations, or corrections) balance the efforts, or are least by the mass matrix
+when there are none: Eᵀ (M x − f) vanishes for the free ones, and is the effort that led ones need.
 """
 
 from __future__ import annotations
 
 from kinform.simulation.kernel.layout import (
     ACC,
+    BEFORE,
+    COLUMNS,
     COUNTS,
     FORCE,
     GAP,
     HALF,
-    KEPT,
     LED,
     MASS,
     MODE,
+    MOTIONS,
     NEED,
+    ORDER,
     RANK,
     RATES,
     REDUCED,
@@ -28,73 +32,100 @@ from kinform.simulation.kernel.layout import (
 )
 from kinform.simulation.kernel.loops import back_substitute, eliminate, gather
 from kinform.simulation.kernel.masses import cholesky, solve_cholesky
-from kinform.simulation.kernel.types import Index, Ints, Nums, Table, Work
+from kinform.simulation.kernel.types import Counts, Index, Ints, Nums, Row, Table, Work
 
-__all__ = ["balance", "factor", "reduce", "settle"]
+__all__ = ["balance", "factor", "reduce", "settle", "weigh"]
 
 
-def reduce(matrix: Table, rows: Table, half: Table, small: Table, n: int, rank: int, led: int) -> bool:
-    """Mass matrix of the motions E that keep the loops closed, its free part factored. False when a
-    free motion has no mass."""
+def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
+    """Takes the mass matrix times x from `out`. The matrix has numbers where rates carry each other only."""
+    for k in range(n):
+        total, own = 0.0, x[k]
+        j = before[k, BEFORE]
+        while j >= 0:
+            total += matrix[k, j] * x[j]
+            out[j] -= matrix[k, j] * own
+            j = before[j, BEFORE]
+        out[k] -= total + matrix[k, k] * own
+
+
+def reduce(
+    before: Index,
+    order: Counts,
+    matrix: Table,
+    rows: Table,
+    motions: Table,
+    half: Table,
+    small: Table,
+    n: int,
+    rank: int,
+    led: int,
+) -> bool:
+    """Lower triangle of the mass matrix of the motions that keep the loops closed, its free part factored.
+    False when a free motion has no mass."""
     rest = n - rank
     for i in range(n):
-        for j in range(rest):
-            half[i, j] = matrix[i, rank + j]
-        for d in range(rank):
-            value = matrix[i, d]
-            if value != 0.0:
-                for j in range(rest):
-                    half[i, j] -= value * rows[d, rank + j]
+        for c in range(rest):
+            motions[order[i], c] = -rows[i, rank + c] if i < rank else 0.0
+            half[i, c] = 0.0
+    for c in range(rest):
+        motions[order[rank + c], c] = 1.0
+    for k in range(n):
+        j = k
+        while j >= 0:
+            value = matrix[k, j]
+            for c in range(rest):
+                half[k, c] += value * motions[j, c]
+            if j != k:
+                for c in range(rest):
+                    half[j, c] += value * motions[k, c]
+            j = before[j, BEFORE]
     for i in range(rest):
-        for j in range(rest):
-            small[i, j] = half[rank + i, j]
+        for c in range(i + 1):
+            small[i, c] = half[order[rank + i], c]
         for d in range(rank):
             value = rows[d, rank + i]
             if value != 0.0:
-                for j in range(rest):
-                    small[i, j] -= value * half[d, j]
+                for c in range(i + 1):
+                    small[i, c] -= value * half[order[d], c]
     return cholesky(small, rest - led)
 
 
-def balance(matrix: Table, rows: Table, small: Table, mode: Index, vectors: Table, n: int, rank: int, led: int) -> None:
+def balance(
+    before: Index, order: Counts, matrix: Table, rows: Table, small: Table, vectors: Table, n: int, rank: int, led: int
+) -> None:
     """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (dependent rates) and led rates in [ACC].
 
     [NEED] is the effort that led rates take.
     """
-    rest, free = n - rank, n - rank - led
-    # Efforts less what the gap takes, on the motions E.
-    for i in range(n):
-        total = vectors[FORCE, mode[1, i]]
-        for d in range(rank):
-            total -= matrix[i, d] * vectors[GAP, d]
-        vectors[TRIAL, i] = total
-    for j in range(rest):
-        total = vectors[TRIAL, rank + j]
-        for d in range(rank):
-            total -= rows[d, rank + j] * vectors[TRIAL, d]
-        vectors[RIGHT, j] = total
-        vectors[NEED, j] = -total
-    for j in range(free):
-        for k in range(led):
-            vectors[RIGHT, j] -= small[free + k, j] * vectors[ACC, mode[1, rank + free + k]]
-    solve_cholesky(small, free, vectors[RIGHT])
-    for j in range(free):
-        vectors[ACC, mode[1, rank + j]] = vectors[RIGHT, j]
+    free = n - rank - led
     for d in range(rank):
         total = vectors[GAP, d]
-        for j in range(rest):
-            total -= rows[d, rank + j] * vectors[ACC, mode[1, rank + j]]
-        vectors[ACC, mode[1, d]] = total
-    for k in range(led):
-        total = vectors[NEED, free + k]
-        for j in range(rest):
-            # Rows of led rates keep the whole reduced matrix left of their own block.
-            total += small[free + k, j] * vectors[ACC, mode[1, rank + j]]
-        vectors[TRIAL, k] = total
+        for k in range(rank + free, n):
+            total -= rows[d, k] * vectors[ACC, order[k]]
+        vectors[ACC, order[d]] = total
+    for k in range(rank, rank + free):
+        vectors[ACC, order[k]] = 0.0
     for k in range(n):
+        vectors[TRIAL, k] = vectors[FORCE, k]
         vectors[NEED, k] = 0.0
-    for k in range(led):
-        vectors[NEED, mode[1, rank + free + k]] = vectors[TRIAL, k]
+    weigh(before, matrix, vectors[ACC], n, vectors[TRIAL])
+    for i in range(rank, n):
+        total = vectors[TRIAL, order[i]]
+        for d in range(rank):
+            total -= rows[d, i] * vectors[TRIAL, order[d]]
+        vectors[RIGHT, i - rank] = total
+    solve_cholesky(small, free, vectors[RIGHT])
+    for i in range(free):
+        value = vectors[RIGHT, i]
+        vectors[ACC, order[rank + i]] = value
+        for d in range(rank):
+            vectors[ACC, order[d]] -= rows[d, rank + i] * value
+    for k in range(free, free + led):
+        total = -vectors[RIGHT, k]
+        for j in range(free):
+            total += small[k, j] * vectors[RIGHT, j]
+        vectors[NEED, order[rank + k]] = total
 
 
 def factor(ints: Ints, nums: Nums, work: Work) -> float:
@@ -104,10 +135,12 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
     a free motion has no mass; writes how good the pivots still are to work[VECTORS][KEPT].
     """
     n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
-    rows, vectors = work[ROWS], work[VECTORS]
+    mode, rows = ints[MODE], work[ROWS]
     gather(ints, nums, work, rank)
-    margin, vectors[KEPT, 0] = eliminate(rows, ints[MODE], nums[SCALE], vectors, rank, n)
-    if margin != 0.0 and not reduce(work[MASS], rows, work[HALF], work[REDUCED], n, rank, led):
+    margin = eliminate(rows, mode, nums[SCALE], work[VECTORS], rank, n)
+    if margin != 0.0 and not reduce(
+        ints[COLUMNS], mode[ORDER], work[MASS], rows, work[MOTIONS], work[HALF], work[REDUCED], n, rank, led
+    ):
         return -1.0
     return margin
 
@@ -116,5 +149,6 @@ def settle(ints: Ints, work: Work) -> None:
     """Solves for work[VECTORS][ACC] and [NEED] from [FORCE], [GAP] (by independent rows) and led rates in
     [ACC], by what `factor` left."""
     n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
-    back_substitute(work[ROWS], work[VECTORS], rank)
-    balance(work[MASS], work[ROWS], work[REDUCED], ints[MODE], work[VECTORS], n, rank, led)
+    mode, rows, vectors = ints[MODE], work[ROWS], work[VECTORS]
+    back_substitute(rows, mode, vectors, rank)
+    balance(ints[COLUMNS], mode[ORDER], work[MASS], rows, work[REDUCED], vectors, n, rank, led)

@@ -37,6 +37,9 @@ from kinform.simulation.kernel.layout import (
 )
 from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
 
+CLOSE = 1e-4
+"""Loops at an evaluation of a step are closed to this share of the tolerance."""
+
 __all__ = ["interpolate", "prepare", "slope", "stage", "try_step"]
 
 
@@ -48,7 +51,9 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: floa
     if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0, RANK] > 0:
         if margin < clock[MARGIN]:
             clock[MARGIN], clock[TIGHTEST] = margin, t
-        project(ints, nums, work, t, y, clock[CLOSED])
+        # An error of accelerations grows with the inverse square of the margin.
+        share = margin / clock[NEAR]
+        project(ints, nums, work, t, y, max(clock[CLOSED], CLOSE * clock[RTOL] * share * share), margin > 0.0)
         margin = derivative(ints, nums, work, t, y, dy)
     return margin
 
