@@ -41,7 +41,7 @@ _ORDER = (
     loops.line_of, loops.gained, loops.gap_of, loops.gather, loops.eliminate, loops.back_substitute,
     equations.impose, equations.reduce, equations.balance, equations.derivative, equations.move, equations.project,
     crossings.alike, crossings.tip, crossings.laid,
-    explicit.slope, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
+    explicit.slope, explicit.roundings, explicit.try_step, explicit.prepare, explicit.interpolate, explicit.sample,
     explicit.stop_reached, explicit.advance,
 )  # fmt: skip
 """Functions after those that they call."""

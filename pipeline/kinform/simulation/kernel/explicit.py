@@ -47,6 +47,7 @@ from kinform.simulation.kernel.layout import (
     PAUSED,
     RANK,
     RATES,
+    ROUND,
     RTOL,
     SLOPES,
     SPENT,
@@ -69,10 +70,16 @@ EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""
 LAYINGS = 4
 """Times that a step is laid anew to avoid a singular pose."""
+EPSILON = 2.0**-51
+"""A rounding or two of a number, as a share of it."""
+ROUGH = 4.0
+"""Times what one disturbance does to the slopes: others do more."""
+AGAIN = 20
+"""Steps after which roundings are looked at again."""
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
-__all__ = ["advance", "interpolate", "prepare", "sample", "slope", "stop_reached", "try_step"]
+__all__ = ["advance", "interpolate", "prepare", "roundings", "sample", "slope", "stop_reached", "try_step"]
 
 
 def slope(
@@ -97,6 +104,26 @@ def slope(
         project(ints, nums, work, t, y, clock[CLOSED])
         margin = derivative(ints, nums, work, t, y, dy)
     return margin
+
+
+def roundings(
+    derivative: Derivative, ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, t: float
+) -> None:
+    """Writes to [ROUND] how far the slopes at y are known: what changes by a rounding of each number do to them.
+
+    Bodies of small inertia in mechanisms of much greater lose so many digits that tolerances cannot be kept.
+    """
+    slopes, size = work[STAGES], len(y)
+    tally[SLOPES] += 2
+    for i in range(size):
+        slopes[TRIED, i] = y[i]
+    derivative(ints, nums, work, t, slopes[TRIED], slopes[ROUND])
+    for i in range(size):
+        slopes[TRIED, i] = y[i] * (1.0 + (EPSILON if i % 3 != 1 else -EPSILON))
+    if derivative(ints, nums, work, t, slopes[TRIED], slopes[NEW]) < 0.0:
+        return
+    for i in range(size):
+        slopes[ROUND, i] = abs(slopes[NEW, i] - slopes[ROUND, i])
 
 
 def try_step(
@@ -144,7 +171,8 @@ def try_step(
             three += table[E3_ROW, j] * slopes[j, i]
             five += table[E5_ROW, j] * slopes[j, i]
         slopes[NEW, i] = y[i] + h * total
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i]))
+        # What rounding does to a slope no step can do better than.
+        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i])) + h * ROUGH * slopes[ROUND, i]
         third += (three / allowed) ** 2
         fifth += (five / allowed) ** 2
     if fifth == 0.0 and third == 0.0:
@@ -262,6 +290,7 @@ def advance(
         clock[MARGINS] = slope(derivative, project, ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
         if clock[MARGINS] < 0.0:
             return MASSLESS
+        roundings(derivative, ints, nums, work, clock, tally, y, clock[NOW])
         tally[FRESH] = 0
     spent, growth, layings = 0, GROWTH, 0
     while clock[NOW] < clock[END]:
@@ -271,6 +300,8 @@ def advance(
             return SPENT
         spent += 1
         tally[STEPS] += 1
+        if tally[STEPS] % AGAIN == 0:
+            roundings(derivative, ints, nums, work, clock, tally, y, clock[NOW])
         wanted = clock[STEP]
         h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
         if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:
