@@ -22,6 +22,7 @@ from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
 from kinform.kinematics.mobility import Closure, body_twists, close
 from kinform.kinematics.motions import named_freedoms
+from kinform.kinematics.proportions import proportioned
 from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.screws import twist_at_origin
@@ -75,6 +76,7 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
             misaligned.append((joint.name, angle, offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
     snapped, misfit = snap(joints, contacts.patches, extents.assembly)
+    snapped, misfit = proportioned(bodies, snapped, uncertainties(snapped, contacts.patches), extents.assembly, misfit)
     closed = agree(bodies, snapped, contacts.patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
         assembly, bodies, closed, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,

@@ -114,7 +114,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     )  # fmt: skip
     L = len(mechanism.parent)
     shapes = (
-        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (19, size), (7, size), (n, n),
+        (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (20, size), (7, size), (n, n),
     )  # fmt: skip
     work = tuple(np.zeros(shape) for shape in shapes)
     work[layout.STATE][0, [0, 4, 8]] = 1.0

@@ -55,13 +55,15 @@ from kinform.simulation.kernel.layout import (
     VECTORS,
     WORN,
 )
-from kinform.simulation.kernel.steps import interpolate, prepare, slope, try_step
+from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slope, try_step
 from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
 
 EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""
 LAYINGS = 4
 """Times that a step is laid anew to avoid a singular pose."""
+AGAIN = 20
+"""Steps after which roundings are looked at again."""
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
@@ -110,6 +112,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         clock[MARGINS] = slope(ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
         if clock[MARGINS] < 0.0:
             return MASSLESS
+        roundings(ints, nums, work, tally, y, clock[NOW])
         tally[FRESH] = 0
     spent, growth, layings = 0, GROWTH, 0
     while clock[NOW] < clock[END]:
@@ -119,6 +122,8 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
             return SPENT
         spent += 1
         tally[STEPS] += 1
+        if tally[STEPS] % AGAIN == 0:
+            roundings(ints, nums, work, tally, y, clock[NOW])
         wanted = clock[STEP]
         h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
         if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:

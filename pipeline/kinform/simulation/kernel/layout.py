@@ -66,8 +66,8 @@ COEFFICIENTS = 11
 """nums: of the integrator. Rows 0 to 15 a_ij, then b, c, both error estimates, and four of dense output."""
 B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW = 16, 17, 18, 19, 20
 
-# work[STAGES]: sixteen slopes, then the state tried, the new state.
-TRIED, NEW = 16, 17
+# work[STAGES]: sixteen slopes, then the state tried, the new state, scratch, and what rounding does to slopes.
+TRIED, NEW, ROUND = 16, 17, 19
 
 # clock: times (s) and tolerances; tally: counts; both are rows that the integrator changes.
 NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE = range(13)

@@ -28,6 +28,7 @@ from kinform.simulation.kernel.layout import (
     NOISE,
     NOW,
     RANK,
+    ROUND,
     RTOL,
     SIZE,
     SLOPES,
@@ -40,7 +41,12 @@ from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
 CLOSE = 1e-4
 """Loops at an evaluation of a step are closed to this share of the tolerance."""
 
-__all__ = ["interpolate", "prepare", "slope", "stage", "try_step"]
+EPSILON = 2.0**-51
+"""A rounding or two of a number, as a share of it."""
+ROUGH = 4.0
+"""Times what one disturbance does to the slopes: others do more."""
+
+__all__ = ["interpolate", "prepare", "roundings", "slope", "stage", "try_step"]
 
 
 def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: float, y: Row, dy: Row) -> float:
@@ -56,6 +62,24 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: floa
         project(ints, nums, work, t, y, max(clock[CLOSED], CLOSE * clock[RTOL] * share * share), margin > 0.0)
         margin = derivative(ints, nums, work, t, y, dy)
     return margin
+
+
+def roundings(ints: Ints, nums: Nums, work: Work, tally: Counts, y: Row, t: float) -> None:
+    """Writes to [ROUND] how far the slopes at y are known: what changes by a rounding of each number do to them.
+
+    Bodies of small inertia in mechanisms of much greater lose so many digits that tolerances cannot be kept.
+    """
+    slopes, size = work[STAGES], ints[COUNTS][0, SIZE]
+    tally[SLOPES] += 2
+    for i in range(size):
+        slopes[TRIED, i] = y[i]
+    derivative(ints, nums, work, t, slopes[TRIED], slopes[ROUND])
+    for i in range(size):
+        slopes[TRIED, i] = y[i] * (1.0 + (EPSILON if i % 3 != 1 else -EPSILON))
+    if derivative(ints, nums, work, t, slopes[TRIED], slopes[NEW]) < 0.0:
+        return
+    for i in range(size):
+        slopes[ROUND, i] = abs(slopes[NEW, i] - slopes[ROUND, i])
 
 
 def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float, s: int) -> float:
@@ -87,7 +111,8 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
             three += table[E3_ROW, j] * slopes[j, i]
             five += table[E5_ROW, j] * slopes[j, i]
         slopes[NEW, i] = y[i] + h * total
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i]))
+        # What rounding does to a slope no step can do better than.
+        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i])) + h * ROUGH * slopes[ROUND, i]
         three, five = three / allowed, five / allowed
         third += three * three
         fifth += five * five
