@@ -22,5 +22,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 10
+CODE_VERSION = 11
 """Bumped when the results of this stage change for the same input."""

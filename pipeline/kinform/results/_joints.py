@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -26,7 +27,7 @@ from kinform.results._table import (
 )
 from kinform.results.inputs import only_bodies
 
-__all__ = ["read", "write"]
+__all__ = ["read", "read_bodies", "read_decisions", "write", "write_decisions"]
 
 _BODIES = (text("name"), texts("parts"), flag("ground"), texts("merged"))
 _JOINTS = (
@@ -53,6 +54,7 @@ _COUPLINGS = (
     pair("joints", text, ("joint_a", "joint_b")), real("ratio", "rad or m over rad or m"), text("kind"),
     text("through"), text("status"), real("uncertainty", "rad or m over rad or m"),
 )  # fmt: skip
+_DECISIONS = (text("key"), text("decision"), text("seal"))
 _MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
 
 
@@ -80,6 +82,21 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     rows = [dict(zip(fields, row, strict=True)) for row in kinematics.misaligned]
     write_rows(group, "misaligned", _MISALIGNED, rows)
     write_records(group, "couplings", _COUPLINGS, kinematics.couplings)
+
+
+def write_decisions(group: h5py.Group, decisions: Mapping[str, tuple[str, str]], settled: str) -> None:
+    """Write what decides single pairs, and the hash of what the whole follows from."""
+    rows = [{"key": key, "decision": text, "seal": seal} for key, (text, seal) in sorted(decisions.items())]
+    write_rows(group, "decisions", _DECISIONS, rows)
+    group.attrs["settled"] = settled
+
+
+def read_decisions(group: h5py.Group) -> tuple[dict[str, tuple[str, str]], str]:
+    """What `write_decisions` wrote."""
+    if "decisions" not in group:
+        return {}, ""
+    rows = read_rows(group, "decisions", _DECISIONS)
+    return {row["key"]: (row["decision"], row["seal"]) for row in rows}, str(group.attrs["settled"])
 
 
 def _separations(group: h5py.Group) -> dict[str, Any]:
