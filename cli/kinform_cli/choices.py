@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 
-__all__ = ["FindingsFormat", "Severity", "TableFormat"]
+__all__ = ["FindingsFormat", "Severity", "TableFormat", "cores"]
+
+
+def cores(jobs: int | None) -> int:
+    """How many processes `--jobs` stands for."""
+    return jobs or os.cpu_count() or 1
 
 
 class Severity(StrEnum):

@@ -6,6 +6,7 @@ installation must not end with 1, which would read as findings.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import traceback
@@ -26,9 +27,9 @@ def main(arguments: Sequence[str]) -> int:
     console.settings.quiet = False
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
-        from kinform_cli.unchanged import try_unchanged
+        from kinform_cli.plain import try_plain
 
-        done = try_unchanged(arguments)
+        done = try_plain(arguments)
         if done is not None:
             console.flush()
             return done
@@ -52,6 +53,8 @@ def entry() -> NoReturn:
     try:
         from kinform_cli import console
 
+        # nearly all that is made stays until the end: looking for garbage often finds none
+        gc.set_threshold(100_000, 20, 20)
         console.tolerate_any_character()
         code = main(sys.argv[1:])
         console.give_up()

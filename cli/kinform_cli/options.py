@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +9,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
-from kinform_cli.choices import FindingsFormat, Severity, TableFormat
+from kinform_cli.choices import FindingsFormat, Severity, TableFormat, cores
 
 __all__ = [
     "AllowOutside",
@@ -100,11 +99,6 @@ Ranges = Annotated[
         help="Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
     ),
 ]
-
-
-def cores(jobs: int | None) -> int:
-    """How many processes `--jobs` stands for."""
-    return jobs or os.cpu_count() or 1
 
 
 Results = Annotated[Path, typer.Argument(metavar="F.h5", show_default=False, help="Results file to read.")]

@@ -19,6 +19,7 @@ from kinform.model.fingerprints import Fingerprints
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
+    from kinform.deciding import Known
     from kinform.model.assembly import Assembly
     from kinform.model.kinematics import Kinematics
     from kinform.model.mass import MassProperties
@@ -103,15 +104,26 @@ def contacts(
 def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
     """Bodies, joints, constraint matrix and mobility. Raises StageError without contacts."""
     found = _needed(design.contacts, "kinform joints", "contacts")
+    known: list[Known] = []
 
     def derive(view: Assembly) -> Any:
         from kinform import kinematics
+        from kinform.deciding import Known
 
         if all(part.mesh is None for part in view.parts):
             return kinematics.functional(view)
-        return kinematics.derive(view, design.surfaces, found)
+        known.append(Known(ledger))
+        return kinematics.derive(view, design.surfaces, found, known[-1])
 
-    return _advance("joints", design, derive, ledger)
+    done = _advance("joints", design, derive, ledger)
+    before = None if ledger is None or ledger.previous is None else ledger.previous.fingerprints
+    if known:
+        marks = replace(done.fingerprints, decisions=known[-1].decisions, settled=known[-1].settled)
+    elif before is not None and before.stages.get("joints") == done.fingerprints.stages["joints"]:
+        marks = replace(done.fingerprints, decisions=before.decisions, settled=before.settled)
+    else:
+        return done
+    return replace(done, fingerprints=marks)
 
 
 def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
@@ -220,6 +232,8 @@ def _without(design: Design, stage: str) -> Design:
     if stage == "contacts":
         stages.pop("surfaces", None)
         marks, design = replace(marks, meshes={}, pairs={}), replace(design, surfaces={})
+    if "joints" in later:
+        marks = replace(marks, decisions={}, settled="")
     if "simulation" in later:
         design = replace(design, behaviour=None)
     lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}

@@ -14,7 +14,7 @@ from kinform.contacts.pair import PairContacts, pair_contacts
 from kinform.contacts.solids import SolidStore
 from kinform.fastening import suggest
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts
+from kinform.model.contacts import Contacts, Patch
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["find"]
@@ -91,7 +91,7 @@ def find(
         if progress is not None:
             progress(count, len(wanted))
     if reuse is not None:
-        done |= {pair: _taken(reuse, pair) for pair in known}
+        done |= _taken(reuse, known)
     found = Contacts(
         patches=tuple(patch for pair in tolerance for patch in done[pair].patches),
         interferences=tuple(found for pair in tolerance if (found := done[pair].interference) is not None),
@@ -101,8 +101,11 @@ def find(
     return replace(found, suggestions=suggest(assembly, surfaces, found))
 
 
-def _taken(reuse: Contacts, pair: Pair) -> PairContacts:
-    """What earlier contacts say of one pair."""
-    overlaps = [found for found in reuse.interferences if found.parts == pair]
-    patches = tuple(patch for patch in reuse.patches if patch.parts == pair)
-    return PairContacts(patches, overlaps[0] if overlaps else None)
+def _taken(reuse: Contacts, pairs: set[Pair]) -> dict[Pair, PairContacts]:
+    """What earlier contacts say of these pairs."""
+    overlaps = {found.parts: found for found in reuse.interferences}
+    patches: dict[Pair, list[Patch]] = {pair: [] for pair in pairs}
+    for patch in reuse.patches:
+        if patch.parts in patches:
+            patches[patch.parts].append(patch)
+    return {pair: PairContacts(tuple(own), overlaps.get(pair)) for pair, own in patches.items()}

@@ -6,6 +6,7 @@ The centre comes from the axis of that surface; the mesh only tells that the cir
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +32,8 @@ def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array,
     out = []
     R_WP, p_WP = part.X_WP[:3, :3], part.X_WP[:3, 3]
     flat = surfaces.surfaces[plane]
-    for index, edges in _border(part.mesh, surfaces, plane):
-        other = surfaces.surfaces[index]
-        if other.kind not in ROUND or abs(float(other.axis @ flat.axis)) < UPRIGHT:
-            continue
+    upright = [s for s in surfaces.surfaces if s.kind in ROUND and abs(float(s.axis @ flat.axis)) >= UPRIGHT]
+    for other, edges in _borders(part.mesh, flat, upright):
         radius = _circle(part.mesh.vertices[edges], other)
         if radius is not None:
             height = float((flat.point - other.point) @ flat.axis) / float(other.axis @ flat.axis)
@@ -42,17 +41,33 @@ def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array,
     return out
 
 
-def _border(mesh: Mesh, surfaces: MeshSurfaces, plane: int) -> list[tuple[int, NDArray[np.int64]]]:
-    """(index of the surface beyond, (n, 2) vertices of the edges that it shares with the plane), by index."""
+def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tuple[Surface, NDArray[np.int64]]]:
+    """Those of the other surfaces that share edges with the plane, with the (n, 2) vertices of these edges."""
+    if not others:
+        return []
     on_plane = np.zeros(len(mesh.vertices), dtype=np.bool_)
-    on_plane[mesh.faces[surfaces.labels == plane]] = True
-    near = np.flatnonzero(on_plane[mesh.faces].sum(axis=1) >= 2)
-    ends = np.sort(mesh.faces[near][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    keys = ends[:, 0] * len(mesh.vertices) + ends[:, 1]
-    owner = np.repeat(surfaces.labels[near], 3)
-    inside = owner == plane
-    beyond = ~inside & np.isin(keys, keys[inside])
-    return [(int(k), ends[beyond & (owner == k)]) for k in np.unique(owner[beyond])]
+    on_plane[mesh.faces[plane.faces]] = True
+    inside = np.sort(_keys(_edges(mesh.faces[plane.faces]), mesh))
+    out = []
+    for other in others:
+        corners = mesh.faces[other.faces]
+        ends = _edges(corners[on_plane[corners].sum(axis=1) >= 2])
+        keys = _keys(ends, mesh)
+        place = np.minimum(np.searchsorted(inside, keys), len(inside) - 1)
+        shared = inside[place] == keys
+        if shared.any():
+            out.append((other, ends[shared]))
+    return out
+
+
+def _edges(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(3 n, 2) vertices of the edges of facets (n, 3), each edge with the lower first."""
+    return np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+
+
+def _keys(edges: NDArray[np.int64], mesh: Mesh) -> NDArray[np.int64]:
+    """One number an edge."""
+    return edges[:, 0] * len(mesh.vertices) + edges[:, 1]
 
 
 def _circle(edges: Array, surface: Surface) -> float | None:

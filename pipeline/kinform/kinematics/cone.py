@@ -49,12 +49,16 @@ class Opening:
 
 def unit_rows(rows: Array) -> Array:
     """The rows (n, 6) scaled to length 1, without those that say nothing and those that say the same twice."""
-    size = np.linalg.norm(rows, axis=1)
-    rows = rows[size > 1e-3] / size[size > 1e-3, None]
-    if not len(rows):
+    size = np.sqrt(np.add.reduce(rows * rows, axis=1))
+    long = size > 1e-3
+    rows = rows[long] / size[long, None]
+    if len(rows) < 2:
         return rows
-    _, first = np.unique(np.round(rows / EQUAL), axis=0, return_index=True)
-    kept: Array = rows[np.sort(first)]
+    keys, width = np.round(rows / EQUAL).astype(np.int64).tobytes(), 8 * rows.shape[1]
+    first: dict[bytes, int] = {}
+    for k in range(len(rows)):
+        first.setdefault(keys[k * width : (k + 1) * width], k)
+    kept: Array = rows[list(first.values())]
     return kept
 
 

@@ -12,20 +12,28 @@ from numpy.typing import NDArray
 from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
 from kinform.kinematics.couplings import couplings
-from kinform.kinematics.decide import Decision, decide
 from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.finite import finite_mobility
 from kinform.kinematics.higher import agree
 from kinform.kinematics.idle import idle_freedoms
-from kinform.kinematics.joints import joint_from_decision, misalignment, stated_joint
+from kinform.kinematics.joints import stated_joint
 from kinform.kinematics.mobility import Closure, body_twists, close
 from kinform.kinematics.motions import named_freedoms
+from kinform.kinematics.parts import (
+    Answer,
+    Answers,
+    Decided,
+    Question,
+    answered,
+    bare_patches,
+    named,
+    touching_shapes,
+)
 from kinform.kinematics.proportions import proportioned
 from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
-from kinform.kinematics.screws import twist_at_origin
 from kinform.kinematics.separations import links_between, separations
 from kinform.kinematics.sites import redundancy_within
 from kinform.kinematics.snapping import snap, uncertainties
@@ -36,6 +44,7 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint, Kinematics, Misfit, Mobility
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
+from kinform.model.tolerances import Tolerances
 
 __all__ = ["derive", "evidence_between", "functional", "mobility_within"]
 
@@ -46,16 +55,21 @@ MOST_NUMBERS = 1_000_000
 """Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
 
 
-def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts) -> Kinematics:
+def derive(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts, answers: Answers | None = None
+) -> Kinematics:
     """Bodies, joints, J and mobility of an assembly whose contacts are known.
 
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
-    bodies are classified again until nothing fuses. Stick bodies take their joints from [function].
+    bodies are classified again until nothing fuses. Stick bodies take their joints from [function]. What is asked of
+    single pairs, and of all together, may be known to `answers`.
     """
     merger, extents = Merger(assembly), Extents(assembly)
-    decided = _decide_all(assembly, contacts, merger, extents)
+    patches = bare_patches(contacts.patches)
+    pairs = _Pairs(assembly, contacts, patches, extents, answers)
+    decided = _decide_all(pairs, merger)
     if fasten(assembly, contacts, merger):
-        decided = _decide_all(assembly, contacts, merger, extents)
+        decided = _decide_all(pairs, merger)
     bodies = merger.bodies()
     of_part = {part: body.name for body in bodies for part in body.parts}
     stated = _stated(assembly, of_part)
@@ -66,21 +80,30 @@ def derive(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: C
         if pair in stated:
             joints.append(stated[pair])
             continue
-        evidence, decision = decided[pair]
-        joint = joint_from_decision(pair, evidence, decision)
+        answer, indices = decided[pair]
+        joint = named(answer, pair, indices)
         joints.append(joint)
-        if decision.status == "blocked":
-            strict[joint.name] = twist_at_origin(decision.strict, evidence.frame).T
-        angle, offset = misalignment(evidence, decision)
-        if angle > 0.0 or offset > 0.0:
-            misaligned.append((joint.name, angle, offset))
+        if answer.strict is not None:
+            strict[joint.name] = answer.strict
+        if answer.angle > 0.0 or answer.offset > 0.0:
+            misaligned.append((joint.name, answer.angle, answer.offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
-    snapped, misfit = snap(joints, contacts.patches, extents.assembly)
-    snapped, misfit = proportioned(bodies, snapped, uncertainties(snapped, contacts.patches), extents.assembly, misfit)
-    closed = agree(bodies, snapped, contacts.patches, extents.assembly, assembly.tolerances.alignment)
-    return _finish(
-        assembly, bodies, closed, contacts.patches, misfit, strict, tuple(misaligned), extents.assembly,
+    all_of_it = Decided(
+        touching_shapes(assembly, patches), bodies, tuple(joints), patches, strict, tuple(misaligned), extents.assembly,
         _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches),
+    )  # fmt: skip
+    return _whole(all_of_it) if answers is None else answers.whole(all_of_it, _whole)
+
+
+def _whole(decided: Decided) -> Kinematics:
+    """What follows from the joints of all pairs, their axes made to agree."""
+    assembly, bodies, patches, size = decided.assembly, decided.bodies, decided.patches, decided.size
+    snapped, misfit = snap(decided.joints, patches, size)
+    snapped, misfit = proportioned(bodies, snapped, uncertainties(snapped, patches), size, misfit)
+    closed = agree(bodies, snapped, patches, size, assembly.tolerances.alignment)
+    return _finish(
+        assembly, bodies, closed, patches, misfit, decided.strict, decided.misaligned, size, decided.clusters,
+        decided.balls,
     )  # fmt: skip
 
 
@@ -144,39 +167,58 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     return count if finite is None else finite
 
 
-def _decide_all(
-    assembly: Assembly, contacts: Contacts, merger: Merger, extents: Extents
-) -> dict[Pair, tuple[Evidence, Decision]]:
-    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
-    known: dict[tuple[int, ...], tuple[Evidence, Decision] | None] = {}
-    names = {part.name: part.name for part in assembly.parts}
-    stated = _stated_roots(assembly, merger)
+class _Pairs:
+    """Decides pairs of bodies by the patches between them."""
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        contacts: Contacts,
+        patches: Sequence[Patch],
+        extents: Extents,
+        answers: Answers | None,
+    ):
+        self.assembly, self.patches = assembly, patches
+        self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
+
+    def decided(self, members: Sequence[tuple[int, Patch, bool]], bodies: Sequence[Body]) -> Answer | None:
+        """The joint between two bodies, of patches (index, patch, turned)."""
+        tolerances = self.assembly.tolerances
+        contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
+        question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
+        return answered(question) if self._answers is None else self._answers.pair(question, answered)
+
+
+def _decide_all(pairs: _Pairs, merger: Merger) -> dict[Pair, tuple[Answer, list[int]]]:
+    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses. Answers, and the indices of
+    the patches of each."""
+    known: dict[tuple[int, ...], Answer | None] = {}
+    stated = _stated_roots(pairs.assembly, merger)
     while True:
         bodies = merger.bodies()
         of_name = {body.name: body for body in bodies}
         of_part = {part: body.name for body in bodies for part in body.parts}
         touching: dict[Pair, list[tuple[int, Patch, bool]]] = defaultdict(list)
-        for index, patch in enumerate(contacts.patches):
+        for index, patch in enumerate(pairs.patches):
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b:
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        out: dict[Pair, tuple[Evidence, Decision]] = {}
+        out: dict[Pair, tuple[Answer, list[int]]] = {}
         fused = False
         for pair in sorted(touching):
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
-                evidence = evidence_between(members, [of_name[n] for n in pair], assembly, contacts, extents)
-                known[key] = None if evidence is None else (evidence, decide(evidence, assembly.tolerances))
+                known[key] = pairs.decided(members, [of_name[n] for n in pair])
             found = known[key]
             if found is None:
                 continue
-            out[pair] = found
+            out[pair] = found, [index for index, _, _ in members]
             parts = members[0][1].parts
             if frozenset(merger.root(p) for p in parts) in stated:
                 continue
-            if found[1].form.type == "fixed" and found[1].status == "determined":
-                merger.fuse(names[parts[0]], names[parts[1]], f"contact {parts[0]}~{parts[1]} leaves no freedom")
+            if found.joint.type == "fixed" and found.joint.status == "determined":
+                merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:
             return out
@@ -197,9 +239,20 @@ def evidence_between(
     extents: Extents,
 ) -> Evidence | None:
     """Evidence of patches (index, patch, turned) between two bodies; None where none has an area."""
-    contact = max(contacts.tolerance.get(p.parts, assembly.tolerances.contact_cap) for _, p, _ in members)
-    size = min(extents.diagonal(body.parts) for body in bodies)
+    contact, size = _scales(members, bodies, assembly.tolerances, contacts.tolerance, extents)
     return gather(members, assembly.tolerances, contact, size)
+
+
+def _scales(
+    members: Sequence[tuple[int, Patch, bool]],
+    bodies: Sequence[Body],
+    tolerances: Tolerances,
+    known: Mapping[tuple[PartName, PartName], float],
+    extents: Extents,
+) -> tuple[float, float]:
+    """The contact tolerance of a pair of bodies, and the diagonal of the smaller one (m)."""
+    contact = max(known.get(p.parts, tolerances.contact_cap) for _, p, _ in members)
+    return contact, min(extents.diagonal(body.parts) for body in bodies)
 
 
 def _stated_roots(assembly: Assembly, merger: Merger) -> set[frozenset[int]]:

@@ -26,7 +26,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-_NEXT, _AFTER = [1, 2, 0], [2, 0, 1]
+_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ def cross(a: Array, b: Array) -> Array:
         x, y, z = a.tolist()
         u, v, w = b.tolist()
         return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
-    out: Array = a[..., _NEXT] * b[..., _AFTER] - a[..., _AFTER] * b[..., _NEXT]
+    out: Array = a.take(_NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(_NEXT, -1)
     return out
 
 

@@ -30,3 +30,7 @@ class Fingerprints:
     inputs: dict[str, dict[str, str]] = field(default_factory=dict)
     """By stage, of joints, mass, simulation and findings: hash of each input, by its name in words. What `stages` was
     made of, to say what changed."""
+    decisions: dict[str, tuple[str, str]] = field(default_factory=dict)
+    """What contact decides of single pairs of bodies, packed, and a seal on it, by the hash of all that decides it."""
+    settled: str = ""
+    """Hash of what the kinematics as a whole follow from; empty: not known."""

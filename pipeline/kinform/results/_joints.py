@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import h5py
@@ -27,7 +28,7 @@ from kinform.results._table import (
 )
 from kinform.results.inputs import only_bodies
 
-__all__ = ["read", "write"]
+__all__ = ["read", "read_bodies", "read_decisions", "write", "write_decisions"]
 
 _BODIES = (text("name"), texts("parts"), flag("ground"), texts("merged"))
 _JOINTS = (
@@ -59,6 +60,7 @@ _MESHINGS = (
     pair("pitches", real, ("pitch_a", "pitch_b"), "rad or m"), real("deviation", "rad or m"), real("play", "rad or m"),
     pair("reach", real, ("reach_lower", "reach_upper"), "rad or m"), vector("place", "m"), vector("flank", "1"), vector("back", "1"),
 )  # fmt: skip
+_DECISIONS = (text("key"), text("decision"), text("seal"))
 _MISALIGNED = (text("joint"), real("angle", "rad"), real("offset", "m"))
 
 
@@ -89,6 +91,21 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     teeth = [(k, coupling.meshing) for k, coupling in enumerate(kinematics.couplings) if coupling.meshing is not None]
     rows = [vars(mesh) | {"coupling": k, "flank": mesh.normals[0], "back": mesh.normals[1]} for k, mesh in teeth]
     write_rows(group, "meshings", _MESHINGS, rows)
+
+
+def write_decisions(group: h5py.Group, decisions: Mapping[str, tuple[str, str]], settled: str) -> None:
+    """Write what decides single pairs, and the hash of what the whole follows from."""
+    rows = [{"key": key, "decision": text, "seal": seal} for key, (text, seal) in sorted(decisions.items())]
+    write_rows(group, "decisions", _DECISIONS, rows)
+    group.attrs["settled"] = settled
+
+
+def read_decisions(group: h5py.Group) -> tuple[dict[str, tuple[str, str]], str]:
+    """What `write_decisions` wrote."""
+    if "decisions" not in group:
+        return {}, ""
+    rows = read_rows(group, "decisions", _DECISIONS)
+    return {row["key"]: (row["decision"], row["seal"]) for row in rows}, str(group.attrs["settled"])
 
 
 def _separations(group: h5py.Group) -> dict[str, Any]:

@@ -35,22 +35,35 @@ def following(stage: str, previous: str, level: str | None = None) -> str:
     return digest(stage, versions, level, previous) if previous else ""
 
 
+def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
+    """Whether every file has the content that it had. What was written last is looked at first: it is what changed, if
+    anything did."""
+    root = os.path.realpath(top)
+    folders: dict[str, str] = {}
+    try:
+        times = {name: os.stat(os.path.join(top, name)).st_mtime_ns for name in files}
+        for name in sorted(files, key=lambda name: -times[name]):
+            path = os.path.join(top, name)
+            if not allow_outside:
+                folder, base = os.path.split(path)
+                if folder not in folders:
+                    folders[folder] = os.path.realpath(folder)
+                whole = os.path.realpath(path) if os.path.islink(path) else os.path.join(folders[folder], base)
+                if os.path.commonpath([whole, root]) != root:
+                    return False
+            with open(path, "rb") as stream:
+                if hashlib.file_digest(stream, "sha256").hexdigest() != files[name]:
+                    return False
+    except OSError:
+        return False
+    return True
+
+
 def current(manifest: Path, files: Mapping[str, str], *, allow_outside: bool) -> str:
     """The lineage that the findings of a run would have now, if it read the same files as before; "" otherwise."""
-    top = manifest.parent
-    if manifest.name not in files:
+    if manifest.name not in files or not _same(manifest.parent, files, allow_outside=allow_outside):
         return ""
-    root = os.path.realpath(top)
-    now = {}
-    for name in files:
-        path = top / name
-        if not allow_outside and not Path(os.path.realpath(path)).is_relative_to(root):
-            return ""
-        try:
-            now[name] = hashlib.sha256(path.read_bytes()).hexdigest()
-        except OSError:
-            return ""
-    found = of_files(manifest.name, now)
+    found = of_files(manifest.name, files)
     for stage in STAGES[1:]:
         found = following(stage, found)
     return found

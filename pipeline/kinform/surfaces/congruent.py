@@ -7,6 +7,7 @@ order in which facets first name them correspond, and a rigid fit (Kabsch 1976) 
 from __future__ import annotations
 
 import hashlib
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -49,8 +50,30 @@ def congruent(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
     copies: dict[str, Copy] = {}
     for group in by_size.values():
         if len(group) > 1 and len(meshes[group[0]].faces):
-            copies |= _copies(meshes, group)
+            for alike in _alike(meshes, group):
+                copies |= _copies(meshes, alike)
     return copies
+
+
+def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
+    """Those of a group that could be copies by the scatter of their vertices alone, in sets of at least two: what
+    `_fitted` asks first, which settles most."""
+    sizes = {}
+    for digest in group:
+        mesh = meshes[digest]
+        named = np.zeros(len(mesh.vertices), dtype=np.bool_)
+        named[mesh.faces] = True
+        points = mesh.vertices[named]
+        far = float(np.abs(points).max())
+        sizes[digest] = (float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum() / len(points))), far)
+    ordered = sorted(group, key=lambda digest: (sizes[digest][0], digest))
+    allowed = 4 * EPS32 * max(far for _, far in sizes.values())  # with room for the rounding of sums
+    sets: list[list[str]] = [[ordered[0]]]
+    for before, digest in itertools.pairwise(ordered):
+        if sizes[digest][0] - sizes[before][0] > allowed:
+            sets.append([])
+        sets[-1].append(digest)
+    return [sorted(one) for one in sets if len(one) > 1]
 
 
 def _copies(meshes: Mapping[str, Mesh], group: list[str]) -> dict[str, Copy]:
@@ -72,11 +95,13 @@ def _copies(meshes: Mapping[str, Mesh], group: list[str]) -> dict[str, Copy]:
 
 def _first_named(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
     """Vertices in the order in which facets first name them, and a digest of the facets under those numbers."""
-    named, first, inverse = np.unique(mesh.faces.ravel(), return_index=True, return_inverse=True)
-    order = np.argsort(first, kind="stable")
-    number = np.empty(len(order), np.int64)
+    corners = mesh.faces.ravel()
+    first = np.full(len(mesh.vertices), len(corners), np.int64)
+    first[corners[::-1]] = np.arange(len(corners) - 1, -1, -1)
+    order = np.argsort(first, kind="stable")[: np.count_nonzero(first < len(corners))]
+    number = np.empty(len(mesh.vertices), np.int64)
     number[order] = np.arange(len(order))
-    return named[order], hashlib.sha256(np.ascontiguousarray(number[inverse]).tobytes()).hexdigest()
+    return order, hashlib.sha256(number[corners].tobytes()).hexdigest()
 
 
 def _fitted(other: str, reference: Array, points: Array) -> Copy | None:

@@ -1,7 +1,8 @@
-"""`kinform run M.toml -o F.h5` where nothing changed, without the machinery of the command line.
+"""`kinform run M.toml -o F.h5` without the machinery of the command line.
 
-Importing what reads options and builds help takes longer than to see that nothing changed. So the plainest form of the
-command is understood here; whatever else is asked for, or has changed, is left to the command itself.
+Importing what reads options and builds help takes a good part of a run that reuses nearly everything, and longer than to
+see that nothing changed. So the plainest form of the command is understood here; whatever else is asked for is left to
+the command itself.
 """
 
 from __future__ import annotations
@@ -12,28 +13,30 @@ from pathlib import Path
 from kinform_cli import console
 from kinform_cli.choices import FindingsFormat, Severity
 
-__all__ = ["try_unchanged"]
+__all__ = ["try_plain"]
 
 _NAMES = {"-o": "--output", "-f": "--format", "-q": "--quiet"}
 _WITH_VALUE = ("--output", "--format", "--fail-on")
 
 
-def try_unchanged(arguments: Sequence[str]) -> int | None:
-    """The exit code of the gate when these arguments ask for a run whose results are there already; else None."""
+def try_plain(arguments: Sequence[str]) -> int | None:
+    """The exit code of the run that these arguments ask for where they are of the plainest form; else None."""
     found = _understood(arguments)
     if found is None:
         return None
     manifest, given = found
+    console.settings.quiet = "--quiet" in given
+    format, fail_on = FindingsFormat(given.get("--format", "full")), Severity(given.get("--fail-on", "error"))
     from kinform.api import Outcome
 
     outcome = Outcome.unchanged(manifest, Path(given["--output"]))
-    if outcome is None:
-        return None
-    from kinform_cli.gate import show_run
+    if outcome is not None:
+        from kinform_cli.gate import show_run
 
-    console.settings.quiet = "--quiet" in given
-    format, fail_on = FindingsFormat(given.get("--format", "full")), Severity(given.get("--fail-on", "error"))
-    return show_run(outcome, format, fail_on, manifest.parent)
+        return show_run(outcome, format, fail_on, manifest.parent)
+    from kinform_cli.running import execute
+
+    return execute([manifest], Path(given["--output"]), manifest=True, format=format, fail_on=fail_on)
 
 
 def _understood(arguments: Sequence[str]) -> tuple[Path, dict[str, str]] | None:
