@@ -75,7 +75,7 @@ def show(
     if format is FindingsFormat.full:
         from kinform_cli.views import findings
 
-        console.out(findings.render(design))
+        console.out(findings.render(design, fail_on.value))
     else:
         console.emit(reports.render(report, design, format.value, fail_on=fail_on.value, run=run))
     code = verdict(report, fail_on.value)

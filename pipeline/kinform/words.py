@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 __all__ = [
     "angle",
@@ -17,6 +17,7 @@ __all__ = [
     "place",
     "quoted",
     "rate",
+    "telling",
     "volume",
 ]
 
@@ -66,9 +67,9 @@ def volume(value: float, units: str) -> str:
     return f"{number(value / IN_METRES[unit] ** 3)} {unit}³"
 
 
-def mass(value: float) -> str:
+def mass(value: float, digits: int = 4) -> str:
     """A mass (kg): "12.5 g"."""
-    return f"{number(1e3 * value)} g" if abs(value) < 1.0 else f"{number(value)} kg"
+    return f"{number(1e3 * value, digits)} g" if abs(value) < 1.0 else f"{number(value, digits)} kg"
 
 
 def angle(value: float, digits: int = 3) -> str:
@@ -86,6 +87,14 @@ def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
 def direction(vector: Iterable[float]) -> str:
     """A direction as "(0, 0.942, 0.335)"."""
     return f"({', '.join(number(round(float(v), 6), 6) for v in vector)})"
+
+
+def telling(shown: Callable[[float, int], str], *values: float) -> Callable[[float], str]:
+    """`shown` with as many significant digits, four at least, as tell the values apart: nothing is said to be "5 mm,
+    required is at most 5 mm"."""
+    different = len(set(values))
+    digits = next((n for n in range(4, 13) if len({shown(value, n) for value in values}) >= different), 12)
+    return lambda value: shown(value, digits)
 
 
 def quoted(names: Iterable[str], limit: int = 4) -> str:

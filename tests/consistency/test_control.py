@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from kinform.errors import InputError
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.contacts import Interference
 from kinform.model.function import Requirement
+from kinform.reports import FORMATS, render
 
 HINGE = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 
@@ -226,3 +228,31 @@ def test_an_ignore_needs_a_code_and_a_reason(tmp_path, line):
                                      f"[[check.ignore]]\n{line}\n")  # fmt: skip
     with pytest.raises(InputError):
         form.load(tmp_path / "m.toml")
+
+
+@pytest.mark.parametrize(
+    ("select", "exit_code"),
+    [(("KF4",), 2), (("KF425", "KF1"), 2), (("torque-exceeded", "KF1"), 2), (("KF428", "KF1"), 0), (("KF1",), 0)],
+)
+def test_what_a_selected_rule_could_not_decide_is_told_though_its_doubts_are_not_selected(hinge, select, exit_code):
+    report = check(controlled(doubtful(hinge), select=select))
+    assert ("KF902" in found(report)) == (exit_code == 2)
+    assert verdict(report) == exit_code
+
+
+def test_what_the_manifest_ignores_is_not_gone_from_the_baseline(hinge):
+    adopted = adopt(check(wrong(hinge)))
+    _, gone = with_baseline(check(controlled(wrong(hinge), ignore=(ignore("KF201"),))), adopted)
+    assert gone == ()
+    _, gone = with_baseline(check(hinge), adopted)
+    assert [code for code, _ in gone] == ["KF201"]
+
+
+@pytest.mark.parametrize("format", sorted(set(FORMATS) - {"junit"}))
+@pytest.mark.parametrize("fail_on", ["note", "warning", "error"])
+def test_the_verdict_in_words_is_that_of_the_exit_code(hinge, format, fail_on):
+    warned = controlled(wrong(hinge), severity=(("KF201", "warning"),), select=("KF201",))
+    warned = replace(warned, report=check(warned))
+    text = render(warned.report, warned, format, fail_on=fail_on)
+    told = re.search(r"(?<![-\w])inconsistent", text) is not None
+    assert told == (verdict(warned.report, fail_on) == 1) == (fail_on != "error")

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from devices import body, intended, joint, sine
 from known import FIXTURES
-from test_control import ignore
-from test_requirements import (
+from requiring import (
     CODES,
     ORIGIN,
     THIN,
     WALL,
-    WithReactions,
     X,
     Y,
     Z,
@@ -26,6 +24,7 @@ from test_requirements import (
     requiring,
     wheel,
 )
+from test_control import ignore
 from test_rules import UNDECIDED, WRONG, changed_function, changed_joint, with_function
 
 from kinform.consistency import RULES, check
@@ -118,11 +117,9 @@ def hinted(made, infer):
 
 
 def reacting(made, force):
-    known = {k: getattr(made.simulation, k) for k in type(made.simulation).__dataclass_fields__}
-    known = {k: v for k, v in known.items() if k not in ("F_A", "undetermined")}
     wrench = np.zeros((len(made.simulation.time), 1, 6))
     wrench[3, 0, 3] = force
-    return replace(made, simulation=WithReactions(**known, F_A=wrench, undetermined=np.zeros((1, 6), dtype=bool)))
+    return of_run(made, F_A=wrench, undetermined=np.zeros((1, 6), dtype=bool))
 
 
 def fixture(folder, name):

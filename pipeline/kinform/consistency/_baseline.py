@@ -85,7 +85,7 @@ def with_baseline(report: CheckReport, baseline: Baseline) -> tuple[CheckReport,
         for rule in report.rules
     )
     every = sorted((*report.ignored, *ignored), key=lambda item: (item.finding.code, item.finding.subject, item.by))
-    gone = tuple(sorted(baseline.keys - groups.keys()))
+    gone = tuple(sorted(baseline.keys - groups.keys() - {_key(item.finding) for item in report.ignored}))
     return replace(report, findings=kept, rules=rules, ignored=tuple(every), gone=gone), gone
 
 

@@ -11,6 +11,7 @@ from kinform.consistency._rule import Outcome, Rule, decided, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as LOCKED
+from kinform.consistency.rules.kf902_requirement_not_checked import RULES_OF
 from kinform.model.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome, verdict
 
@@ -66,10 +67,21 @@ def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckRepor
     )
 
 
+SPEAK_FOR = {
+    "KF501": ("KF502", "KF503", "KF504", "KF505", "KF506", "KF507"),
+    "KF902": tuple(rule.code for rule in RULES_OF.values()),
+    "KF903": ("KF411",),
+    "KF904": ("KF412",),
+}
+"""By rule that tells what could not be decided: rules that leave this to it. They are not selected one without the other."""
+
+
 def _run(rule: Rule, context: Context) -> Applied:
     """The rule under the settings of the manifest."""
     settings = context.assembly.check
-    outcome = rule.check(context) if selected(rule, settings) else skipped("not selected by [check]")
+    partners = SPEAK_FOR.get(rule.code, ())
+    asked = selected(rule, settings) or any(selected(other, settings) for other in RULES if other.code in partners)
+    outcome = rule.check(context) if asked else skipped("not selected by [check]")
     found = tuple(located(context, finding) for finding in outcome.findings)
     return apply(rule, replace(outcome, findings=found), settings)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from kinform.consistency._requirements import Answer, met, undecided, violated
 from kinform.model.simulation import Simulation
-from kinform.words import number
+from kinform.words import number, telling
 
 __all__ = ["peak"]
 
@@ -23,15 +23,17 @@ def peak(
     values: NDArray[np.float64],
     limit: float,
     what: str,
-    shown: Callable[[float], str],
+    told: Callable[[float, int], str],
     remedy: str,
     place: Iterable[float] | None = None,
 ) -> Answer:
     """The greatest of the values (T,), which are not negative, beside the limit; unknown values are nan."""
     known = np.isfinite(values)
-    intended = f"at most {shown(limit)}"
+    intended = f"at most {telling(told)(limit)}"
     if known.any():
         k = int(np.nanargmax(np.where(known, values, -np.inf)))
+        shown = telling(told, float(values[k]), limit)
+        intended = f"at most {shown(limit)}"
         text = f"{what} peaks at {shown(float(values[k]))} at t = {number(float(simulation.time[k]))} s"
         summit = max(float(values[k]), _between(values))
         if summit > limit >= values[k] and known.all():

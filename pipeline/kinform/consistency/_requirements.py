@@ -18,7 +18,7 @@ from kinform.words import angle, counted, length, number
 
 __all__ = [
     "Answer", "Judge", "bounds", "common", "effort", "kind_of_value", "met", "requirement_rule", "resolved", "shown_value",
-    "simulated", "undecided", "violated",
+    "simulated", "stated_as", "undecided", "violated",
 ]  # fmt: skip
 
 SIMULATE = "Ask for a simulation that runs to its end: [simulation], and a [[function.drive]] that moves the joints."
@@ -126,6 +126,18 @@ def resolved(context: Context, name: str) -> tuple[Joint, Resolution] | Answer:
     return joint, found
 
 
+def stated_as(context: Context, joint: str) -> tuple[str, int]:
+    """The name that the designer gave a joint, else kinform's, and the sign of the designer's values against kinform's."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return joint, 1
+    for intended in context.function.joints:
+        found = resolve(context.assembly, kinematics, intended.name)
+        if found.joint is not None and found.joint.name == joint:
+            return intended.name, found.sign
+    return joint, 1
+
+
 def common(context: Context, between: Sequence[str]) -> list[str]:
     """Parts that are on both of two sides, sorted."""
     first, second = (context.assembly.parts_of(name) for name in between)
@@ -137,15 +149,15 @@ def kind_of_value(joint: Joint) -> str:
     return "length" if joint.type == "prismatic" else "angle"
 
 
-def shown_value(value: float, joint: Joint, units: str) -> str:
+def shown_value(value: float, joint: Joint, units: str, digits: int = 4) -> str:
     """A joint value (rad or m)."""
-    return length(value, units) if kind_of_value(joint) == "length" else angle(value, 4)
+    return length(value, units, digits) if kind_of_value(joint) == "length" else angle(value, digits)
 
 
-def effort(value: float, joint: Joint) -> str:
+def effort(value: float, joint: Joint, digits: int = 4) -> str:
     """A joint's effort; rounding is shown as nothing."""
     value = 0.0 if abs(value) < 1e-12 else value
-    return f"{number(value)} {'N' if kind_of_value(joint) == 'length' else 'N·m'}"
+    return f"{number(value, digits)} {'N' if kind_of_value(joint) == 'length' else 'N·m'}"
 
 
 def bounds(low: float | None, high: float | None, shown: Callable[[float], str]) -> str:

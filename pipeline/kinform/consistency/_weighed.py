@@ -8,7 +8,7 @@ from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, bounds, met, undecided, violated
 from kinform.consistency._rule import Outcome
 from kinform.function.amounts import Amount, amount_of
-from kinform.words import quoted
+from kinform.words import quoted, telling
 
 __all__ = ["amount", "compared", "whose"]
 
@@ -35,15 +35,16 @@ def compared(
     error: float,
     low: float | None,
     high: float | None,
-    text: str,
-    shown: Callable[[float], str],
+    what: str,
+    told: Callable[[float, int], str],
     remedy: str,
     place: Iterable[float] | None = None,
     cause: str = "by its facets",
     cure: str = "Export a finer mesh.",
 ) -> Answer:
-    """A value with a bound of its error beside the interval that is required."""
-    wanted = bounds(low, high, shown)
+    """A value with a bound of its error beside the interval that is required. `what` it is ends in "is"."""
+    shown = telling(told, value, *(bound for bound in (low, high) if bound is not None))
+    wanted, text = bounds(low, high, shown), f"{what} {shown(value)}"
     if low is None and high is None:
         return undecided("it states neither minimum nor maximum", "State one of them.")
     if (low is not None and value + error < low) or (high is not None and value - error > high):

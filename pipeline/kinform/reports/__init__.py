@@ -31,14 +31,14 @@ def render(
 ) -> str:
     """The report in that format, ending in a newline; ValueError for an unknown format.
 
-    `fail_on` is the least severity that fails the gate: what JUnit calls a failure. `run` is the
+    `fail_on` is the least severity that fails the gate, which the verdict goes by, and what JUnit calls a failure. `run` is the
     account of a run, which the JSON carries.
     """
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}")
     renderer = importlib.import_module(f"kinform.reports.{FORMATS[format]}")
-    extra = {"junit": (fail_on,), "json": (run,)}.get(format, ())
-    text: str = renderer.render(report, design, *extra)
+    more = {"run": run} if format == "json" else {}
+    text: str = renderer.render(report, design, fail_on, **more)
     return text
 
 

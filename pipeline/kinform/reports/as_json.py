@@ -16,20 +16,20 @@ __all__ = ["SCHEMA", "document", "render"]
 SCHEMA = "kinform/findings/1"
 
 
-def render(report: CheckReport, design: Design, run: Mapping[str, Any] | None = None) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error", run: Mapping[str, Any] | None = None) -> str:
     """The document as text; with the account of a `run`, where it was one."""
-    whole = document(report, design) | ({} if run is None else {"run": dict(run)})
+    whole = document(report, design, fail_on) | ({} if run is None else {"run": dict(run)})
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
-def document(report: CheckReport, design: Design) -> dict[str, Any]:
+def document(report: CheckReport, design: Design, fail_on: str = "error") -> dict[str, Any]:
     """An object with the schema, the verdict, counts, findings, those that are accepted, and rules."""
     counts = {s: sum(f.severity == s for f in report.findings) for s in reversed(SEVERITIES)}
     outcomes = ("passed", "failed", "inconclusive", "skipped", "ignored")
     return {
         "schema": SCHEMA,
         "assembly": design.assembly.name,
-        "verdict": verdict_line(report),
+        "verdict": verdict_line(report, fail_on),
         "counts": counts | {o: sum(r.outcome == o for r in report.rules) for o in outcomes},
         "findings": [dataclasses.asdict(f) for f in report.findings],
         "ignored": [

@@ -9,7 +9,7 @@ from kinform.reports.words import one_line, rule_counts, severity_counts, verdic
 __all__ = ["render"]
 
 
-def render(report: CheckReport, design: Design) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings by code, then rules that could not decide, then one line of summary."""
     lines = [
         f"{where(f) or design.assembly.source.file}: {f.severity} {f.code} "
@@ -22,5 +22,5 @@ def render(report: CheckReport, design: Design) -> str:
         for r in report.rules
         if r.outcome == "inconclusive"
     ]
-    summary = f"{verdict_line(report)}; {severity_counts(report)}; {rule_counts(report)}"
+    summary = f"{verdict_line(report, fail_on)}; {severity_counts(report)}; {rule_counts(report)}"
     return "\n".join([*lines, f"{one_line(design.assembly.name)}: {summary}"]) + "\n"

@@ -22,7 +22,7 @@ __all__ = ["render"]
 WIDTH = 80
 
 
-def render(report: CheckReport, design: Design) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the verdict."""
     order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
     blocks = [_finding(f, design.assembly.units) for f in sorted(report.findings, key=lambda f: order[f.severity])]
@@ -36,7 +36,7 @@ def render(report: CheckReport, design: Design) -> str:
         if told:
             blocks.append("\n".join([head, *(line for text in told for line in _wrapped(text, "  ", "      "))]))
     name = one_line(design.assembly.name)
-    blocks.append("\n".join([f"{name}: {verdict_line(report)}", severity_counts(report), rule_counts(report)]))
+    blocks.append("\n".join([f"{name}: {verdict_line(report, fail_on)}", severity_counts(report), rule_counts(report)]))
     return "\n\n".join(blocks) + "\n"
 
 

@@ -14,13 +14,13 @@ __all__ = ["render"]
 _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
-def render(report: CheckReport, design: Design) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Annotations of findings, then of rules that could not decide, then a line with the verdict for the log."""
     manifest = design.assembly.source.file
     lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
     lines.append(
-        f"{verdict_line(report)}; {severity_counts(report)}; {rule_counts(report)}; {one_line(design.assembly.name)}"
+        f"{verdict_line(report, fail_on)}; {severity_counts(report)}; {rule_counts(report)}; {one_line(design.assembly.name)}"
     )
     return "\n".join(lines) + "\n"
 

@@ -39,7 +39,7 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
             _case_of_finding(suite, finding, design.assembly.units, finding.severity in failing)
     if report.ran == 0:
         case = ElementTree.SubElement(suite, "testcase", classname="kinform", name="rules ran")
-        ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report))
+        ElementTree.SubElement(case, "error", type="inconclusive", message=verdict_line(report, fail_on))
     found = Counter(child.tag for case in suite for child in case)
     counts = {"tests": len(suite), "failures": found["failure"], "errors": found["error"], "skipped": found["skipped"]}
     whole = ElementTree.Element("testsuites", name="kinform")

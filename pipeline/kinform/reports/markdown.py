@@ -25,10 +25,10 @@ from kinform.reports.words import (
 __all__ = ["cell_code", "code", "escaped", "render", "table"]
 
 
-def render(report: CheckReport, design: Design) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is ignored or skipped."""
     blocks = [
-        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report))}",
+        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report, fail_on))}",
         f"{severity_counts(report)}; {rule_counts(report)}",
     ]
     found = sorted(report.findings, key=lambda finding: -SEVERITIES.index(finding.severity))

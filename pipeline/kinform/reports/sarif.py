@@ -27,7 +27,7 @@ __all__ = ["SCHEMA", "render"]
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 
 
-def render(report: CheckReport, design: Design) -> str:
+def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """The log as text: one run."""
     index = {rule.code: k for k, rule in enumerate(report.rules)}
     manifest = design.assembly.source.file
@@ -50,7 +50,7 @@ def render(report: CheckReport, design: Design) -> str:
         "results": results,
         "properties": {
             "assembly": design.assembly.name,
-            "verdict": verdict_line(report),
+            "verdict": verdict_line(report, fail_on),
             "rules": [_present({"code": r.code, "outcome": r.outcome, "reason": r.reason}) for r in report.rules],
         },
     }

@@ -83,9 +83,9 @@ def rule_counts(report: CheckReport) -> str:
     return f"{counted(report.ran, 'rule')} ran, {skipped} skipped, {report.inconclusive} inconclusive{ignored}"
 
 
-def verdict_line(report: CheckReport) -> str:
-    """The verdict in one line; silence is never a pass."""
-    if any(finding.severity == "error" for finding in report.findings):
+def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
+    """The verdict in one line, by the least severity that fails; silence is never a pass."""
+    if any(finding.severity in SEVERITIES[SEVERITIES.index(fail_on) :] for finding in report.findings):
         return "inconsistent"
     if report.ran == 0:
         return "not verified: no rule ran"

@@ -23,7 +23,7 @@ import numpy as np
 
 from kinform.consistency._context import Context
 from kinform.consistency._plausibility import extent
-from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
+from kinform.consistency._requirements import Answer, met, requirement_rule, stated_as, undecided, violated
 from kinform.consistency._rule import Outcome
 from kinform.function import resolve
 from kinform.function.configurations import Chain, chain_between
@@ -55,7 +55,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
         return chain
     body = context.body(values["part"]) or ""
     if not chain.looped and not _finite(chain):
-        return undecided(_endless(chain), "State the `range` of its [[function.joint]].")
+        return undecided(_endless(context, chain), "State the `range` of its [[function.joint]].")
     near = values.get("angle_tolerance" if pointing else "tolerance")
     if near is None:
         near = NEAR_ANGLE if pointing else NEAR * (extent(context.assembly) or 1.0)
@@ -70,7 +70,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     if len(missed):
         return _missed(context, targets, found.distance, missed, near, found.samples)
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
-    unknown = chain.undetermined(body)
+    unknown = [stated_as(context, name)[0] for name in chain.undetermined(body)]
     if unknown:
         return undecided(
             f"{text}, but only if {quoted(unknown)} may turn freely: no range is known",
@@ -114,9 +114,9 @@ def _finite(chain: Chain) -> bool:
     return all(c.turns or math.isfinite(c.upper - c.lower) for c in chain.coordinates)
 
 
-def _endless(chain: Chain) -> str:
+def _endless(context: Context, chain: Chain) -> str:
     joint = next(c.joint for c in chain.coordinates if not c.turns and not math.isfinite(c.upper - c.lower))
-    return f"joint '{joint}' slides, and its range is not known"
+    return f"joint '{stated_as(context, joint)[0]}' slides, and its range is not known"
 
 
 def _bound(context: Context, targets: Targets) -> str:

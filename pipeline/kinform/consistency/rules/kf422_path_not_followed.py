@@ -20,7 +20,7 @@ from kinform.consistency._requirements import Answer, met, requirement_rule, sim
 from kinform.function.paths import Deviation, deviation
 from kinform.model.function import Requirement
 from kinform.model.simulation import Simulation
-from kinform.words import angle, length, number
+from kinform.words import angle, length, number, telling
 
 __all__ = ["RULE", "judge"]
 
@@ -73,16 +73,17 @@ def _violation(context: Context, requirement: Requirement, found: Deviation) -> 
     """What is certainly outside of the tolerances."""
     values, units = requirement.values, context.units
     if found.distance - found.error > values["tolerance"]:
-        shown = length(found.distance, units)
+        shown = telling(lambda value, digits: length(value, units, digits), found.distance, values["tolerance"])
         return violated(
-            f"the point is {shown} from the path at t = {number(found.time)} s", found=shown,
-            intended=f"within {length(values['tolerance'], units)}", place=found.place, remedy=REMEDY,
+            f"the point is {shown(found.distance)} from the path at t = {number(found.time)} s",
+            found=shown(found.distance), intended=f"within {shown(values['tolerance'])}", place=found.place, remedy=REMEDY,
         )  # fmt: skip
     wanted = values.get("angle_tolerance")
     if wanted is not None and found.angle is not None and found.angle > wanted:
+        shown = telling(angle, found.angle, wanted)
         return violated(
-            f"the body is turned {angle(found.angle)} from the path at t = {number(found.angle_time)} s",
-            found=angle(found.angle), intended=f"within {angle(wanted)}", place=found.place, remedy=REMEDY,
+            f"the body is turned {shown(found.angle)} from the path at t = {number(found.angle_time)} s",
+            found=shown(found.angle), intended=f"within {shown(wanted)}", place=found.place, remedy=REMEDY,
         )  # fmt: skip
     return None
 

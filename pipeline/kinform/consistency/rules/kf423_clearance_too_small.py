@@ -31,6 +31,7 @@ from kinform.consistency._requirements import (
     requirement_rule,
     shown_value,
     simulated,
+    stated_as,
     undecided,
     violated,
 )
@@ -40,7 +41,7 @@ from kinform.function.sweeps import Swept, along, over
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
-from kinform.words import counted, length, number, quoted
+from kinform.words import counted, length, number, quoted, telling
 
 __all__ = ["RULE", "judge"]
 
@@ -120,27 +121,29 @@ def _one(
     chain = chain_between(context.assembly, kinematics, a.name, b.name, "stated")
     if isinstance(chain, str):
         return undecided(chain, "See KF401 and KF901.")
-    box = _ranges(chain)
+    box = _ranges(context, chain)
     if isinstance(box, Answer):
         return box
     swept = over(groups, chain, a.name, b.name, *box, required)
     return _answer(context, swept, required, quoted([*own[:2], *other[:2]]), _values(context, chain, swept))
 
 
-def _ranges(chain: Chain) -> tuple[Array, Array] | Answer:
+def _ranges(context: Context, chain: Chain) -> tuple[Array, Array] | Answer:
     """Least and greatest coordinates of a chain without loops; free turns take a full turn."""
     if chain.looped:
         return undecided(
             "loops connect the two: their joint values depend on each other", 'Check it over = "motion", by simulation.'
         )
     if chain.unknown:
-        return undecided(f"the range of {quoted(chain.unknown)} is not known", "State the `range` of the joint.")
+        names = [stated_as(context, name)[0] for name in chain.unknown]
+        return undecided(f"the range of {quoted(names)} is not known", "State the `range` of the joint.")
     low, high = chain.lower, chain.upper
     for k, coordinate in enumerate(chain.coordinates):
         if coordinate.turns:
             low[k], high[k] = max(low[k], -math.pi), min(high[k], math.pi)
         elif not math.isfinite(high[k] - low[k]):
-            return undecided(f"joint '{coordinate.joint}' slides without an end", "State a finite `range`.")
+            name, _ = stated_as(context, coordinate.joint)
+            return undecided(f"joint '{name}' slides without an end", "State a finite `range`.")
     return low, high
 
 
@@ -158,13 +161,14 @@ def _displaced(simulation: Simulation, body: Body) -> Array:
 
 def _answer(context: Context, swept: Swept, required: float, names: str, where: str) -> Answer:
     units, near = context.units, swept.worst
-    shown = length(near.distance, units)
+    told = telling(lambda value, digits: length(value, units, digits), near.distance, required)
+    shown = told(near.distance)
     parts = quoted(near.parts) if near.parts[0] else names
     if near.distance < required or near.distance <= 0.0:
         what = f"{parts} collide" if near.distance <= 0.0 else f"{parts} come within {shown}"
         return violated(
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
-            intended=f"at least {length(required, units)}" if required > 0.0 else "no collision",
+            intended=f"at least {told(required)}" if required > 0.0 else "no collision",
             place=near.place, remedy=REMEDY,
         )  # fmt: skip
     if not swept.complete:
@@ -184,10 +188,10 @@ def _time(simulation: Simulation, swept: Swept) -> str:
 def _values(context: Context, chain: Chain, swept: Swept) -> str:
     kinematics = context.design.kinematics
     joints: dict[str, Joint] = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
-    shown = [
-        f"{c.joint} = {shown_value(v, joints[c.joint], context.units)}"
-        for c, v in zip(chain.coordinates, swept.values, strict=True)
-    ]
+    shown = []
+    for coordinate, value in zip(chain.coordinates, swept.values, strict=True):
+        name, sign = stated_as(context, coordinate.joint)
+        shown.append(f"{name} = {shown_value(sign * value, joints[coordinate.joint], context.units)}")
     return f" at {', '.join(shown)}"
 
 

@@ -37,7 +37,7 @@ from kinform.function.holding import holding_effort, posed
 from kinform.model.function import Requirement, SimulationRequest
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
-from kinform.words import counted
+from kinform.words import counted, telling
 
 __all__ = ["RULE", "judge"]
 
@@ -67,11 +67,14 @@ def judge(context: Context, requirement: Requirement) -> Answer:
             return undecided(f"pose {_shown(context, kinematics, pose)}: {held}", STATE)
         if abs(held) > worst:
             worst, where = abs(held), _shown(context, kinematics, pose)
-    text = f"joint '{name}' takes {effort(worst, joint)} to hold {where}"
-    limit = f"at most {effort(values['limit'], joint)}"
+    shown = telling(lambda value, digits: effort(value, joint, digits), worst, values["limit"])
+    text = f"joint '{name}' takes {shown(worst)} to hold {where}"
+    limit = f"at most {shown(values['limit'])}"
     if worst > values["limit"]:
-        return violated(text, found=effort(worst, joint), intended=limit, place=joint.point, remedy=REMEDY)
-    return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=effort(worst, joint), intended=limit)
+        return violated(
+            f"{text}, required is {limit}", found=shown(worst), intended=limit, place=joint.point, remedy=REMEDY
+        )
+    return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=shown(worst), intended=limit)
 
 
 def _held(

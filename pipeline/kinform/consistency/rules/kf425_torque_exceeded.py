@@ -45,7 +45,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     values = np.abs(simulation.joint_effort[:, column])
     return peak(
         simulation, values, requirement.values["limit"], f"the effort of joint '{name}'",
-        lambda v: effort(v, joint), "Slow the motion, balance what moves, or take a stronger drive.", joint.point,
+        lambda v, digits: effort(v, joint, digits), "Slow the motion, balance what moves, or take a stronger drive.", joint.point,
     )  # fmt: skip
 
 

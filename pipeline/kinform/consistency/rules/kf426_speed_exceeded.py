@@ -39,7 +39,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     values = np.abs(simulation.joint_velocity[:, column])
     return peak(
         simulation, values, requirement.values["limit"], f"the speed of joint '{name}'",
-        lambda v: f"{shown_value(v, joint, context.units)}/s", "Slow the drive.", joint.point,
+        lambda v, digits: f"{shown_value(v, joint, context.units, digits)}/s", "Slow the drive.", joint.point,
     )  # fmt: skip
 
 

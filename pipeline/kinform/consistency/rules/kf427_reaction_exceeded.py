@@ -73,8 +73,8 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     return met("; ".join(one.message for one in answers))
 
 
-def _in(unit: str) -> Callable[[float], str]:
-    return lambda value: f"{number(value)} {unit}"
+def _in(unit: str) -> Callable[[float, int], str]:
+    return lambda value, digits: f"{number(value, digits)} {unit}"
 
 
 def _wrenches(simulation: Simulation, joint: str) -> NDArray[np.float64] | str:

@@ -27,7 +27,7 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     if isinstance(found, Answer):
         return found
     low, high = requirement.values.get("minimum"), requirement.values.get("maximum")
-    text = f"the mass of {whose(requirement.values.get('of'))} is {mass(found.mass)}"
+    text = f"the mass of {whose(requirement.values.get('of'))} is"
     remedy = "Change the shape, the material or the bound."
     return compared(found.mass, found.bound * found.mass, low, high, text, mass, remedy, found.centre)
 

@@ -15,7 +15,7 @@ from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, violated
 from kinform.consistency._weighed import amount, whose
 from kinform.model.function import Requirement
-from kinform.words import length, place
+from kinform.words import length, place, telling
 
 __all__ = ["RULE", "judge"]
 
@@ -28,15 +28,16 @@ def judge(context: Context, requirement: Requirement) -> Answer:
         return found
     wanted = np.array(values["point"])
     distance = float(np.linalg.norm(found.centre - wanted))
+    shown = telling(lambda value, digits: length(value, units, digits), distance, values["tolerance"])
     text = (
         f"the centre of mass of {whose(values.get('of'))} is at {place(found.centre, units)}, "
-        f"{length(distance, units)} from {place(wanted, units)}"
+        f"{shown(distance)} from {place(wanted, units)}"
     )
-    intended = f"within {length(values['tolerance'], units)} of {place(wanted, units)}"
+    intended = f"within {shown(values['tolerance'])} of {place(wanted, units)}"
     if distance <= values["tolerance"]:
         return met(text)
     return violated(
-        text, found=place(found.centre, units), intended=intended, place=found.centre,
+        f"{text}, required is within {shown(values['tolerance'])}", found=place(found.centre, units), intended=intended, place=found.centre,
         remedy="Move material, or correct the point.",
     )  # fmt: skip
 

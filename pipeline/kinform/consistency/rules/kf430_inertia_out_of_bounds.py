@@ -35,14 +35,14 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     axis, point = np.array(values["axis"]), values.get("point")
     value = found.about(axis, None if point is None else np.array(point))
     through = "the centre of mass" if point is None else "the point"
-    text = f"the moment of inertia of {whose(values.get('of'))} about {direction(axis)} through {through} is {_shown(value)}"
+    text = f"the moment of inertia of {whose(values.get('of'))} about {direction(axis)} through {through} is"
     remedy = "Move material, or change the bound."
     low, high = values.get("minimum"), values.get("maximum")
     return compared(value, SPREAD * found.bound * value, low, high, text, _shown, remedy, found.centre)
 
 
-def _shown(value: float) -> str:
-    return f"{number(value)} kg·m²"
+def _shown(value: float, digits: int) -> str:
+    return f"{number(value, digits)} kg·m²"
 
 
 RULE = requirement_rule("KF430", "inertia-out-of-bounds", "inertia", __doc__, judge)

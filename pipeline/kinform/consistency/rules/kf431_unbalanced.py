@@ -20,7 +20,7 @@ from kinform.consistency._rule import Outcome
 from kinform.consistency._weighed import amount
 from kinform.function import resolve
 from kinform.model.function import Requirement
-from kinform.words import length, mass, number, quoted
+from kinform.words import length, mass, number, quoted, telling
 
 __all__ = ["RULE", "judge"]
 
@@ -36,15 +36,16 @@ def judge(context: Context, requirement: Requirement) -> Answer:
         return line
     distance = found.distance(*line)
     imbalance = found.mass * distance
-    limit = f"at most {number(values['limit'])} kg·m"
+    shown = telling(lambda value, digits: f"{number(value, digits)} kg·m", imbalance, values["limit"])
+    limit = f"at most {shown(values['limit'])}"
     text = (
-        f"the imbalance of {quoted([values['of']])} is {number(imbalance)} kg·m: {mass(found.mass)}, "
+        f"the imbalance of {quoted([values['of']])} is {shown(imbalance)}: {mass(found.mass)}, "
         f"{length(distance, context.units)} off the axis"
     )
     if imbalance <= values["limit"]:
         return met(text)
     return violated(
-        text, found=f"{number(imbalance)} kg·m", intended=limit, place=found.centre,
+        f"{text}, required is {limit}", found=shown(imbalance), intended=limit, place=found.centre,
         remedy="Move material across the axis, or add a counterweight.",
     )  # fmt: skip
 

@@ -44,8 +44,8 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     answers = [
         compared(
             fit.value, fit.error, values.get("minimum"), values.get("maximum"),
-            f"the {KINDS[fit.kind]} of {quoted(values['between'])} is {length(fit.value, context.units)}",
-            lambda v: length(v, context.units), "Change one of the two sizes.", fit.place,
+            f"the {KINDS[fit.kind]} of {quoted(values['between'])} is",
+            lambda v, digits: length(v, context.units, digits), "Change one of the two sizes.", fit.place,
             "by the fit of the surfaces",
         )
         for fit in found

@@ -13,6 +13,7 @@ Example: `[[function.require]]` with `kind = "torque"` where nothing drives the 
 from __future__ import annotations
 
 from kinform.consistency._context import Context
+from kinform.consistency._control import selected
 from kinform.consistency._requirements import Judge, answer
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.consistency.rules import (
@@ -30,10 +31,27 @@ from kinform.consistency.rules import (
     kf432_not_retained,
     kf433_fit_out_of_bounds,
 )
+from kinform.model.function import Requirement
 from kinform.words import counted
 
-__all__ = ["JUDGES", "RULE"]
+__all__ = ["JUDGES", "RULE", "RULES_OF"]
 
+RULES_OF: dict[str, Rule] = {
+    "reach": kf421_region_not_reached.RULE,
+    "follow": kf422_path_not_followed.RULE,
+    "clear": kf423_clearance_too_small.RULE,
+    "hold": kf424_holding_effort_exceeded.RULE,
+    "torque": kf425_torque_exceeded.RULE,
+    "speed": kf426_speed_exceeded.RULE,
+    "reaction": kf427_reaction_exceeded.RULE,
+    "mass": kf428_mass_out_of_bounds.RULE,
+    "centre_of_mass": kf429_centre_of_mass_off.RULE,
+    "inertia": kf430_inertia_out_of_bounds.RULE,
+    "balance": kf431_unbalanced.RULE,
+    "retained": kf432_not_retained.RULE,
+    "fit": kf433_fit_out_of_bounds.RULE,
+}
+"""By kind of requirement: the rule that reports what is violated."""
 JUDGES: dict[str, Judge] = {
     "reach": kf421_region_not_reached.judge,
     "follow": kf422_path_not_followed.judge,
@@ -53,7 +71,7 @@ JUDGES: dict[str, Judge] = {
 
 def check(context: Context) -> Outcome:
     """Every requirement that is undecided."""
-    requirements = context.function.requirements
+    requirements = [r for r in context.function.requirements if _asked(context, r)]
     if not requirements:
         return skipped("the function states no requirement")
     answers = [(requirement, answer(context, requirement, JUDGES[requirement.kind])) for requirement in requirements]
@@ -72,6 +90,12 @@ def check(context: Context) -> Outcome:
     if not open_:
         return decided(reason=f"{counted(len(requirements), 'requirement')} decided")
     return inconclusive(f"{counted(len(open_), 'requirement')} not decided", findings)
+
+
+def _asked(context: Context, requirement: Requirement) -> bool:
+    """Not where [check] selects neither this rule nor that of the requirement's kind."""
+    settings = context.assembly.check
+    return selected(RULE, settings) or selected(RULES_OF[requirement.kind], settings)
 
 
 RULE = Rule("KF902", "requirement-not-checked", "note", __doc__, check)

@@ -1,0 +1,78 @@
+"""What contacts say: clearances of fits, and what can leave."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from known import FIXTURES
+from requiring import WALL, bar, requiring, state
+
+from kinform.consistency import check
+
+
+def fixture(derive_design, name):
+    return derive_design(FIXTURES / "pairs" / name / f"{name}.toml")
+
+
+def test_the_radial_clearance_of_a_shaft(derive_design):
+    made = fixture(derive_design, "cylindrical_gap_015")
+    fit = {"between": ["shaft", "block"]}
+    assert state(made, "fit", minimum=0.14e-3, maximum=0.16e-3, **fit)[0] == "met"
+    assert state(made, "fit", minimum=0.16e-3, **fit)[0] == "violated"
+    found, finding = state(made, "fit", maximum=0.1e-3, **fit)
+    assert found == "violated"
+    assert "0.15 mm" in finding.found
+    press = fixture(derive_design, "cylindrical_press_002")
+    assert state(press, "fit", minimum=-0.025e-3, maximum=-0.015e-3, **fit)[0] == "met"
+    assert state(press, "fit", minimum=0.0, **fit)[0] == "violated"
+    apart = fixture(derive_design, "free_apart")
+    names = [p.name for p in apart.assembly.parts]
+    assert state(apart, "fit", between=names, minimum=0.0)[0] == "undecided"
+
+
+def test_the_clearance_of_a_drawer_counts_both_sides(derive_design):
+    made = fixture(derive_design, "prismatic_drawer")
+    fit = {"between": ["drawer", "cabinet"]}
+    assert state(made, "fit", minimum=0.19e-3, maximum=0.21e-3, **fit)[0] == "met"
+    assert state(made, "fit", maximum=0.15e-3, **fit)[0] == "violated"
+
+
+def test_what_can_leave_is_not_retained(derive_design):
+    assert state(fixture(derive_design, "revolute_collars"), "retained", part="shaft")[0] == "met"
+    table = fixture(derive_design, "general_ball_on_table")
+    ball = next(p.name for p in table.assembly.parts if p.name != table.assembly.ground)
+    found, finding = state(table, "retained", part=ball)
+    assert found == "violated"
+    assert "lift off along +z" in finding.message
+    # it rolls away sideways too, and nothing says where that ends
+    assert state(table, "retained", part=ball, directions=[[0, 0, 1.0]])[0] == "undecided"
+    socket = fixture(derive_design, "spherical_open")
+    assert state(socket, "retained", part="ball")[0] == "violated"
+    assert state(socket, "retained", part="ball", directions=[[0, 0, -1.0]])[0] == "violated"
+    assert state(socket, "retained", part="ball", directions=[[0, 0, 1.0]])[0] == "met"
+    assert state(fixture(derive_design, "spherical_captive"), "retained", part="ball")[0] == "met"
+    apart = fixture(derive_design, "free_apart")
+    loose = next(b.name for b in apart.kinematics.bodies if not b.ground)
+    assert state(apart, "retained", part=loose)[0] == "violated"
+
+
+def test_a_slide_with_stops_holds_its_part(derive_design):
+    made = fixture(derive_design, "prismatic_drawer")
+    assert state(made, "retained", part="drawer")[0] == "undecided"
+
+    def ranged(**found):
+        (joint,) = made.kinematics.joints
+        return replace(made, kinematics=replace(made.kinematics, joints=(replace(joint, **found),)))
+
+    stopped = ranged(range_lower=-0.01, range_upper=0.02, range_status="found")
+    assert state(stopped, "retained", part="drawer")[0] == "met"
+    open_ = ranged(range_status="unbounded")
+    assert state(open_, "retained", part="drawer")[0] == "violated"
+    both = [[0, 0, 1.0], [0, 0, -1.0]]
+    assert state(open_, "retained", part="drawer", directions=both)[0] == "met"
+
+
+def test_answers_do_not_depend_on_the_order_of_parts(derive_design):
+    made = requiring(bar(WALL, reach=60), "clear", between=["bar", "base"], over="ranges")
+    turned = replace(made, assembly=replace(made.assembly, parts=made.assembly.parts[::-1]))
+    assert check(made).findings == check(turned).findings

@@ -1,0 +1,19 @@
+"""Every kind of requirement has a rule, and a judge of its doubts."""
+
+from __future__ import annotations
+
+from requiring import CODES
+
+from kinform.consistency import RULES
+from kinform.consistency.rules.kf902_requirement_not_checked import JUDGES
+
+
+def test_every_kind_of_requirement_has_a_rule_of_its_own():
+    from typing import get_args
+
+    from kinform.form.schema.require import Require
+
+    union = get_args(Require)[0]
+    kinds = {get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(union)}
+    assert kinds == set(CODES) == set(JUDGES)
+    assert set(CODES.values()) <= {rule.code for rule in RULES}

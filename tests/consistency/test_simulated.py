@@ -1,0 +1,106 @@
+"""Requirements on a simulated motion: speeds, efforts, reactions, paths, and peaks between output times."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from devices import sine
+from requiring import circle, state, wheel
+
+
+def test_the_peak_speed_of_a_driven_joint():
+    # 30° at 0.5 Hz: 30°·π a second
+    made = wheel(sine(30.0, 0.5))
+    peak = math.radians(30.0) * math.pi
+    assert state(made, "speed", joint="spin", limit=1.001 * peak)[0] == "met"
+    found, finding = state(made, "speed", joint="spin", limit=0.999 * peak)
+    assert found == "violated"
+    assert "94.2" in finding.found
+    assert state(replace(made, simulation=None), "speed", joint="spin", limit=10.0)[0] == "undecided"
+
+
+def test_the_peak_torque_of_a_driven_joint():
+    made = wheel(sine(30.0, 0.5))
+    peak = 0.01 * math.radians(30.0) * math.pi**2
+    assert made.simulation.level == "dynamic"
+    assert state(made, "torque", joint="spin", limit=1.001 * peak)[0] == "met"
+    assert state(made, "torque", joint="spin", limit=0.999 * peak)[0] == "violated"
+    # a free joint has no torque to speak of, and a kinematic run no forces
+    assert state(wheel(), "torque", joint="spin", limit=1.0)[0] == "undecided"
+    assert state(wheel(sine(30.0, 0.5), level="kinematic"), "torque", joint="spin", limit=1.0)[0] == "undecided"
+
+
+def test_a_run_that_stopped_proves_only_what_it_saw():
+    made = wheel(sine(30.0, 0.5))
+    stopped = replace(made, simulation=replace(made.simulation, status="stopped", reason="singular"))
+    peak = math.radians(30.0) * math.pi
+    assert state(stopped, "speed", joint="spin", limit=0.999 * peak)[0] == "violated"
+    assert state(stopped, "speed", joint="spin", limit=1.001 * peak)[0] == "undecided"
+
+
+def test_the_peak_reaction_of_a_joint():
+    made = wheel(sine(30.0, 0.5))
+    wrench = np.zeros((len(made.simulation.time), 1, 6))
+    wrench[:, 0, 3:] = (0.0, 3.0, 4.0)
+    wrench[7, 0, :3] = (0.0, 0.0, 2.0)
+    open_ = np.zeros((1, 6), dtype=bool)
+    reacting = replace(made, simulation=replace(made.simulation, F_A=wrench, undetermined=open_))
+    assert state(reacting, "reaction", joint="spin", force=5.01, torque=2.01)[0] == "met"
+    assert state(reacting, "reaction", joint="spin", force=4.99)[0] == "violated"
+    found, finding = state(reacting, "reaction", joint="spin", torque=1.99)
+    assert found == "violated"
+    assert "t = 0.07 s" in finding.message
+    open_ = np.array([[False, False, False, True, False, False]])
+    doubtful = replace(made, simulation=replace(made.simulation, F_A=wrench, undetermined=open_))
+    assert state(doubtful, "reaction", joint="spin", force=100.0)[0] == "undecided"
+    assert state(doubtful, "reaction", joint="spin", torque=2.01)[0] == "met"
+    assert (
+        state(
+            replace(made, simulation=replace(made.simulation, F_A=np.zeros((0, 0, 6)))),
+            "reaction",
+            joint="spin",
+            force=1.0,
+        )[0]
+        == "undecided"
+    )
+
+
+def test_a_point_follows_its_path():
+    made = wheel(sine(30.0, 0.5))
+    given = {"part": "disc", "point": [0.1, 0, 0], "path": "p.csv"}
+    assert state(made, "follow", rows=circle(), tolerance=1e-4, **given)[0] == "met"
+    assert state(made, "follow", rows=circle(turned=True), tolerance=1e-4, angle_tolerance=1e-3, **given)[0] == "met"
+    found, finding = state(made, "follow", rows=circle(shift=2e-3), tolerance=1e-3, **given)
+    assert found == "violated"
+    assert finding.found == "2 mm"
+    wrong = [[*row[:4], 1.0, 0.0, 0.0, 0.0] for row in circle()]
+    found, finding = state(made, "follow", rows=wrong, tolerance=1e-4, angle_tolerance=0.1, **given)
+    assert found == "violated"
+    assert finding.found == "30°"
+    assert state(made, "follow", rows=circle(last=1.5), tolerance=1.0, **given)[0] == "undecided"
+
+
+def test_a_smooth_peak_between_output_times_is_not_passed():
+    made = wheel(sine(30.0, 0.5))
+    # as if the output times lay half a step beside the peak
+    run = made.simulation
+    step = float(run.time[1])
+    shifted = np.sin(math.pi * (run.time + 0.5 * step)) * math.radians(30.0) * math.pi
+    coarse = replace(made, simulation=replace(run, joint_velocity=shifted[:, None]))
+    sampled = float(np.abs(shifted).max())
+    true = math.radians(30.0) * math.pi
+    assert sampled < true
+    between = 0.5 * (sampled + true)
+    assert state(coarse, "speed", joint="spin", limit=between)[0] == "undecided"
+    assert state(coarse, "speed", joint="spin", limit=1.0001 * true)[0] == "met"
+    assert state(coarse, "speed", joint="spin", limit=0.9999 * sampled)[0] == "violated"
+
+
+def test_a_jump_has_no_peak_beside_it():
+    made = wheel(sine(30.0, 0.5))
+    run = made.simulation
+    jumping = np.where(run.time < 0.5, 0.0, 1.0)[:, None]
+    jumped = replace(made, simulation=replace(run, joint_velocity=jumping))
+    assert state(jumped, "speed", joint="spin", limit=1.001)[0] == "met"
