@@ -118,9 +118,9 @@ def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
     done = _advance("joints", design, derive, ledger)
     before = None if ledger is None or ledger.previous is None else ledger.previous.fingerprints
     if known:
-        marks = replace(done.fingerprints, decisions=known[-1].decisions, settled=known[-1].settled)
+        marks = replace(done.fingerprints, decisions=known[-1].decisions)
     elif before is not None and before.stages.get("joints") == done.fingerprints.stages["joints"]:
-        marks = replace(done.fingerprints, decisions=before.decisions, settled=before.settled)
+        marks = replace(done.fingerprints, decisions=before.decisions)
     else:
         return done
     return replace(done, fingerprints=marks)
@@ -233,7 +233,7 @@ def _without(design: Design, stage: str) -> Design:
         stages.pop("surfaces", None)
         marks, design = replace(marks, meshes={}, pairs={}), replace(design, surfaces={})
     if "joints" in later:
-        marks = replace(marks, decisions={}, settled="")
+        marks = replace(marks, decisions={})
     if "simulation" in later:
         design = replace(design, behaviour=None)
     lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}
