@@ -79,7 +79,8 @@ class Sources:
         self._outside = allow_outside
         self._earlier = earlier or {}
         self._texts: dict[Path, str] = {}
-        self._data: dict[Path, tuple[bytes, str]] = {}
+        self._data: dict[Path, bytes] = {}
+        self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
         self._built: dict[tuple[Path, str | None, float, float | None, bool], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
@@ -117,7 +118,7 @@ class Sources:
 
     def contents(self) -> dict[str, str]:
         """SHA-256 (hex) of every file that was read; {} where one changed meanwhile, or was not read."""
-        found = {self.shown(path): digest for path, (_, digest) in self._data.items()}
+        found = {self.shown(path): digest for path, digest in self._digests.items()}
         for path, digest in self._texts.items():
             try:
                 if content(path.read_bytes()) != digest:
@@ -158,20 +159,33 @@ class Sources:
         return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
 
     def _content(self, path: Path) -> str:
-        if path not in self._data:
+        """SHA-256 (hex) of the file. Where its mesh may be known already the bytes are not kept."""
+        if path not in self._digests:
             try:
-                data = path.read_bytes()
+                if self._earlier:
+                    with open(path, "rb") as stream:
+                        self._digests[path] = hashlib.file_digest(stream, "sha256").hexdigest()
+                else:
+                    self._digests[path] = content(self._bytes(path))
             except OSError as error:
                 raise MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")]) from None
-            self._data[path] = data, content(data)
-        return self._data[path][1]
+        return self._digests[path]
+
+    def _bytes(self, path: Path) -> bytes:
+        if path not in self._data:
+            self._data[path] = path.read_bytes()
+            if self._digests.get(path, "") not in ("", content(self._data[path])):
+                raise MeshError([Fault("changed while it was read", "run again when it is saved")])
+        return self._data[path]
 
     def _read(self, path: Path) -> RawMesh:
         if path not in self._raw:
             try:
-                self._raw[path] = _parsed(path, self._data[path][0])
+                self._raw[path] = _parsed(path, self._bytes(path))
             except MeshError as error:
                 self._raw[path] = error
+            except OSError as error:
+                self._raw[path] = MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
         found = self._raw[path]
         if isinstance(found, MeshError):
             raise found
