@@ -14,9 +14,10 @@ from kinform.form.problems import Problems, did_you_mean
 from kinform.form.units import metres_per
 from kinform.model.assembly import Assembly, Mesh
 
-__all__ = ["Sources", "content", "earlier_meshes", "read_raw"]
+__all__ = ["MESHES", "Sources", "content", "earlier_meshes", "read_raw"]
 
-_SUFFIXES = (".stl", ".obj")
+MESHES = (".stl", ".obj")
+"""Suffixes of mesh files."""
 
 
 def content(data: bytes) -> str:
@@ -26,11 +27,11 @@ def content(data: bytes) -> str:
 
 def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
-    return _parsed(path, b"" if path.suffix.lower() not in _SUFFIXES else path.read_bytes())
+    return _parsed(path, b"" if path.suffix.lower() not in MESHES else path.read_bytes())
 
 
 def _parsed(path: Path, data: bytes) -> RawMesh:
-    if path.suffix.lower() not in _SUFFIXES:
+    if path.suffix.lower() not in MESHES:
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
         from kinform.form.meshes.stl import read_stl
@@ -82,6 +83,7 @@ class Sources:
         self._data: dict[Path, bytes] = {}
         self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
+        self._real: dict[Path, str] = {}
         self._built: dict[tuple[Path, str | None, float, float | None, bool], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
 
@@ -92,9 +94,7 @@ class Sources:
     def find(self, stated: str, folder: Path, file: str, line: int, what: str) -> Path | None:
         """The file that a manifest states, relative to its folder; None after noting what is wrong."""
         path = folder / stated
-        real = Path(os.path.realpath(path))
-        inside = any(real.is_relative_to(os.path.realpath(root)) for root in (self.top, folder))
-        if not inside and not self._outside:
+        if not self._outside and not any(self._inside(path, root) for root in {self.top, folder}):
             remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
             self.problems.add(f"{what} {stated} lies outside the manifest's folder", file, line, remedy)
             return None
@@ -109,10 +109,16 @@ class Sources:
         self.text(path)
         return path
 
+    def _inside(self, path: Path, root: Path) -> bool:
+        """Whether the file, wherever links lead, lies in the folder."""
+        if root not in self._real:
+            self._real[root] = os.path.join(os.path.realpath(root), "")
+        return os.path.realpath(path).startswith(self._real[root])
+
     def text(self, path: Path) -> None:
         """Note a file that is read, with its content before it is read."""
         self.files.add(self.shown(path))
-        if path.suffix.lower() not in _SUFFIXES and path not in self._texts:
+        if path.suffix.lower() not in MESHES and path not in self._texts:
             with contextlib.suppress(OSError):
                 self._texts[path] = content(path.read_bytes())
 
@@ -157,6 +163,10 @@ class Sources:
         raw = self._read(path)
         chosen = raw if body is None else select_body(raw, body)
         return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
+
+    def content(self, path: Path) -> str | None:
+        """SHA-256 (hex) of a file that `find` found and that is no mesh; None where it cannot be read."""
+        return self._texts.get(path)
 
     def _content(self, path: Path) -> str:
         """SHA-256 (hex) of the file. Where its mesh may be known already the bytes are not kept."""
