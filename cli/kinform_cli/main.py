@@ -60,7 +60,8 @@ def entry() -> NoReturn:
         console.give_up()
     except BaseException:  # not even an error could be reported; or Ctrl-C again while it was
         _last_words()
-    sys.exit(code)
+    # all files are closed and all streams flushed: to take a large design apart object by object would only cost time
+    os._exit(code)
 
 
 def _last_words() -> None:

@@ -7,7 +7,7 @@ are imported by the stage that needs them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -45,17 +45,31 @@ def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger
 
     Meshes of files that have not changed are taken from earlier results.
     """
-    from kinform.form.read import load_with_contents
     from kinform.results import lineage
 
     before = None if ledger is None else ledger.previous
     files = {} if before is None or not _current_import(before) else before.fingerprints.files
     earlier = before.assembly if before is not None and files else None
-    assembly, contents = load_with_contents(Path(manifest), allow_outside=allow_outside, earlier=earlier, files=files)
+    assembly, contents = _read(Path(manifest), allow_outside, earlier, files)
     design = _imported(assembly)
     start = lineage.of_files(Path(manifest).name, contents)
     marks = replace(design.fingerprints, files=contents, lineage={"assembly": start} if start else {})
     return replace(design, fingerprints=marks)
+
+
+def _read(
+    manifest: Path, allow_outside: bool, earlier: Assembly | None, files: Mapping[str, str]
+) -> tuple[Assembly, dict[str, str]]:
+    """The assembly and the contents of its files; what earlier results hold is not read again."""
+    if earlier is not None:
+        from kinform.form.again import reread
+
+        again = reread(manifest, earlier, files, allow_outside=allow_outside)
+        if again is not None:
+            return again
+    from kinform.form.read import load_with_contents
+
+    return load_with_contents(manifest, allow_outside=allow_outside, earlier=earlier, files=files)
 
 
 def _current_import(design: Design | Earlier) -> bool:
@@ -118,9 +132,9 @@ def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
     done = _advance("joints", design, derive, ledger)
     before = None if ledger is None or ledger.previous is None else ledger.previous.fingerprints
     if known:
-        marks = replace(done.fingerprints, decisions=known[-1].decisions, settled=known[-1].settled)
+        marks = replace(done.fingerprints, decisions=known[-1].decisions)
     elif before is not None and before.stages.get("joints") == done.fingerprints.stages["joints"]:
-        marks = replace(done.fingerprints, decisions=before.decisions, settled=before.settled)
+        marks = replace(done.fingerprints, decisions=before.decisions)
     else:
         return done
     return replace(done, fingerprints=marks)
@@ -233,7 +247,7 @@ def _without(design: Design, stage: str) -> Design:
         stages.pop("surfaces", None)
         marks, design = replace(marks, meshes={}, pairs={}), replace(design, surfaces={})
     if "joints" in later:
-        marks = replace(marks, decisions={}, settled="")
+        marks = replace(marks, decisions={})
     if "simulation" in later:
         design = replace(design, behaviour=None)
     lineage = {name: mark for name, mark in marks.lineage.items() if name not in later}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
@@ -14,7 +15,8 @@ from kinform.contacts.pair import PairContacts, pair_contacts
 from kinform.contacts.solids import SolidStore
 from kinform.fastening import suggest
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts, Patch
+from kinform.model.contacts import Contacts, Patch, Suggestion
+from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["find"]
@@ -98,7 +100,29 @@ def find(
         candidates=tuple(tolerance),
         tolerance=tolerance,
     )
-    return replace(found, suggestions=suggest(assembly, surfaces, found))
+    taken = {} if reuse is None else _suggested(reuse, found, known)
+    return replace(found, suggestions=suggest(assembly, surfaces, found, taken))
+
+
+def _suggested(reuse: Contacts, found: Contacts, known: set[Pair]) -> dict[Pair, list[Suggestion]]:
+    """What earlier contacts suggest of pairs that are taken over with all pairs near them: of parts that have the
+    neighbours that they had, all as they were."""
+    before, after = _neighbours(reuse.candidates), _neighbours(found.candidates)
+    same = {name for name, own in after.items() if own == before.get(name) and own <= known}
+    out: dict[Pair, list[Suggestion]] = {pair: [] for pair in known if same.issuperset(pair)}
+    for hint in reuse.suggestions:
+        if hint.parts in out:
+            out[hint.parts].append(hint)
+    return out
+
+
+def _neighbours(pairs: Iterable[Pair]) -> dict[PartName, set[Pair]]:
+    """The pairs of each part."""
+    out: dict[PartName, set[Pair]] = defaultdict(set)
+    for pair in pairs:
+        for name in pair:
+            out[name].add(pair)
+    return out
 
 
 def _taken(reuse: Contacts, pairs: set[Pair]) -> dict[Pair, PairContacts]:

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.model.assembly import Assembly, Part
+from kinform.model.assembly import Part
 from kinform.model.contacts import Patch
-from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Cylinders", "Holes", "aligned_holes", "cylinders_of", "occupied", "together"]
@@ -58,12 +57,8 @@ class Holes:
     """(n,) m: the larger of both sides."""
 
 
-def cylinders_of(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces]) -> dict[PartName, Cylinders]:
-    """The cylinders that go all round, of every meshed part."""
-    return {part.name: _placed(part, surfaces) for part in assembly.parts if part.mesh is not None}
-
-
-def _placed(part: Part, surfaces: Mapping[str, MeshSurfaces]) -> Cylinders:
+def cylinders_of(part: Part, surfaces: Mapping[str, MeshSurfaces]) -> Cylinders:
+    """The cylinders of a meshed part that go all round."""
     assert part.mesh is not None
     found = surfaces.get(part.mesh.digest)
     round_ = [s for s in found.surfaces if s.kind == "cylinder" and s.sweep >= WHOLE] if found is not None else []

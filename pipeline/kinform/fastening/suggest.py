@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,16 +37,22 @@ class _Scene:
     def __init__(self, assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts):
         self.parts: dict[PartName, Part] = {part.name: part for part in assembly.parts}
         self.surfaces = surfaces
-        self.cylinders = cylinders_of(assembly, surfaces)
+        self._cylinders: dict[PartName, Cylinders] = {}
         self._near: dict[PartName, set[PartName]] = defaultdict(set)
         for first, second in contacts.candidates:
             self._near[first].add(second)
             self._near[second].add(first)
 
+    def cylinders(self, name: PartName) -> Cylinders:
+        """The cylinders of a part that go all round."""
+        if name not in self._cylinders:
+            self._cylinders[name] = cylinders_of(self.parts[name], self.surfaces)
+        return self._cylinders[name]
+
     def beside(self, pair: Pair) -> Cylinders:
         """Cylinders of the other parts that come near one of the pair."""
         names = (self._near[pair[0]] | self._near[pair[1]]) - set(pair)
-        return together(self.cylinders[name] for name in sorted(names))
+        return together(self.cylinders(name) for name in sorted(names))
 
     def rims(self, name: PartName, plane: int) -> list[tuple[Array, float]]:
         """Rims of a plane surface of a part."""
@@ -56,9 +62,14 @@ class _Scene:
 
 
 def suggest(
-    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
-) -> tuple[Suggestion, ...]:  # fmt: skip
-    """Suggestions for all pairs in contact, sorted by part names, then kind."""
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts,
+    known: Mapping[Pair, Sequence[Suggestion]] | None = None,
+) -> tuple[Suggestion, ...]:
+    """Suggestions for all pairs in contact, sorted by part names, then kind. Those of pairs that are `known` are taken
+    over: neither they nor any part near one of them changed.
+    """
     if not contacts.patches:
         return ()
     scene = _Scene(assembly, surfaces, contacts)
@@ -67,7 +78,10 @@ def suggest(
         of_pair[patch.parts].append(patch)
     found: list[Suggestion] = []
     for pair in sorted(of_pair):
-        found += _of_pair(pair, of_pair[pair], scene, contacts.tolerance[pair])
+        if known is not None and pair in known:
+            found += known[pair]
+        else:
+            found += _of_pair(pair, of_pair[pair], scene, contacts.tolerance[pair])
     return tuple(sorted(found, key=lambda hint: (hint.parts, hint.kind)))
 
 
@@ -99,7 +113,7 @@ def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Su
 def _holes(pair: Pair, planes: list[Patch], patches: list[Patch], scene: _Scene, tolerance: float) -> Holes:
     """Aligned holes with nothing in them, across planes that do not turn on a single journal."""
     fixed = [plane for plane in planes if not _pivoted(plane, patches, tolerance)]
-    holes = aligned_holes(scene.cylinders[pair[0]], scene.cylinders[pair[1]], fixed, tolerance)
+    holes = aligned_holes(scene.cylinders(pair[0]), scene.cylinders(pair[1]), fixed, tolerance)
     if not len(holes.radii):
         return holes
     empty = ~occupied(holes, scene.beside(pair), tolerance)
@@ -177,7 +191,7 @@ def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> l
             return []
         text = f"coaxial rims of diameter {2e3 * radius:.4g} and {2e3 * size:.4g} mm"
         return [_hint(pair, "rim", text, normal, centre)]
-    first, second = (_bolt_circle(scene.cylinders[name], planes[0], tolerance) for name in pair)
+    first, second = (_bolt_circle(scene.cylinders(name), planes[0], tolerance) for name in pair)
     if first is None or second is None or np.linalg.norm(first[0] - second[0]) > near:
         return []
     text = f"bolt circles of {first[1]} and {second[1]} holes about one centre"

@@ -14,9 +14,10 @@ from kinform.form.problems import Problems, did_you_mean
 from kinform.form.units import metres_per
 from kinform.model.assembly import Assembly, Mesh
 
-__all__ = ["Sources", "content", "earlier_meshes", "read_raw"]
+__all__ = ["MESHES", "Sources", "content", "earlier_meshes", "read_raw"]
 
-_SUFFIXES = (".stl", ".obj")
+MESHES = (".stl", ".obj")
+"""Suffixes of mesh files."""
 
 
 def content(data: bytes) -> str:
@@ -26,11 +27,11 @@ def content(data: bytes) -> str:
 
 def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
-    return _parsed(path, b"" if path.suffix.lower() not in _SUFFIXES else path.read_bytes())
+    return _parsed(path, b"" if path.suffix.lower() not in MESHES else path.read_bytes())
 
 
 def _parsed(path: Path, data: bytes) -> RawMesh:
-    if path.suffix.lower() not in _SUFFIXES:
+    if path.suffix.lower() not in MESHES:
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
         from kinform.form.meshes.stl import read_stl
@@ -79,8 +80,10 @@ class Sources:
         self._outside = allow_outside
         self._earlier = earlier or {}
         self._texts: dict[Path, str] = {}
-        self._data: dict[Path, tuple[bytes, str]] = {}
+        self._data: dict[Path, bytes] = {}
+        self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
+        self._real: dict[Path, str] = {}
         self._built: dict[tuple[Path, str | None, float, float | None, bool], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
 
@@ -91,9 +94,7 @@ class Sources:
     def find(self, stated: str, folder: Path, file: str, line: int, what: str) -> Path | None:
         """The file that a manifest states, relative to its folder; None after noting what is wrong."""
         path = folder / stated
-        real = Path(os.path.realpath(path))
-        inside = any(real.is_relative_to(os.path.realpath(root)) for root in (self.top, folder))
-        if not inside and not self._outside:
+        if not self._outside and not any(self._inside(path, root) for root in {self.top, folder}):
             remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
             self.problems.add(f"{what} {stated} lies outside the manifest's folder", file, line, remedy)
             return None
@@ -108,16 +109,22 @@ class Sources:
         self.text(path)
         return path
 
+    def _inside(self, path: Path, root: Path) -> bool:
+        """Whether the file, wherever links lead, lies in the folder."""
+        if root not in self._real:
+            self._real[root] = os.path.join(os.path.realpath(root), "")
+        return os.path.realpath(path).startswith(self._real[root])
+
     def text(self, path: Path) -> None:
         """Note a file that is read, with its content before it is read."""
         self.files.add(self.shown(path))
-        if path.suffix.lower() not in _SUFFIXES and path not in self._texts:
+        if path.suffix.lower() not in MESHES and path not in self._texts:
             with contextlib.suppress(OSError):
                 self._texts[path] = content(path.read_bytes())
 
     def contents(self) -> dict[str, str]:
         """SHA-256 (hex) of every file that was read; {} where one changed meanwhile, or was not read."""
-        found = {self.shown(path): digest for path, (_, digest) in self._data.items()}
+        found = {self.shown(path): digest for path, digest in self._digests.items()}
         for path, digest in self._texts.items():
             try:
                 if content(path.read_bytes()) != digest:
@@ -157,21 +164,38 @@ class Sources:
         chosen = raw if body is None else select_body(raw, body)
         return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
 
+    def content(self, path: Path) -> str | None:
+        """SHA-256 (hex) of a file that `find` found and that is no mesh; None where it cannot be read."""
+        return self._texts.get(path)
+
     def _content(self, path: Path) -> str:
-        if path not in self._data:
+        """SHA-256 (hex) of the file. Where its mesh may be known already the bytes are not kept."""
+        if path not in self._digests:
             try:
-                data = path.read_bytes()
+                if self._earlier:
+                    with open(path, "rb") as stream:
+                        self._digests[path] = hashlib.file_digest(stream, "sha256").hexdigest()
+                else:
+                    self._digests[path] = content(self._bytes(path))
             except OSError as error:
                 raise MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")]) from None
-            self._data[path] = data, content(data)
-        return self._data[path][1]
+        return self._digests[path]
+
+    def _bytes(self, path: Path) -> bytes:
+        if path not in self._data:
+            self._data[path] = path.read_bytes()
+            if self._digests.get(path, "") not in ("", content(self._data[path])):
+                raise MeshError([Fault("changed while it was read", "run again when it is saved")])
+        return self._data[path]
 
     def _read(self, path: Path) -> RawMesh:
         if path not in self._raw:
             try:
-                self._raw[path] = _parsed(path, self._data[path][0])
+                self._raw[path] = _parsed(path, self._bytes(path))
             except MeshError as error:
                 self._raw[path] = error
+            except OSError as error:
+                self._raw[path] = MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
         found = self._raw[path]
         if isinstance(found, MeshError):
             raise found

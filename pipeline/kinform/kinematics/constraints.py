@@ -7,7 +7,7 @@ non-penetration condition, J V = 0 keeps the contact. Only the extreme samples o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,9 +104,15 @@ SPREAD = _spread(96)
 """Directions in which the ends of a ball's normals are looked for."""
 
 
-def assemble(bodies: Sequence[Body], joints: Sequence[Joint], patches: Sequence[Patch]) -> ConstraintMatrix:
+def assemble(
+    bodies: Sequence[Body],
+    joints: Sequence[Joint],
+    patches: Sequence[Patch],
+    extremes: Mapping[int, NDArray[np.int64]] | None = None,
+) -> ConstraintMatrix:
     """J of all patches between different bodies; the rows that carry a joint are made exactly
-    consistent with its snapped freedoms."""
+    consistent with its snapped freedoms. `extremes`: of patches, by index, whose extreme samples are known."""
+    known = extremes or {}
     column = {part: k for k, body in enumerate(bodies) for part in body.parts}
     owner = {index: joint for joint in joints for index in joint.patches}
     used = [k for k, p in enumerate(patches) if column[p.parts[0]] != column[p.parts[1]] and len(p.points)]
@@ -114,7 +120,7 @@ def assemble(bodies: Sequence[Body], joints: Sequence[Joint], patches: Sequence[
     data, indices, provenance, samples = [], [], [], []
     for k in used:
         patch = patches[k]
-        chosen = extreme_samples(patch)
+        chosen = known[k] if k in known else extreme_samples(patch)
         own = rows(patch.points[chosen], patch.normals[chosen], world)
         if k in owner:
             free, _ = np.linalg.qr(scaled(owner[k].twists.T, world))

@@ -21,17 +21,8 @@ from kinform.kinematics.idle import idle_freedoms
 from kinform.kinematics.joints import stated_joint
 from kinform.kinematics.mobility import Closure, body_twists, close
 from kinform.kinematics.motions import named_freedoms
-from kinform.kinematics.parts import (
-    Answer,
-    Answers,
-    Decided,
-    Question,
-    answered,
-    bare_patches,
-    named,
-    touching_shapes,
-)
 from kinform.kinematics.proportions import proportioned
+from kinform.kinematics.questions import Answer, Answers, Question, answered, bare_patches, named
 from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.separations import links_between, separations
@@ -80,30 +71,19 @@ def derive(
         if pair in stated:
             joints.append(stated[pair])
             continue
-        answer, indices = decided[pair]
-        joint = named(answer, pair, indices)
+        answer, joint = decided[pair]
         joints.append(joint)
         if answer.strict is not None:
             strict[joint.name] = answer.strict
         if answer.angle > 0.0 or answer.offset > 0.0:
             misaligned.append((joint.name, answer.angle, answer.offset))
     joints = labelled(about_axes(assembly, contacts, joints, bodies), bodies)
-    all_of_it = Decided(
-        touching_shapes(assembly, patches), bodies, tuple(joints), patches, strict, tuple(misaligned), extents.assembly,
-        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches),
-    )  # fmt: skip
-    return _whole(all_of_it) if answers is None else answers.whole(all_of_it, _whole)
-
-
-def _whole(decided: Decided) -> Kinematics:
-    """What follows from the joints of all pairs, their axes made to agree."""
-    assembly, bodies, patches, size = decided.assembly, decided.bodies, decided.patches, decided.size
-    snapped, misfit = snap(decided.joints, patches, size)
-    snapped, misfit = proportioned(bodies, snapped, uncertainties(snapped, patches), size, misfit)
-    closed = agree(bodies, snapped, patches, size, assembly.tolerances.alignment)
+    snapped, misfit = snap(joints, patches, extents.assembly)
+    snapped, misfit = proportioned(bodies, snapped, uncertainties(snapped, patches), extents.assembly, misfit)
+    closed = agree(bodies, snapped, patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
-        assembly, bodies, closed, patches, misfit, decided.strict, decided.misaligned, size, decided.clusters,
-        decided.balls,
+        assembly, bodies, closed, patches, misfit, strict, tuple(misaligned), extents.assembly,
+        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches), pairs.extremes,
     )  # fmt: skip
 
 
@@ -180,19 +160,22 @@ class _Pairs:
     ):
         self.assembly, self.patches = assembly, patches
         self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
+        self.extremes: dict[int, NDArray[np.int64]] = {}
+        """Samples that bound the patches that were looked at."""
 
-    def decided(self, members: Sequence[tuple[int, Patch, bool]], bodies: Sequence[Body]) -> Answer | None:
+    def decided(self, members: Sequence[tuple[int, Patch, bool]], bodies: Sequence[Body]) -> Answer:
         """The joint between two bodies, of patches (index, patch, turned)."""
         tolerances = self.assembly.tolerances
         contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
         question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
-        return answered(question) if self._answers is None else self._answers.pair(question, answered)
+        found = answered(question) if self._answers is None else self._answers(question, answered)
+        self.extremes |= {index: own for (index, _, _), own in zip(members, found.extremes, strict=True)}
+        return found
 
 
-def _decide_all(pairs: _Pairs, merger: Merger) -> dict[Pair, tuple[Answer, list[int]]]:
-    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses. Answers, and the indices of
-    the patches of each."""
-    known: dict[tuple[int, ...], Answer | None] = {}
+def _decide_all(pairs: _Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]:
+    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
+    known: dict[tuple[int, ...], Answer] = {}
     stated = _stated_roots(pairs.assembly, merger)
     while True:
         bodies = merger.bodies()
@@ -203,21 +186,21 @@ def _decide_all(pairs: _Pairs, merger: Merger) -> dict[Pair, tuple[Answer, list[
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b:
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        out: dict[Pair, tuple[Answer, list[int]]] = {}
+        out: dict[Pair, tuple[Answer, Joint]] = {}
         fused = False
         for pair in sorted(touching):
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
             if key not in known:
                 known[key] = pairs.decided(members, [of_name[n] for n in pair])
-            found = known[key]
+            found = known[key].joint
             if found is None:
                 continue
-            out[pair] = found, [index for index, _, _ in members]
+            out[pair] = known[key], named(found, pair, [index for index, _, _ in members])
             parts = members[0][1].parts
             if frozenset(merger.root(p) for p in parts) in stated:
                 continue
-            if found.joint.type == "fixed" and found.joint.status == "determined":
+            if found.type == "fixed" and found.status == "determined":
                 merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:
@@ -315,6 +298,7 @@ def _finish(
     size: float,
     clusters: tuple[Body, ...],
     balls: Mapping[tuple[int, PartName], Array] | None = None,
+    extremes: Mapping[int, NDArray[np.int64]] | None = None,
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
@@ -348,7 +332,7 @@ def _finish(
         named=named_freedoms(bodies, joints, closure, turns, places),
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, edges, closure, size)),
     )
-    matrix = assemble(bodies, joints, patches)
+    matrix = assemble(bodies, joints, patches, extremes)
     rows = ContactRows(matrix, bodies, patches)
     joints = with_releases(joints, pair_cones(rows, joints, patches))
     links = links_between(clusters, bodies, joints, patches, rows)

@@ -50,9 +50,10 @@ def idle_freedoms(
         for k, p in enumerate(patches)
     ]
     found = []
+    spaces = [span(scaled(joint.twists.T, frame)) if joint.freedoms else np.zeros((6, 0)) for joint in joints]
     for axis, point in _candidates(patches, size):
         twist = rotation(axis, point, frame)
-        if not all(_contains(joint, twist, frame) for joint in joints):
+        if not all(_contains(free, twist) for free in spaces):
             continue
         if not all(_invariant(patch, axis, point, size) for patch in patches):
             continue
@@ -86,9 +87,8 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     return lines
 
 
-def _contains(joint: Joint, twist: Array, frame: Frame) -> bool:
-    """Is the turn among the joint's freedoms?"""
-    free = span(scaled(joint.twists.T, frame)) if joint.freedoms else np.zeros((6, 0))
+def _contains(free: Array, twist: Array) -> bool:
+    """Is the turn among the freedoms (6, k), orthonormal?"""
     return float(np.linalg.norm(twist - free @ (free.T @ twist))) < 1e-3
 
 

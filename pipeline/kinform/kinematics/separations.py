@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.cone import HELD, reduced, unit_rows, within
 from kinform.kinematics.graph import UnionFind, blocks
-from kinform.kinematics.releases import Cone, ContactRows, certainly_held, cone_of, stated
+from kinform.kinematics.releases import Cone, ContactRows, certainly_held, cone_of, released, stated
 from kinform.kinematics.screws import Frame, cross, scaled, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
@@ -46,8 +46,8 @@ class Link:
     ends: tuple[int, int]
     cone: Cone | None
     twists: Array
-    slides: Array | None = None
-    """(k, 3) directions in which the second leaves the first; None where not known yet."""
+    slides: tuple[Release, ...] | None = None
+    """In which the second leaves the first; None where not known yet."""
 
 
 def links_between(
@@ -72,10 +72,7 @@ def links_between(
     pairs = sorted(members)
     cones = [rows.cone(members[pair]) for pair in pairs]
     certain = iter(certainly_held([cone for cone in cones if cone is not None]))
-    slides = {
-        joint.name: np.array([way.direction for way in joint.releases if way.kind == "slide"]).reshape(-1, 3)
-        for joint in joints
-    }
+    slides = {joint.name: tuple(way for way in joint.releases if way.kind == "slide") for joint in joints}
     out = []
     for (a, b), cone in zip(pairs, cones, strict=True):
         if cone is None:
@@ -231,6 +228,9 @@ class _Side:
     sign: float
     """1 where this end is the second body of the link."""
     slides: Array
+    """(k, 3) unit directions in which this end leaves the other."""
+    extreme: bool
+    """Whether these are all extreme ones."""
 
 
 def _sides(links: Sequence[Link], opened: Sequence[int], together: UnionFind) -> dict[int, list[_Side]]:
@@ -239,12 +239,13 @@ def _sides(links: Sequence[Link], opened: Sequence[int], together: UnionFind) ->
         link = links[k]
         assert link.cone is not None
         first, second = (together.find(end) for end in link.ends)
-        slides = link.slides
-        if slides is None:
-            ways = cone_of(link.cone, turns=False).releases
-            slides = np.array([way.direction for way in ways if way.kind == "slide"]).reshape(-1, 3)
-        out[first].append(_Side(link.name, second, link.cone, -1.0, -slides))
-        out[second].append(_Side(link.name, first, link.cone, 1.0, slides))
+        ways = link.slides
+        if ways is None:
+            ways = tuple(way for way in cone_of(link.cone, turns=False).releases if way.kind == "slide")
+        slides = np.array([way.direction for way in ways]).reshape(-1, 3)
+        extreme = all(way.extreme for way in ways)
+        out[first].append(_Side(link.name, second, link.cone, -1.0, -slides, extreme))
+        out[second].append(_Side(link.name, first, link.cone, 1.0, slides, extreme))
     return out
 
 
@@ -289,6 +290,13 @@ def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]
     border = [side for g in sorted(group) for side in sides[g] if side.other not in group]
     if not border:
         return ()
+    if len(border) == 1 and len(border[0].slides):  # what it does by this contact alone is known
+        slides = border[0].slides + 0.0
+        order = np.lexsort(np.round(slides, 6).T)[::-1]
+        return tuple(
+            released(np.concatenate([np.zeros(3), slide]), border[0].cone.frame, extreme=border[0].extreme)
+            for slide in slides[order]
+        )
     frame = border[0].cone.frame if len(border) == 1 else _common([side.cone.frame for side in border])
     fixed = [moved_rows(side.cone.fixed, side.cone.frame, frame) for side in border]
     rows = [side.sign * moved_rows(side.cone.rows, side.cone.frame, frame) for side in border]

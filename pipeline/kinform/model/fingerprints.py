@@ -32,5 +32,3 @@ class Fingerprints:
     made of, to say what changed."""
     decisions: dict[str, tuple[str, str]] = field(default_factory=dict)
     """What contact decides of single pairs of bodies, packed, and a seal on it, by the hash of all that decides it."""
-    settled: str = ""
-    """Hash of what the kinematics as a whole follow from; empty: not known."""

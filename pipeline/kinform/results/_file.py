@@ -173,7 +173,6 @@ class Earlier:
     @cached_property
     def fingerprints(self) -> Fingerprints:
         try:
-            decisions, settled = _decisions(self._file)
             return Fingerprints(
                 stages=_read_marks(self._file),
                 meshes=self._surfaces[0][1] if self._surfaces else {},
@@ -181,8 +180,7 @@ class Earlier:
                 files=_read_contents(self._file),
                 lineage=_read_lineage(self._file),
                 inputs=_read_inputs(self._file),
-                decisions=decisions,
-                settled=settled,
+                decisions=_read_decisions(self._file),
             )
         except _NONSENSE as error:
             raise self._damaged(error) from error
@@ -233,8 +231,8 @@ def _write_groups(file: h5py.File, design: Design) -> None:
         patches = () if contacts is None else contacts.patches
         _constraints.write(_group(file, "constraints", marks), kinematics.matrix, patches)
         _joints.write(_group(file, "joints", marks), kinematics)
-        if marks.decisions or marks.settled:
-            _joints.write_decisions(file["joints"], marks.decisions, marks.settled)
+        if marks.decisions:
+            _joints.write_decisions(file["joints"], marks.decisions)
         _mobility.write(_group(file, "mobility", marks), kinematics.mobility)
     if design.mass is not None:
         _mass.write(_group(file, "mass", marks), design.mass)
@@ -266,10 +264,10 @@ def _read_inputs(file: h5py.File) -> dict[str, dict[str, str]]:
     return {name: json.loads(group.attrs["inputs"]) for name, group in file.items() if "inputs" in group.attrs}
 
 
-def _decisions(file: h5py.File) -> tuple[dict[str, tuple[str, str]], str]:
+def _read_decisions(file: h5py.File) -> dict[str, tuple[str, str]]:
     from kinform.results import _joints
 
-    return _joints.read_decisions(file["joints"]) if "joints" in file else ({}, "")
+    return _joints.read_decisions(file["joints"]) if "joints" in file else {}
 
 
 def files_of(path: str | Path) -> tuple[str, ...]:

@@ -93,19 +93,18 @@ def write(group: h5py.Group, kinematics: Kinematics) -> None:
     write_rows(group, "meshings", _MESHINGS, rows)
 
 
-def write_decisions(group: h5py.Group, decisions: Mapping[str, tuple[str, str]], settled: str) -> None:
-    """Write what decides single pairs, and the hash of what the whole follows from."""
+def write_decisions(group: h5py.Group, decisions: Mapping[str, tuple[str, str]]) -> None:
+    """Write what contact decides of single pairs, packed, by the hash of what decides it."""
     rows = [{"key": key, "decision": text, "seal": seal} for key, (text, seal) in sorted(decisions.items())]
     write_rows(group, "decisions", _DECISIONS, rows)
-    group.attrs["settled"] = settled
 
 
-def read_decisions(group: h5py.Group) -> tuple[dict[str, tuple[str, str]], str]:
+def read_decisions(group: h5py.Group) -> dict[str, tuple[str, str]]:
     """What `write_decisions` wrote."""
     if "decisions" not in group:
-        return {}, ""
+        return {}
     rows = read_rows(group, "decisions", _DECISIONS)
-    return {row["key"]: (row["decision"], row["seal"]) for row in rows}, str(group.attrs["settled"])
+    return {row["key"]: (row["decision"], row["seal"]) for row in rows}
 
 
 def _separations(group: h5py.Group) -> dict[str, Any]:

@@ -38,7 +38,7 @@ def following(stage: str, previous: str, level: str | None = None) -> str:
 def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
     """Whether every file has the content that it had. What was written last is looked at first: it is what changed, if
     anything did."""
-    root = os.path.realpath(top)
+    root = os.path.join(os.path.realpath(top), "")
     folders: dict[str, str] = {}
     try:
         times = {name: os.stat(os.path.join(top, name)).st_mtime_ns for name in files}
@@ -49,7 +49,7 @@ def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
                 if folder not in folders:
                     folders[folder] = os.path.realpath(folder)
                 whole = os.path.realpath(path) if os.path.islink(path) else os.path.join(folders[folder], base)
-                if os.path.commonpath([whole, root]) != root:
+                if not whole.startswith(root):
                     return False
             with open(path, "rb") as stream:
                 if hashlib.file_digest(stream, "sha256").hexdigest() != files[name]:
