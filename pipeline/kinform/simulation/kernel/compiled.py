@@ -41,8 +41,9 @@ __all__ = ["compiled", "is_cached"]
 _MODULES = (vectors, signals, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
 _UNITS = (
-    motion.place_links, masses.inertias, masses.mass_matrix, reduction.factor, reduction.settle,
-    equations.derivative, equations.project, explicit.sample, explicit.advance,
+    motion.place_links, motion.twist_links, masses.inertias, masses.mass_matrix, loops.gather, loops.eliminate,
+    reduction.reduce, reduction.settle, equations.derivative, equations.project, steps.try_step, explicit.sample,
+    explicit.advance,
 )  # fmt: skip
 
 

@@ -30,9 +30,11 @@ from kinform.simulation.kernel.layout import (
     REACH,
     REFERENCE,
     ROWS,
+    SCALE,
     SCREWS,
     STATE,
     TIP,
+    VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
@@ -141,12 +143,14 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
             mode[LOWEST, first] = r
 
 
-def eliminate(rows: Table, mode: Index, scale: Table, vectors: Table, rank: int, n: int) -> float:
+def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
     """Factors the gathered rows in place, and reorders them, in the mode too, for stable pivots; the
     columns after the dependent ones become B. What [GAP] holds by rows is put in their order.
 
     Returns the smallest pivot over the largest; [KEPT] gets the smallest over that of its choice.
     """
+    n, rank, mode = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[MODE]
+    rows, vectors, scale = work[ROWS], work[VECTORS], nums[SCALE]
     low, high, last = 1e300, 0.0, 0
     vectors[KEPT, 0] = 1.0
     for k in range(rank):

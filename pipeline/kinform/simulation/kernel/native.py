@@ -14,12 +14,15 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.extending import lower_builtin, models, register_model, type_callable
+from numba.core.typing.templates import AbstractTemplate, infer_global
+from numba.extending import lower_builtin, models, register_model
 
 __all__ = ["Row", "Table", "Tables"]
 
 WORD, WHOLE = ir.IntType(64), types.int64
 PAIR = types.UniTuple(WHOLE, 2)
+FIRST = {"target": "cpu"}
+"""Of a template: numba asks it before those that are for any target."""
 
 
 class _Memory(types.Type):
@@ -69,30 +72,30 @@ def _item(memory: Any, index: Any) -> tuple[Any, Any]:
     return None, None
 
 
-@type_callable(operator.getitem)
-def _type_get(_: Any) -> Any:
-    def typer(memory: Any, index: Any) -> Any:
-        found, index = _item(memory, index)
-        return None if found is None else found(memory, index)
+@infer_global(operator.getitem)
+class _Get(AbstractTemplate):
+    metadata = FIRST
 
-    return typer
-
-
-@type_callable(operator.setitem)
-def _type_set(_: Any) -> Any:
-    def typer(memory: Any, index: Any, value: Any) -> Any:
-        found, index = _item(memory, index)
-        return types.none(memory, index, found) if isinstance(found, types.Number) else None
-
-    return typer
+    def generic(self, args: Any, _: Any) -> Any:
+        found, index = _item(*args)
+        return None if found is None else found(args[0], index)
 
 
-@type_callable(len)
-def _type_len(_: Any) -> Any:
-    def typer(memory: Any) -> Any:
-        return WHOLE(memory) if isinstance(memory, Table) else None
+@infer_global(operator.setitem)
+class _Set(AbstractTemplate):
+    metadata = FIRST
 
-    return typer
+    def generic(self, args: Any, _: Any) -> Any:
+        found, index = _item(*args[:2])
+        return types.none(args[0], index, found) if isinstance(found, types.Number) else None
+
+
+@infer_global(len)
+class _Len(AbstractTemplate):
+    metadata = FIRST
+
+    def generic(self, args: Any, _: Any) -> Any:
+        return WHOLE(args[0]) if isinstance(args[0], Table) else None
 
 
 def _parts(context: Any, builder: Any, kind: Any, value: Any = None) -> Any:

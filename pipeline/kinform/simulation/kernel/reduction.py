@@ -26,15 +26,14 @@ from kinform.simulation.kernel.layout import (
     REDUCED,
     RIGHT,
     ROWS,
-    SCALE,
     TRIAL,
     VECTORS,
 )
 from kinform.simulation.kernel.loops import back_substitute, eliminate, gather
 from kinform.simulation.kernel.masses import cholesky, solve_cholesky
-from kinform.simulation.kernel.types import Counts, Index, Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
 
-__all__ = ["balance", "factor", "reduce", "settle", "weigh"]
+__all__ = ["factor", "reduce", "settle", "weigh"]
 
 
 def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
@@ -49,20 +48,12 @@ def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
         out[k] -= total + matrix[k, k] * own
 
 
-def reduce(
-    before: Index,
-    order: Counts,
-    matrix: Table,
-    rows: Table,
-    motions: Table,
-    half: Table,
-    small: Table,
-    n: int,
-    rank: int,
-    led: int,
-) -> bool:
+def reduce(ints: Ints, work: Work) -> float:
     """Lower triangle of the mass matrix of the motions that keep the loops closed, its free part factored.
-    False when a free motion has no mass."""
+    Returns −1 when a free motion has no mass."""
+    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    before, order, matrix, rows = ints[COLUMNS], ints[MODE][ORDER], work[MASS], work[ROWS]
+    motions, half, small = work[MOTIONS], work[HALF], work[REDUCED]
     rest = n - rank
     for i in range(n):
         for c in range(rest):
@@ -88,16 +79,29 @@ def reduce(
             if value != 0.0:
                 for c in range(i + 1):
                     small[i, c] -= value * half[order[d], c]
-    return cholesky(small, rest - led)
+    return 0.0 if cholesky(small, rest - led) else -1.0
 
 
-def balance(
-    before: Index, order: Counts, matrix: Table, rows: Table, small: Table, vectors: Table, n: int, rank: int, led: int
-) -> None:
-    """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (dependent rates) and led rates in [ACC].
+def factor(ints: Ints, nums: Nums, work: Work) -> float:
+    """Independent rows of the loops at the present pose, and the mass matrix reduced by them.
 
-    [NEED] is the effort that led rates take.
+    Returns how far the loops are from a singular pose (smallest pivot over the largest), 0 in one, −1 when
+    a free motion has no mass; writes how good the pivots still are to work[VECTORS][KEPT].
     """
+    gather(ints, nums, work, ints[COUNTS][0, RANK])
+    margin = eliminate(ints, nums, work)
+    if margin != 0.0 and reduce(ints, work) < 0.0:
+        return -1.0
+    return margin
+
+
+def settle(ints: Ints, work: Work) -> None:
+    """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (by independent rows) and led rates in [ACC], by what
+    `factor` left. [NEED] is the effort that led rates take."""
+    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    before, order, matrix = ints[COLUMNS], ints[MODE][ORDER], work[MASS]
+    rows, small, vectors = work[ROWS], work[REDUCED], work[VECTORS]
+    back_substitute(rows, ints[MODE], vectors, rank)
     free = n - rank - led
     for d in range(rank):
         total = vectors[GAP, d]
@@ -126,29 +130,3 @@ def balance(
         for j in range(free):
             total += small[k, j] * vectors[RIGHT, j]
         vectors[NEED, order[rank + k]] = total
-
-
-def factor(ints: Ints, nums: Nums, work: Work) -> float:
-    """Independent rows of the loops at the present pose, and the mass matrix reduced by them.
-
-    Returns how far the loops are from a singular pose (smallest pivot over the largest), 0 in one, −1 when
-    a free motion has no mass; writes how good the pivots still are to work[VECTORS][KEPT].
-    """
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
-    mode, rows = ints[MODE], work[ROWS]
-    gather(ints, nums, work, rank)
-    margin = eliminate(rows, mode, nums[SCALE], work[VECTORS], rank, n)
-    if margin != 0.0 and not reduce(
-        ints[COLUMNS], mode[ORDER], work[MASS], rows, work[MOTIONS], work[HALF], work[REDUCED], n, rank, led
-    ):
-        return -1.0
-    return margin
-
-
-def settle(ints: Ints, work: Work) -> None:
-    """Solves for work[VECTORS][ACC] and [NEED] from [FORCE], [GAP] (by independent rows) and led rates in
-    [ACC], by what `factor` left."""
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
-    mode, rows, vectors = ints[MODE], work[ROWS], work[VECTORS]
-    back_substitute(rows, mode, vectors, rank)
-    balance(ints[COLUMNS], mode[ORDER], work[MASS], rows, work[REDUCED], vectors, n, rank, led)

@@ -1,0 +1,98 @@
+"""Loops in the kernel: least corrections by mass, whichever rows are eliminated in whichever order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from portmodels import DOWN, Model, bricard, four_bars, squeezer
+
+from kinform.behaviour import Constant, EffortDrive, MotionDrive, Sine, SpringDamper
+from kinform.simulation import Course, SolverSettings, simulate_system, solve
+from kinform.simulation.engine import engine
+from kinform.simulation.kernel.addresses import address, addresses
+from kinform.simulation.run import Run
+
+
+def begun(model, monkeypatch):
+    """(dynamics, start) with which the system would be simulated."""
+    caught, run = [], solve.run_dynamic
+
+    def caught_run(dynamics, start, *rest):
+        caught.append((dynamics, start))
+        return run(dynamics, start, *rest)
+
+    monkeypatch.setattr(solve, "run_dynamic", caught_run)
+    assert simulate_system(model.system(), Course(1e-3, 1e-3, DOWN)).status == "done"
+    return caught[0]
+
+
+def hung_chain():
+    """A ball, a slide and hinges in a row, a motion drive in the middle and a loop at the end."""
+    model = Model()
+    model.rod("a", (0, 0, 0), (1, 0, 0))
+    model.rod("b", (1, 0, 0), (2, 0.3, 0.1))
+    model.rod("c", (2, 0.3, 0.1), (3, 0, 0.4))
+    model.rod("d", (3, 0, 0.4), (3, 1, 0.9))
+    model.joint("ball", "base", "a", kind="spherical")
+    model.joint("slide", "a", "b", kind="prismatic", axis=(1, 0, 0), point=(1, 0, 0))
+    model.joint("led", "b", "c", point=(2, 0.3, 0.1))
+    model.joint("knee", "c", "d", axis=(0, 1, 0), point=(3, 0, 0.4))
+    model.joint("held", "base", "d", kind="spherical", point=(3, 1, 0.9))
+    model.on("led", MotionDrive("m", "m", Sine(0.0, 0.1, 2.0, 0.0)))
+    model.on("slide", EffortDrive("e", "e", Constant(2.0)))
+    model.add(SpringDamper("s", "s", (0, 0.5, 0), (2, 0.3, 0.1), 30.0, 2.0, 0.5), a="body base", b="body b")
+    return model
+
+
+MECHANISMS = {
+    "four-bars": lambda: four_bars(4),
+    "Bricard": bricard,
+    "squeezer": lambda: squeezer()[0],
+}
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_rates_are_corrected_least_by_mass_in_any_pose(name, monkeypatch):
+    dynamics, start = begun(MECHANISMS[name](), monkeypatch)
+    mechanism, rng = dynamics.mechanism, np.random.default_rng(3)
+    q = start.q
+    for _ in range(6):
+        # Rows change places from pose to pose, and stay so.
+        q, _ = dynamics.project(0.0, q + 0.02 * rng.normal(size=len(q)), np.zeros(mechanism.rates), 1e-14)
+        v = rng.normal(size=mechanism.rates)
+        _, got = dynamics.project(0.0, q, v, 1e-14)
+        rows = mechanism.closure(mechanism.screws(mechanism.poses(q)))
+        matrix = dynamics.mass_matrix(q)
+        whole = np.block([[matrix, rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+        expected = np.linalg.lstsq(whole, np.concatenate([matrix @ v, np.zeros(len(rows))]), rcond=1e-12)[0]
+        np.testing.assert_allclose(got, expected[: len(v)], atol=1e-9 * np.abs(v).max())
+
+
+@pytest.mark.parametrize("make", [lambda: four_bars(4), hung_chain])
+def test_units_give_the_same_by_addresses_as_from_arrays(make, monkeypatch):
+    dynamics, start = begun(make(), monkeypatch)
+    run = Run(dynamics, start, np.array([0.0, 1.0]), SolverSettings())
+    run.open_stretch(0.0, 1.0)
+    rng = np.random.default_rng(5)
+    plain, compiled = engine(compiled=False), engine(compiled=True)
+    for _ in range(4):
+        y = run.y + 0.03 * rng.normal(size=len(run.y))
+        found = []
+        for way in (plain, compiled):
+            at, dy, out = y.copy(), np.zeros_like(y), np.zeros_like(run.out[0])
+            gap, kept = way.project(run, 0.3, at)
+            margin = way.derivative(run, 0.3, at, dy)
+            way.sample(run, 0.3, at, out)
+            found.append(np.concatenate([[gap < 1e-13, kept, margin], at, dy, out]))
+        np.testing.assert_allclose(found[1], found[0], rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("array", [np.zeros((3, 4))[:, 1], np.zeros(3, dtype=np.float32), np.zeros((2, 3)).T])
+def test_an_array_that_the_kernel_cannot_read_is_refused(array):
+    with pytest.raises(TypeError, match="C order"):
+        address(array)
+
+
+def test_addresses_tell_where_each_table_is_and_how_large():
+    tables = (np.zeros((2, 3)), np.zeros((0, 4), dtype=np.int64))
+    assert addresses(tables).tolist() == [tables[0].ctypes.data, 2, 3, tables[1].ctypes.data, 0, 4]
