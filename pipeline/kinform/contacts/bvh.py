@@ -229,13 +229,16 @@ class MeshIndex:
         if self._rays is None:
             self._rays = [_Ray(self.mesh, ray) for ray in _RAYS]
         some = points[out]
-        crossings = np.stack([ray.crossings(some) for ray in self._rays[:2]])
-        count = crossings[0]
-        # two rays that agree are the median whatever the third says
-        doubtful = crossings[0] != crossings[1]
-        if doubtful.any():
-            third = self._rays[2].crossings(some[doubtful])
-            count[doubtful] = np.median(np.vstack([crossings[:, doubtful], third]), axis=0)
+        count = self._rays[0].crossings(some)
+        # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
+        asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(some))
+        if len(asked):
+            second = self._rays[1].crossings(some[asked])
+            # two rays that agree are the median whatever the third says
+            doubtful = count[asked] != second
+            if doubtful.any():
+                third = self._rays[2].crossings(some[asked[doubtful]])
+                count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
         out[out] = np.abs(count) > 0.5
         return out
 
