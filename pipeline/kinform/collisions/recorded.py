@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest, Shapes
 from kinform.collisions.single import preserved
+from kinform.kinematics.motion import inverse
 from kinform.model.kinematics import Joint
 
 __all__ = ["HIGHER", "Moving", "Nodes", "moving_pairs"]
@@ -60,7 +62,7 @@ def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], 
     for a, first in enumerate(names):
         for b in range(a + 1, len(names)):
             second = names[b]
-            relative = np.asarray(np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b]), float)
+            relative = inverse(nodes.displacements[:, a]) @ nodes.displacements[:, b]
             change = np.abs(relative - relative[0]).max(axis=0)
             if max(change[:3, :3].max(), change[:3, 3].max() / shapes.size) < STILL:
                 continue
@@ -140,11 +142,17 @@ def _units(twists: Array) -> Array:
 
 def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
     """How the second body of a pair moves relative to the first; no point of it further between poses than `steps` (m)."""
-    way = np.concatenate([[0.0], SLACK * np.cumsum(steps)])
+    way = [0.0, *(SLACK * np.cumsum(steps)).tolist()]
+    known = nodes.s.tolist()
     first, second = bodies
 
     def displacement(s: float) -> Array:
         poses = nodes.between(s)
-        return np.asarray(np.linalg.solve(poses[first], poses[second]))
+        return np.asarray(inverse(poses[first]) @ poses[second])
 
-    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)), nodes.s)
+    def travel(s: float) -> float:
+        n = min(max(bisect_right(known, s) - 1, 0), len(known) - 2)
+        share = (s - known[n]) / (known[n + 1] - known[n])
+        return way[n] + min(max(share, 0.0), 1.0) * (way[n + 1] - way[n])
+
+    return Course(displacement, travel, nodes.s)
