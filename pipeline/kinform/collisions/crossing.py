@@ -15,19 +15,19 @@ Flags = NDArray[np.bool_]
 _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 
 
-def crossings(first: Array, second: Array, least: float) -> tuple[Flags, Array]:
-    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share.
+def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: float) -> tuple[Flags, Array]:
+    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share; `normals`: unit
+    (n, 3) of both.
 
     Triangles that touch, or lie in one plane, do not cross.
     """
     found = np.zeros(len(first), dtype=bool)
     segments = np.zeros((len(first), 2, 3))
     # most that touch are flush: they are told by one plane, and the rest left out
-    n2 = _normal(second)
+    n1, n2 = normals
     d1 = _heights(first, second, n2)
     some = np.flatnonzero((d1.max(axis=1) > least) & (d1.min(axis=1) < -least))
-    first, second, n2, d1 = first[some], second[some], n2[some], d1[some]
-    n1 = _normal(first)
+    first, second, n1, n2, d1 = first[some], second[some], n1[some], n2[some], d1[some]
     d2 = _heights(second, first, n1)
     kept = (d2.max(axis=1) > least) & (d2.min(axis=1) < -least)
     some, first, second, d1, d2 = some[kept], first[kept], second[kept], d1[kept], d2[kept]
@@ -47,12 +47,6 @@ def crossings(first: Array, second: Array, least: float) -> tuple[Flags, Array]:
 def _heights(triangles: Array, others: Array, normals: Array) -> Array:
     """(n, 3) m of the corners of triangles above the planes of others."""
     return np.asarray(((triangles - others[:, :1]) @ normals[:, :, None])[:, :, 0])
-
-
-def _normal(triangles: Array) -> Array:
-    n = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    length = np.linalg.norm(n, axis=1, keepdims=True)
-    return np.asarray(n / np.where(length > 0.0, length, 1.0))
 
 
 def _span(triangles: Array, d: Array, along: Array) -> tuple[Array, Array, Array, Array]:

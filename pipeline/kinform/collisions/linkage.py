@@ -41,6 +41,8 @@ RANK = 1e-4
 SINGULAR = 2e-3
 
 
+RETURNED = "returned"
+"""How a motion ends that is back where it began."""
 NARROW = 1e-2
 """Share of the assembly's size that a block's size is at least: its joints may be on one point."""
 NODES, SMOOTH = 6, 1e-9
@@ -168,7 +170,7 @@ def _follow(linkage: _Linkage, sign: float) -> _Path:
         along = found[0] if float(found[0] @ along) >= 0.0 else -found[0]
         around = np.where(turns, (q + math.pi) % (2.0 * math.pi) - math.pi, q)
         if len(path) > 8 and float(np.linalg.norm(around)) < STEP:
-            return _Path(np.array(path), "returned")
+            return _Path(np.array(path), RETURNED)
     return _Path(np.array(path), "the motion is too long to be followed to its end")
 
 
@@ -188,7 +190,10 @@ def drive_loops(
         return "the loops do not move"
     if not first[1]:
         return "its loops have more than one freedom, or a singular pose"
-    ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, sign)) for sign in (-1.0, 1.0)]
+    ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, -1.0))]
+    # a motion that comes back to where it began, and meets nothing, is the same the other way round
+    free = ends[0].why == RETURNED and not ends[0].left_out
+    ends.append(ends[0] if free else _travelled(shapes, kinematics, linkage, _follow(linkage, 1.0)))
     out = {}
     for k in block:
         joint = kinematics.joints[k]
@@ -297,7 +302,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
     values = [end.q[:, column] * unit for end in ends]
     low, high = (min(_least(sign * v) for v in values) * sign for sign in (1.0, -1.0))
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
-    returned = any(end.why == "returned" for end in ends)
+    returned = any(end.why == RETURNED for end in ends)
     if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
         free = RangeEnd("unknown", reason=_overlap(left_out)) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
@@ -308,7 +313,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
         end = ends[n]
         if at_end and end.parts:
             sides.append(RangeEnd("found", float(value), end.parts, end.place))
-        elif at_end and end.why != "returned":
+        elif at_end and end.why != RETURNED:
             sides.append(RangeEnd("unknown", reason=end.why))
         elif left_out:
             sides.append(RangeEnd("unknown", reason=_overlap(left_out)))

@@ -257,12 +257,16 @@ class PairTest:
 
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
         """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
-        f, g = self.facets[0][nearest[0]], self.facets[1][nearest[1]]
         X = self.pose(D)
-        corners = self._meshes[0].vertices[self._meshes[0].faces[f]]
-        middle = X[:3, :3] @ self._meshes[1].vertices[self._meshes[1].faces[g]].mean(axis=0) + X[:3, 3]
-        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
-        return float(normal @ (middle - corners[0])) / max(float(np.linalg.norm(normal)), 1e-300)
+        corner = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][nearest[0]], 0]]
+        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][nearest[1]]]]
+        return float(self._normals[0][nearest[0]] @ (X[:3, :3] @ (far.sum(axis=0) / 3.0) + X[:3, 3] - corner))
+
+    @cached_property
+    def _normals(self) -> tuple[Array, Array]:
+        """(n, 3) unit, of the facets that count, each in the frame of its part; zero for those without area."""
+        first, second = (self._shapes.index(n).normals(f) for n, f in zip(self.names, self.facets, strict=True))
+        return first, second
 
     def inside(self, D: Array, f: int, g: int, least: float) -> bool:
         """Whether points of one of two facets that count are deeper than `least` (m) inside the other part."""
@@ -333,7 +337,8 @@ class PairTest:
         f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
-        found, segments = crossings(first, second, 1e-9 * self.size)
+        normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
+        found, segments = crossings(first, second, normals, 1e-9 * self.size)
         if not found.any():
             return NONE
         first_labels, second_labels = self._surfaces[0].labels[f[found]], self._surfaces[1].labels[g[found]]

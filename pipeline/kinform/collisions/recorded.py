@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ LOWER = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
 STILL = 1e-9
 """rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
+REMEMBERED = 64
+"""Displacements of a pair that are kept: the same are asked for several times."""
 SLACK = 1.05
 """Points between two poses may travel more than their straight distance."""
 
@@ -146,9 +149,13 @@ def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
     known = nodes.s.tolist()
     first, second = bodies
 
+    @lru_cache(maxsize=REMEMBERED)
     def displacement(s: float) -> Array:
         poses = nodes.between(s)
-        return np.asarray(inverse(poses[first]) @ poses[second])
+        out, turned = np.eye(4), poses[first][:3, :3].T
+        out[:3, :3] = turned @ poses[second][:3, :3]
+        out[:3, 3] = turned @ (poses[second][:3, 3] - poses[first][:3, 3])
+        return out
 
     def travel(s: float) -> float:
         n = min(max(bisect_right(known, s) - 1, 0), len(known) - 2)
