@@ -43,6 +43,8 @@ MIDDLES = 64
 """Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
 """Of those that are, at which the depth is measured."""
+FINER = 4
+"""So many times as many places for a depth that is reported."""
 SPHERES = 96
 """Spheres about the facets of a part."""
 MOST = 200_000
@@ -319,7 +321,7 @@ class PairTest:
         places = self.places(D)
         inside = self.heights(D, np.arange(len(places))) > self.loose
         found = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
-        return max((self.depth(D, points) for points in found), default=0.0)
+        return max((self.depth(D, points, finer=FINER) for points in found), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
@@ -353,15 +355,15 @@ class PairTest:
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
-    def depth(self, D: Array, segments: Array, least: float = 0.0) -> float:
+    def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3) inside
-        either; 0 where it is not above `least`."""
+        either; 0 where it is not above `least`. Asked at `finer` times as many places."""
         points = segments.reshape(-1, 3)
-        points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
+        points = points[np.unique(np.linspace(0, len(points) - 1, finer * SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)
         order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
         # of near ones and far ones: parts may be thin, or deep in each other
-        order = order[np.unique(np.linspace(0, len(order) - 1, MIDDLES).astype(int))] if len(order) else order
+        order = order[np.unique(np.linspace(0, len(order) - 1, finer * MIDDLES).astype(int))] if len(order) else order
         a, b = a[order], b[order]
         middles = 0.5 * (points[a] + points[b])
         X = self.pose(D)
@@ -369,7 +371,7 @@ class PairTest:
         own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         inside = np.flatnonzero(own.contains(middles))
         inside = inside[far.contains(other[inside])]
-        inside = inside[np.unique(np.linspace(0, len(inside) - 1, INSIDE).astype(int))] if len(inside) else inside
+        inside = inside[np.unique(np.linspace(0, len(inside) - 1, finer * INSIDE).astype(int))] if len(inside) else inside
         total = own.whole().depths(middles[inside])[0] + far.whole().depths(other[inside])[0]
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0

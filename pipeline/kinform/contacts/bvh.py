@@ -344,9 +344,8 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
-        corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        point = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
+        # a triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges
+        point = fcl.CollisionObject(fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]])))
         mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
         for k, p in enumerate(_UNIT * points):
