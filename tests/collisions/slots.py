@@ -1,16 +1,16 @@
-"""A block in a slot, as meshes through to joints, and runs in which it is moved by hand."""
+"""A block in a slot and a lever between pegs, as meshes through to joints, and runs in which a part is moved by hand."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from solids import assembly, box, part
+from solids import assembly, box, part, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.model.simulation import Simulation
 
-__all__ = ["SLOT", "block_in_slot", "derived", "moved"]
+__all__ = ["SLOT", "block_in_slot", "derived", "lever_between_pegs", "moved"]
 
 SLOT = (-40, 30)
 
@@ -19,6 +19,13 @@ def block_in_slot(gap=0.0):
     lever = box(-60, 60, -20, 20, 0, 8) - box(*SLOT, -9, 9, -1, 9) - box(*SLOT, -11, 11, 3, 5)
     block = box(-12, 12, -9 + gap, 9 - gap, 0, 8) + box(-12, 12, -11 + gap, 11 - gap, 3 + gap, 5 - gap)
     return {"lever": lever, "block": block}
+
+
+def lever_between_pegs():
+    plate = box(-50, 50, -50, 50, -5, 0) + rod(5, -1, 11) + rod(8, 10, 13)
+    base = plate + box(28, 32, 12, 16, -1, 8) + box(20, 24, -20, -16, -1, 8)
+    lever = box(-8, 40, -4, 4, 0, 10) + rod(9, 0, 10) - rod(5.02, -1, 11, 32, 3.0)
+    return {"base": base, "lever": lever}
 
 
 def derived(solids, X=None, ground=None, scale=1e-3, contact=None):

@@ -9,6 +9,7 @@ from re import search
 import numpy as np
 import pytest
 from known import FIXTURES
+from slots import lever_between_pegs
 from solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, stages, surfaces
@@ -24,13 +25,6 @@ def found(X=None, scale=1e-3, **solids):
     touching = contacts.find(made, known)
     derived = kinematics.derive(made, known, touching)
     return collisions.ranges(made, known, touching, derived), derived
-
-
-def lever_between_pegs():
-    plate = box(-50, 50, -50, 50, -5, 0) + rod(5, -1, 11) + rod(8, 10, 13)
-    base = plate + box(28, 32, 12, 16, -1, 8) + box(20, 24, -20, -16, -1, 8)
-    lever = box(-8, 40, -4, 4, 0, 10) + rod(9, 0, 10) - rod(5.02, -1, 11, 32, 3.0)
-    return {"base": base, "lever": lever}
 
 
 def ends(joint, axis, item):

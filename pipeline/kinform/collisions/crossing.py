@@ -15,33 +15,38 @@ Flags = NDArray[np.bool_]
 _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 
 
-def crossings(first: Array, second: Array, least: float) -> tuple[Flags, Array]:
-    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share.
+def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: float) -> tuple[Flags, Array]:
+    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share; `normals`: unit
+    (n, 3) of both.
 
     Triangles that touch, or lie in one plane, do not cross.
     """
-    n1, n2 = _normal(first), _normal(second)
-    d1 = np.einsum("ij,ikj->ik", n2, first - second[:, :1])
-    d2 = np.einsum("ij,ikj->ik", n1, second - first[:, :1])
-    along = cross(n1, n2)
+    found = np.zeros(len(first), dtype=bool)
+    segments = np.zeros((len(first), 2, 3))
+    # most that touch are flush: they are told by one plane, and the rest left out
+    n1, n2 = normals
+    d1 = _heights(first, second, n2)
+    some = np.flatnonzero((d1.max(axis=1) > least) & (d1.min(axis=1) < -least))
+    first, second, n1, n2, d1 = first[some], second[some], n1[some], n2[some], d1[some]
+    d2 = _heights(second, first, n1)
+    kept = (d2.max(axis=1) > least) & (d2.min(axis=1) < -least)
+    some, first, second, d1, d2 = some[kept], first[kept], second[kept], d1[kept], d2[kept]
+    if not len(some):
+        return found, segments
+    along = cross(n1[kept], n2[kept])
     length = np.linalg.norm(along, axis=1)
     along /= np.where(length > 0.0, length, 1.0)[:, None]
-    found = (length > 1e-9) & (np.abs(d1).max(axis=1) > 0.0)
-    for d in (d1, d2):
-        found &= (d.max(axis=1) > least) & (d.min(axis=1) < -least)
     low1, high1, p1, q1 = _span(first, d1, along)
     low2, high2, p2, q2 = _span(second, d2, along)
-    low, high = np.maximum(low1, low2), np.minimum(high1, high2)
-    found &= high - low > least
-    start = np.where((low1 >= low2)[:, None], p1, p2)
-    end = np.where((high1 <= high2)[:, None], q1, q2)
-    return found, np.stack([start, end], axis=1)
+    found[some] = (length > 1e-9) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
+    segments[some, 0] = np.where((low1 >= low2)[:, None], p1, p2)
+    segments[some, 1] = np.where((high1 <= high2)[:, None], q1, q2)
+    return found, segments
 
 
-def _normal(triangles: Array) -> Array:
-    n = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    length = np.linalg.norm(n, axis=1, keepdims=True)
-    return np.asarray(n / np.where(length > 0.0, length, 1.0))
+def _heights(triangles: Array, others: Array, normals: Array) -> Array:
+    """(n, 3) m of the corners of triangles above the planes of others."""
+    return np.asarray(((triangles - others[:, :1]) @ normals[:, :, None])[:, :, 0])
 
 
 def _span(triangles: Array, d: Array, along: Array) -> tuple[Array, Array, Array, Array]:

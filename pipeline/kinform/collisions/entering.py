@@ -54,30 +54,49 @@ class Probes:
 
 def probes(mesh: Mesh, labels: Ints, facets: Ints) -> Probes:
     """Points on the surfaces (`labels`, of all facets) that some facets belong to, on these."""
-    own = labels[facets]
-    kinds = np.unique(own)
-    each = max(min(EACH, MOST // max(len(kinds), 1)), 1)
-    chosen = [_spread(mesh.vertices[mesh.faces[facets[own == kind]]], each) for kind in kinds]
-    points = np.concatenate(chosen) if chosen else np.zeros((0, 3))
-    return Probes(points[np.unique(np.linspace(0, len(points) - 1, MOST).astype(int))] if len(points) else points)
+    if not len(facets):
+        return Probes(np.zeros((0, 3)))
+    facets = facets[np.argsort(labels[facets], kind="stable")]
+    starts = np.flatnonzero(np.diff(labels[facets], prepend=-1))
+    each = max(min(EACH, MOST // len(starts)), 1)
+    points = _spread(mesh.vertices[mesh.faces[facets]], starts, each)
+    return Probes(points[np.unique(np.linspace(0, len(points) - 1, MOST).astype(int))])
 
 
-def _spread(corners: Array, count: int) -> Array:
-    """Some points (≤ count, 3) inside of triangles (n, 3, 3), far from each other."""
-    size = float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0)))
+def _spread(corners: Array, starts: Ints, count: int) -> Array:
+    """Points (n, 3) inside of triangles (m, 3, 3), in groups that begin at `starts`: of each group some (≤ count), far
+    from each other."""
+    group = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(corners))))
+    low, high = (f.reduceat(g(corners, axis=1), starts) for f, g in ((np.minimum, np.min), (np.maximum, np.max)))
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    points = []
-    parts = np.clip(np.ceil(FINE * sides / max(size, 1e-300)), 1, FINE).astype(int)
-    for number in np.unique(parts):
-        points.append((inner_weights(int(number)) @ corners[parts == number]).reshape(-1, 3))
-    candidates = np.concatenate(points)
-    away = np.linalg.norm(candidates - candidates.mean(axis=0), axis=1)
-    taken = [int(np.argmin(away))]
-    away = np.full(len(candidates), np.inf)
-    while len(taken) < min(count, len(candidates)):
-        away = np.minimum(away, np.linalg.norm(candidates - candidates[taken[-1]], axis=1))
-        farthest = int(np.argmax(away))
-        if away[farthest] <= 0.0:
-            break
-        taken.append(farthest)
-    return np.asarray(candidates[np.sort(taken)])
+    size = np.maximum(np.linalg.norm(high - low, axis=1), 1e-300)[group]
+    parts = np.clip(np.ceil(FINE * sides / size), 1, FINE).astype(np.int64)
+    made, owner, key = [], [], []
+    for number in np.unique(parts).tolist():
+        some = np.flatnonzero(parts == number)
+        made.append((inner_weights(number) @ corners[some]).reshape(-1, 3))
+        owner.append(np.repeat(group[some], number * number))
+        key.append(owner[-1] * (FINE + 1) + number)
+    order = np.argsort(np.concatenate(key), kind="stable")
+    points, group = np.concatenate(made)[order], np.concatenate(owner)[order]
+    starts = np.flatnonzero(np.diff(group, prepend=-1))
+    wide = np.diff(np.append(starts, len(points)))
+    middle = np.add.reduceat(points, starts) / wide[:, None]
+    last = _first_least(_squares(points - middle[group]), starts, group)
+    taken, away = np.zeros(len(points), dtype=bool), np.full(len(points), np.inf)
+    taken[last] = True
+    for _ in range(min(count, int(wide.max())) - 1):
+        away = np.minimum(away, _squares(points - points[last][group]))
+        last = _first_least(-away, starts, group)
+        taken[last[away[last] > 0.0]] = True
+    return points[taken]
+
+
+def _first_least(values: Array, starts: Ints, group: Ints) -> Ints:
+    """The place of the least value of each group, of equal ones the first."""
+    least = np.flatnonzero(values == np.minimum.reduceat(values, starts)[group])
+    return np.asarray(least[np.searchsorted(least, starts)])
+
+
+def _squares(vectors: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", vectors, vectors))

@@ -20,9 +20,8 @@ from kinform.collisions.pairs import Shapes
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
 from kinform.collisions.single import drive_alone
-from kinform.kinematics.displacements import displacement
 from kinform.kinematics.graph import forest
-from kinform.kinematics.motion import LoopSystem, loop_system
+from kinform.kinematics.motion import LoopSystem, exponentials, inverse, loop_system
 from kinform.kinematics.screws import Frame
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
@@ -42,8 +41,12 @@ RANK = 1e-4
 SINGULAR = 2e-3
 
 
+RETURNED = "returned"
+"""How a motion ends that is back where it began."""
 NARROW = 1e-2
 """Share of the assembly's size that a block's size is at least: its joints may be on one point."""
+NODES, SMOOTH = 6, 1e-9
+"""Nodes that the motion between two of them is taken through, and rad and share of the size that loops may be open then."""
 CLOSED = 1e-6
 """rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
 
@@ -78,6 +81,7 @@ class _Linkage:
                 self.unit.append(1.0 if turns else length)
                 self.turns.append(turns)
                 self.owner.append(k)
+        self._screws, self._units = np.array(self.twists).reshape(-1, 6), np.array(self.unit)
         ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
         self.tree = forest(len(kinematics.bodies), edges, ground)
         self.edges = edges
@@ -99,18 +103,19 @@ class _Linkage:
         return taken
 
     def poses(self, q: Array) -> Array:
-        """(B, 4, 4) displacement of each body at coordinates q (n,); joints outside of the block rest."""
+        """(D, B, 4, 4) displacement of each body at coordinates q (D, n); joints outside of the block rest."""
+        moves = exponentials(self._screws, q * self._units)
         across: dict[int, Array] = {}
         for n, k in enumerate(self.owner):
-            across[k] = across.get(k, np.eye(4)) @ displacement(float(q[n]) * self.unit[n] * self.twists[n])
-        out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
+            across[k] = across[k] @ moves[:, n] if k in across else moves[:, n]
+        out = np.broadcast_to(np.eye(4), (len(q), len(self.tree.parent), 4, 4)).copy()
         for node in self.tree.order:
             up, k = self.tree.parent[node], self.tree.edge[node]
             if up >= 0:
                 move = across.get(k)
                 if move is not None and self.edges[k][1] != node:
-                    move = np.asarray(np.linalg.inv(move), dtype=np.float64)
-                out[node] = out[up] if move is None else out[up] @ move
+                    move = inverse(move)
+                out[:, node] = out[:, up] if move is None else out[:, up] @ move
         return out
 
     def closed(self, q: Array) -> Array | None:
@@ -165,7 +170,7 @@ def _follow(linkage: _Linkage, sign: float) -> _Path:
         along = found[0] if float(found[0] @ along) >= 0.0 else -found[0]
         around = np.where(turns, (q + math.pi) % (2.0 * math.pi) - math.pi, q)
         if len(path) > 8 and float(np.linalg.norm(around)) < STEP:
-            return _Path(np.array(path), "returned")
+            return _Path(np.array(path), RETURNED)
     return _Path(np.array(path), "the motion is too long to be followed to its end")
 
 
@@ -185,7 +190,10 @@ def drive_loops(
         return "the loops do not move"
     if not first[1]:
         return "its loops have more than one freedom, or a singular pose"
-    ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, sign)) for sign in (-1.0, 1.0)]
+    ends = [_travelled(shapes, kinematics, linkage, _follow(linkage, -1.0))]
+    # a motion that comes back to where it began, and meets nothing, is the same the other way round
+    free = ends[0].why == RETURNED and not ends[0].left_out
+    ends.append(ends[0] if free else _travelled(shapes, kinematics, linkage, _follow(linkage, 1.0)))
     out = {}
     for k in block:
         joint = kinematics.joints[k]
@@ -218,6 +226,38 @@ def _spun(shapes: Shapes, kinematics: Kinematics, joint: Joint, body: BodyName) 
     return JointRange(joint.name, end, end, found.left_out)
 
 
+class _Between:
+    """Coordinates between the nodes of a path (T, n) at parameters s (T,), at which the loops close."""
+
+    def __init__(self, linkage: _Linkage, q: Array, s: Array):
+        self._linkage, self._q, self._s = linkage, q, s
+        self._smooth: dict[int, bool] = {}
+
+    def __call__(self, x: float) -> Array:
+        n = min(max(int(np.searchsorted(self._s, x, side="right")) - 1, 0), len(self._s) - 1)
+        if x == self._s[n] or n == len(self._s) - 1:
+            return np.asarray(self._q[n])
+        if n not in self._smooth:
+            # what closes the loops in the middle of a step does so all along it
+            middle = self._through(n, 0.5 * float(self._s[n] + self._s[n + 1]))
+            self._smooth[n] = bool(np.abs(self._linkage.system.close(middle[None]).residual).max() < SMOOTH)
+        guess = self._through(n, x)
+        if self._smooth[n]:
+            return guess
+        found = self._linkage.closed(guess)
+        return guess if found is None else found
+
+    def _through(self, n: int, x: float) -> Array:
+        """The polynomial through the nodes about step n (Lagrange), at x."""
+        first = min(max(n - NODES // 2 + 1, 0), max(len(self._s) - NODES, 0))
+        s, q = self._s[first : first + NODES], self._q[first : first + NODES]
+        apart = s[:, None] - s
+        np.fill_diagonal(apart, 1.0)
+        away = np.broadcast_to(x - s, apart.shape).copy()
+        np.fill_diagonal(away, 1.0)
+        return np.asarray((away / apart).prod(axis=1) @ q)
+
+
 @dataclass(frozen=True, eq=False)
 class _Travelled:
     q: Array
@@ -233,17 +273,10 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
     names = [str(body.name) for body in kinematics.bodies]
     s = np.arange(len(path.q), dtype=float)
 
-    def at(x: float) -> Array:
-        n = min(int(x), len(path.q) - 1)
-        if x == n:
-            return np.asarray(path.q[n])
-        guess = path.q[n] + (x - n) * (path.q[n + 1] - path.q[n])
-        found = linkage.closed(np.asarray(guess, float))
-        return np.asarray(guess, float) if found is None else found
-
+    at = _Between(linkage, path.q, s)
     # pairs halve the same steps: most poses are asked for by several
-    between = lru_cache(maxsize=None)(lambda x: linkage.poses(at(x)))
-    nodes = Nodes(s, np.array([linkage.poses(q) for q in path.q]), between)
+    between = lru_cache(maxsize=None)(lambda x: linkage.poses(at(x)[None])[0])
+    nodes = Nodes(s, linkage.poses(path.q), between)
     end, why, place = float(s[-1]), path.why, None
     parts: tuple[PartName, ...] = ()
     left_out = set()
@@ -269,7 +302,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
     values = [end.q[:, column] * unit for end in ends]
     low, high = (min(_least(sign * v) for v in values) * sign for sign in (1.0, -1.0))
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
-    returned = any(end.why == "returned" for end in ends)
+    returned = any(end.why == RETURNED for end in ends)
     if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
         free = RangeEnd("unknown", reason=_overlap(left_out)) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
@@ -280,7 +313,7 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
         end = ends[n]
         if at_end and end.parts:
             sides.append(RangeEnd("found", float(value), end.parts, end.place))
-        elif at_end and end.why != "returned":
+        elif at_end and end.why != RETURNED:
             sides.append(RangeEnd("unknown", reason=end.why))
         elif left_out:
             sides.append(RangeEnd("unknown", reason=_overlap(left_out)))

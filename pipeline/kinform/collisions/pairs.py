@@ -43,6 +43,8 @@ MIDDLES = 64
 """Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
 """Of those that are, at which the depth is measured."""
+FINER = 4
+"""So many times as many places for a depth that is reported."""
 SPHERES = 96
 """Spheres about the facets of a part."""
 MOST = 200_000
@@ -196,6 +198,7 @@ class PairTest:
         """Whether the solids overlap at the pose of the meshes, other than where they mate."""
         self.facets = facets
         self.X_WA, self.X_WB = shapes.part(first).X_WP, shapes.part(second).X_WP
+        self._X_AW = np.asarray(np.linalg.inv(self.X_WA))
         self._meshes = (shapes.mesh(first), shapes.mesh(second))
         self._surfaces = (shapes.surfaces_of(first), shapes.surfaces_of(second))
         self._near = (shapes.borders(first), shapes.borders(second))
@@ -220,7 +223,7 @@ class PairTest:
         first, second = sorted(PartName(name) for name in self.names)
         return first, second
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Diagonal of the smaller part (m)."""
         return min(mesh.diagonal for mesh in self._meshes)
@@ -229,11 +232,15 @@ class PairTest:
         a, b = patch.surfaces
         return (a, b) if patch.parts[0] == self.names[0] else (b, a)
 
+    def pose(self, D: Array) -> Array:
+        """(4, 4) of the second part in the first, by the displacement `D` of the second body relative to the first."""
+        return np.asarray(self._X_AW @ D @ self.X_WB)
+
     def _place(self, D: Array) -> Array:
         """Pose of the second part in the first, by the displacement `D` of the second body relative to the first."""
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = self.pose(D)
         self._objects[1].setTransform(fcl_pose(X))
-        return np.asarray(X)
+        return X
 
     def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
         """Distance (m) of the facets that count at a displacement (4, 4), 0 where they touch or cross; and the nearest."""
@@ -243,18 +250,29 @@ class PairTest:
         result = fcl.DistanceResult()
         return fcl_distance(*self._objects, result), (result.b1, result.b2)
 
+    def hits(self, D: Array) -> Ints:
+        """(n, 2) facets, as counted by FCL, that touch or cross at a displacement (4, 4)."""
+        if self.empty:
+            return np.zeros((0, 2), dtype=np.int64)
+        self._place(D)
+        return _hits(*self._objects)
+
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
         """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
-        f, g = self.facets[0][nearest[0]], self.facets[1][nearest[1]]
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
-        corners = self._meshes[0].vertices[self._meshes[0].faces[f]]
-        middle = X[:3, :3] @ self._meshes[1].vertices[self._meshes[1].faces[g]].mean(axis=0) + X[:3, 3]
-        normal = cross(corners[1] - corners[0], corners[2] - corners[0])
-        return float(normal @ (middle - corners[0])) / max(float(np.linalg.norm(normal)), 1e-300)
+        X = self.pose(D)
+        corner = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][nearest[0]], 0]]
+        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][nearest[1]]]]
+        return float(self._normals[0][nearest[0]] @ (X[:3, :3] @ (far.sum(axis=0) / 3.0) + X[:3, 3] - corner))
+
+    @cached_property
+    def _normals(self) -> tuple[Array, Array]:
+        """(n, 3) unit, of the facets that count, each in the frame of its part; zero for those without area."""
+        first, second = (self._shapes.index(n).normals(f) for n, f in zip(self.names, self.facets, strict=True))
+        return first, second
 
     def inside(self, D: Array, f: int, g: int, least: float) -> bool:
         """Whether points of one of two facets that count are deeper than `least` (m) inside the other part."""
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = self.pose(D)
         grid = np.array([(a, b, GRID - a - b) for a in range(GRID + 1) for b in range(GRID + 1 - a)]) / GRID
         own = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
         far = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
@@ -280,7 +298,7 @@ class PairTest:
     def heights(self, D: Array, chosen: Ints) -> Array:
         """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the negative
         of a distance that they keep at least."""
-        X = np.asarray(np.linalg.solve(self.X_WA, D @ self.X_WB), dtype=np.float64)
+        X = self.pose(D)
         own, far = self.probes
         count = len(own.points)
         first, second = (self._shapes.index(name) for name in self.names)
@@ -292,7 +310,7 @@ class PairTest:
 
     def places(self, D: Array) -> Array:
         """(n, 3) m, first part's frame: these points."""
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = self.pose(D)
         own, far = self.probes
         return np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
 
@@ -303,56 +321,57 @@ class PairTest:
         places = self.places(D)
         inside = self.heights(D, np.arange(len(places))) > self.loose
         found = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
-        return max((self.depth(D, points) for points in found), default=0.0)
+        return max((self.depth(D, points, finer=FINER) for points in found), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = self.pose(D)
         own = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
         far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
         return np.asarray(0.5 * (own.mean(axis=0) + far.mean(axis=0)))
 
-    def crossing(self, D: Array) -> Crossing:
-        """Facets that count and cross at a displacement (4, 4), other than along mates."""
-        if self.empty:
-            return NONE
-        X = self._place(D)
-        hits = np.unique(_hits(self._objects[0], self._objects[1]), axis=0)
+    def crossing(self, D: Array, hits: Ints | None = None) -> Crossing:
+        """Facets that count and cross at a displacement (4, 4), other than along mates; `hits`: where these are known."""
+        hits = self.hits(D) if hits is None else hits
         if not len(hits):
             return NONE
+        X = self.pose(D)
         f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
-        found, segments = crossings(first, second, 1e-9 * self.size)
-        pairs = np.stack([self._surfaces[0].labels[f], self._surfaces[1].labels[g]], axis=1)[found]
+        normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
+        found, segments = crossings(first, second, normals, 1e-9 * self.size)
+        if not found.any():
+            return NONE
+        first_labels, second_labels = self._surfaces[0].labels[f[found]], self._surfaces[1].labels[g[found]]
         segments = segments[found]
         out: dict[SurfacePair, Array] = {}
         slack = self.scrape
-        for pair in sorted({(int(a), int(b)) for a, b in pairs}):
-            own = segments[(pairs == pair).all(axis=1)]
+        for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
+            own = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
             own = own[~self._along_mate(pair, own)]
             if len(own):
                 out[pair] = own
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
-    def depth(self, D: Array, segments: Array, least: float = 0.0) -> float:
+    def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3) inside
-        either; 0 where it is not above `least`."""
+        either; 0 where it is not above `least`. Asked at `finer` times as many places."""
         points = segments.reshape(-1, 3)
-        points = points[np.unique(np.linspace(0, len(points) - 1, SAMPLES).astype(int))]
+        points = points[np.unique(np.linspace(0, len(points) - 1, finer * SAMPLES).astype(int))]
         a, b = np.triu_indices(len(points), 1)
         order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
         # of near ones and far ones: parts may be thin, or deep in each other
-        order = order[np.unique(np.linspace(0, len(order) - 1, MIDDLES).astype(int))] if len(order) else order
+        order = order[np.unique(np.linspace(0, len(order) - 1, finer * MIDDLES).astype(int))] if len(order) else order
         a, b = a[order], b[order]
         middles = 0.5 * (points[a] + points[b])
-        X = np.linalg.solve(self.X_WA, D @ self.X_WB)
+        X = self.pose(D)
         other = (middles - X[:3, 3]) @ X[:3, :3]
         own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         inside = np.flatnonzero(own.contains(middles))
         inside = inside[far.contains(other[inside])]
-        inside = inside[np.unique(np.linspace(0, len(inside) - 1, INSIDE).astype(int))] if len(inside) else inside
+        inside = inside[np.unique(np.linspace(0, len(inside) - 1, finer * INSIDE).astype(int))] if len(inside) else inside
         total = own.whole().depths(middles[inside])[0] + far.whole().depths(other[inside])[0]
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
@@ -385,10 +404,11 @@ def _spheres(mesh: Mesh) -> tuple[Array, Array]:
 
 
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
-    """(n, 2) facets of two models that FCL finds to touch."""
+    """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
     fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False), result)
-    return np.array([(c.b1, c.b2) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
+    key = np.unique(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
+    return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)
 
 
 _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest, Shapes
 from kinform.collisions.single import preserved
+from kinform.kinematics.motion import inverse
 from kinform.model.kinematics import Joint
 
 __all__ = ["HIGHER", "Moving", "Nodes", "moving_pairs"]
@@ -25,6 +28,8 @@ LOWER = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
 """Joints whose twists stay the same in both bodies."""
 STILL = 1e-9
 """rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
+REMEMBERED = 64
+"""Displacements of a pair that are kept: the same are asked for several times."""
 SLACK = 1.05
 """Points between two poses may travel more than their straight distance."""
 
@@ -60,7 +65,7 @@ def moving_pairs(shapes: Shapes, names: Sequence[str], joints: Sequence[Joint], 
     for a, first in enumerate(names):
         for b in range(a + 1, len(names)):
             second = names[b]
-            relative = np.asarray(np.linalg.solve(nodes.displacements[:, a], nodes.displacements[:, b]), float)
+            relative = inverse(nodes.displacements[:, a]) @ nodes.displacements[:, b]
             change = np.abs(relative - relative[0]).max(axis=0)
             if max(change[:3, :3].max(), change[:3, 3].max() / shapes.size) < STILL:
                 continue
@@ -140,11 +145,21 @@ def _units(twists: Array) -> Array:
 
 def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
     """How the second body of a pair moves relative to the first; no point of it further between poses than `steps` (m)."""
-    way = np.concatenate([[0.0], SLACK * np.cumsum(steps)])
+    way = [0.0, *(SLACK * np.cumsum(steps)).tolist()]
+    known = nodes.s.tolist()
     first, second = bodies
 
+    @lru_cache(maxsize=REMEMBERED)
     def displacement(s: float) -> Array:
         poses = nodes.between(s)
-        return np.asarray(np.linalg.solve(poses[first], poses[second]))
+        out, turned = np.eye(4), poses[first][:3, :3].T
+        out[:3, :3] = turned @ poses[second][:3, :3]
+        out[:3, 3] = turned @ (poses[second][:3, 3] - poses[first][:3, 3])
+        return out
 
-    return Course(displacement, lambda s: float(np.interp(s, nodes.s, way)), nodes.s)
+    def travel(s: float) -> float:
+        n = min(max(bisect_right(known, s) - 1, 0), len(known) - 2)
+        share = (s - known[n]) / (known[n + 1] - known[n])
+        return way[n] + min(max(share, 0.0), 1.0) * (way[n + 1] - way[n])
+
+    return Course(displacement, travel, nodes.s)

@@ -96,16 +96,29 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     return First(None, None, None, search.overlaps)
 
 
-@dataclass(frozen=True, eq=False)
 class _State:
-    distance: float
-    nearest: tuple[int, int]
-    look: Callable[[], Crossing] | None
-    """None: too far apart to cross."""
+    """A pair at one displacement; `touching`: whether it is likely to touch there."""
+
+    def __init__(self, test: PairTest, D: Array, touching: bool):
+        self._test, self._D = test, D
+        # to ask for what touches costs no more than to ask how far apart it is
+        self._hits = test.hits(D) if touching else None
+        self.distance = 0.0 if self._hits is not None and len(self._hits) else self._found[0]
+        """m: of the facets that count."""
+
+    @cached_property
+    def _found(self) -> tuple[float, tuple[int, int]]:
+        return self._test.distance(self._D)
+
+    @property
+    def nearest(self) -> tuple[int, int]:
+        """The facets that are nearest to each other."""
+        return self._found[1]
 
     @cached_property
     def crossing(self) -> Crossing:
-        return NONE if self.look is None else self.look()
+        """What crosses; where facets are apart there is nothing."""
+        return NONE if self.distance > 0.0 else self._test.crossing(self._D, self._hits)
 
 
 class _Search:
@@ -120,6 +133,8 @@ class _Search:
         self.before = 0.0
         """m: overlap at the start."""
         self._known: dict[float, _State] = {}
+        self._touching = False
+        """Whether the pair touched where it was last asked."""
         self._inside: Inside | None = None
         self._apart = 0.0
         """Since where the parts have not overlapped."""
@@ -135,9 +150,8 @@ class _Search:
     def state(self, s: float) -> _State:
         if s not in self._known:
             self.tried += 1
-            D = self.course.displacement(s)
-            distance, nearest = self.test.distance(D)
-            self._known[s] = _State(distance, nearest, None if distance > 0.0 else partial(self.test.crossing, D))
+            self._known[s] = _State(self.test, self.course.displacement(s), self._touching)
+            self._touching = self._known[s].distance <= 0.0
         return self._known[s]
 
     def through(self, left: float, right: float) -> bool:

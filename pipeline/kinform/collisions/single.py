@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Generator, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +58,7 @@ class _Candidate:
             radius = min(profile.largest for profile in self._profiles)
         along = float(abs(self._twist[:3] @ self._twist[3:]))
         speed = math.hypot(radius, along) if self._turning else 1.0
-        return Course(lambda s: displacement(sign * s * self._twist), lambda s: speed * s)
+        return Course(lru_cache(maxsize=64)(lambda s: displacement(sign * s * self._twist)), lambda s: speed * s)
 
     def wholes(self) -> Wholes:
         """The parts with all their facets."""

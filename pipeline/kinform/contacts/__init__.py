@@ -6,5 +6,5 @@ from kinform.contacts.find import find
 
 __all__ = ["CODE_VERSION", "find"]
 
-CODE_VERSION: int = 9
+CODE_VERSION: int = 10
 """Raised when the same input would give other contacts."""

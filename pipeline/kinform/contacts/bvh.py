@@ -229,13 +229,16 @@ class MeshIndex:
         if self._rays is None:
             self._rays = [_Ray(self.mesh, ray) for ray in _RAYS]
         some = points[out]
-        crossings = np.stack([ray.crossings(some) for ray in self._rays[:2]])
-        count = crossings[0]
-        # two rays that agree are the median whatever the third says
-        doubtful = crossings[0] != crossings[1]
-        if doubtful.any():
-            third = self._rays[2].crossings(some[doubtful])
-            count[doubtful] = np.median(np.vstack([crossings[:, doubtful], third]), axis=0)
+        count = self._rays[0].crossings(some)
+        # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
+        asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(some))
+        if len(asked):
+            second = self._rays[1].crossings(some[asked])
+            # two rays that agree are the median whatever the third says
+            doubtful = count[asked] != second
+            if doubtful.any():
+                third = self._rays[2].crossings(some[asked[doubtful]])
+                count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
         out[out] = np.abs(count) > 0.5
         return out
 
@@ -341,9 +344,8 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        speck = 1e-9 * max(self.index.mesh.diagonal, 1e-300)
-        corners = speck * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-        point = fcl.CollisionObject(fcl_model(corners, np.array([[0, 1, 2]])))
+        # a triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges
+        point = fcl.CollisionObject(fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]])))
         mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
         for k, p in enumerate(_UNIT * points):

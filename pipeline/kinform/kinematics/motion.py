@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from kinform.kinematics.graph import forest
 from kinform.kinematics.screws import Frame, scaled
 
-__all__ = ["Closed", "LoopSystem", "bracket", "loop_system"]
+__all__ = ["Closed", "LoopSystem", "bracket", "exponentials", "inverse", "loop_system"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -72,7 +72,7 @@ class LoopSystem:
         batch = len(q)
         columns = _carried(bodies[:, self.first[self.joint]] @ inside, self.screws)
         members, a, b = self.chords
-        gap = bodies[:, a] @ across[:, members] @ _inverse(bodies[:, b])
+        gap = bodies[:, a] @ across[:, members] @ inverse(bodies[:, b])
         turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
         residual = np.stack(
             [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
@@ -87,7 +87,7 @@ class LoopSystem:
     def _placed(self, q: Array) -> tuple[Array, Array, Array]:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
-        steps = _exponentials(self.screws, q)
+        steps = exponentials(self.screws, q)
         inside = np.empty((batch, len(self.screws), 4, 4))
         across = np.broadcast_to(np.eye(4), (batch, joints, 4, 4)).copy()
         for coordinates, members in self.levels:
@@ -96,7 +96,7 @@ class LoopSystem:
         bodies = np.broadcast_to(np.eye(4), (batch, 1 + sum(len(d[0]) for d in self.depths), 4, 4)).copy()
         for nodes, parents, members, backward in self.depths:
             moves = across[:, members]
-            moves[:, backward] = _inverse(moves[:, backward])
+            moves[:, backward] = inverse(moves[:, backward])
             bodies[:, nodes] = bodies[:, parents] @ moves
         return bodies, inside, across
 
@@ -173,7 +173,7 @@ def _layer(rows: Sequence[tuple[int, int, int, bool]]) -> tuple[Index, Index, In
     )
 
 
-def _exponentials(screws: Array, q: Array) -> Array:
+def exponentials(screws: Array, q: Array) -> Array:
     """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, by Rodrigues' formula; a slide has no ω and
     falls out of the same terms."""
     spin = _skew(screws[:, :3])
@@ -194,7 +194,8 @@ def _skew(w: Array) -> Array:
     return out - np.swapaxes(out, -1, -2)
 
 
-def _inverse(pose: Array) -> Array:
+def inverse(pose: Array) -> Array:
+    """Inverses of poses (…, 4, 4)."""
     turned = np.swapaxes(pose[..., :3, :3], -1, -2)
     out = np.zeros_like(pose)
     out[..., :3, :3] = turned
