@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from kinform.consistency._shared import self_stresses
+from kinform.consistency._shared import decidable, self_stresses
 from kinform.kinematics.carrying import missing, wrenches_at
 from kinform.kinematics.releases import ContactRows, stated
 from kinform.kinematics.screws import Frame
@@ -32,6 +32,8 @@ CLOSE = 1e-3
 """Share below which it is rounding; in between nobody knows."""
 NOTHING = 1e-6
 """Share of the greatest wrench of the run in any joint below which a wrench is none."""
+LOOKS = 200
+"""Output times at which loads that redundant constraints share are looked at, besides those before a finding."""
 SLIDES = {"prismatic": 0, "cylindrical": 1, "screw": 0}
 """Column of the coordinate that slides, by type of joint."""
 
@@ -105,7 +107,7 @@ def _shared(design: Design, rows: ContactRows, known: list[Joint], loose: list[J
     assert run is not None and kinematics is not None
     names = tuple(joint.name for joint in loose)
     patches = [list(_patches(design, rows, joint)) for joint in loose]
-    if not all(patches) or len(known) != len(run.joint_names):
+    if not all(patches) or len(known) != len(run.joint_names) or not decidable(run):
         return Sharing(names, None, False)
     frames = [Frame.of(np.concatenate([patch.points for patch in own])) for own in patches]
     points = [np.zeros(3) if joint.point is None else joint.point for joint in loose]
@@ -114,12 +116,11 @@ def _shared(design: Design, rows: ContactRows, known: list[Joint], loose: list[J
     slides = [_slide(run, joint, run.joint_names.index(joint.name)) for joint in loose]
     length = frames[0].length
     own = [known.index(joint) for joint in loose]
-    doubt: float | None = None
-    for k, t in enumerate(run.time):
+
+    def share(k: int) -> float:
+        """Of all wrenches that no pushes make at output time k."""
         turns, across = (np.array([pair[n][k] for pair in turned]) for n in (0, 1))
         stresses = self_stresses(kinematics, run, known, turns, across, k, length)
-        if stresses is None:
-            return Sharing(names, None, False)
         wanted, pushes, given = [], [], []
         for n, joint in enumerate(loose):
             turn, frame, at = turns[own[n]], frames[n], points[n]
@@ -131,15 +132,23 @@ def _shared(design: Design, rows: ContactRows, known: list[Joint], loose: list[J
         whole = np.concatenate(wanted)
         size = float(np.linalg.norm(whole))
         if size <= nothing:
-            continue
+            return 0.0
         free = np.concatenate([stress for stress, _ in given], axis=1)
         left = missing(block_diag(*pushes), np.concatenate([free, block_diag(*(d for _, d in given))]), whole)
-        share = float(np.linalg.norm(left)) / size
-        if share > APART:
-            return Sharing(names, float(t), True)
-        if share > CLOSE and doubt is None:
-            doubt = float(t)
-    return Sharing(names, doubt, doubt is None)
+        return float(np.linalg.norm(left)) / size
+
+    last = len(run.time) - 1
+    doubt: int | None = None
+    before = -1
+    for k in np.unique(np.append(np.arange(0, last, max(1, last // LOOKS)), last)).tolist():
+        left = share(k)
+        if left > APART:
+            first = next(n for n in range(before + 1, k + 1) if n == k or share(n) > APART)
+            return Sharing(names, float(run.time[first]), True)
+        if doubt is None and left > CLOSE:
+            doubt = k
+        before = k
+    return Sharing(names, None if doubt is None else float(run.time[doubt]), doubt is None)
 
 
 def _as_seen(wrenches: Array, turn: Array, at: Array, frame: Frame) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 
-__all__ = ["axes_of", "self_stresses"]
+__all__ = ["axes_of", "decidable", "self_stresses"]
 
 Array = NDArray[np.float64]
 
@@ -51,16 +51,19 @@ def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array],
     return turns, slides, screws
 
 
+def decidable(run: Simulation) -> bool:
+    """Whether all wrenches that balance can be looked through: of few joints, and without gears among them."""
+    return len(run.joint_names) <= MOST and not run.gear_names
+
+
 def self_stresses(
     kinematics: Kinematics, run: Simulation, joints: Sequence[Joint], turns: Array, across: Array, k: int, length: float
-) -> Array | None:
+) -> Array:
     """(m, J, 6) wrenches (τ/length; f) on the second bodies of all `joints` of a run, about their points as the first
-    bodies carry them, in the world, that balance among themselves at time k; None where there are too many joints.
+    bodies carry them, in the world, that balance among themselves at time k.
 
     `turns` (J, 3, 3): of the first bodies then; `across` (J, 4, 4): displacements of the second as the first sees it.
     """
-    if len(joints) > MOST or run.gear_names:
-        return None
     ground = {body.name for body in kinematics.bodies if body.ground}
     moving = {name: n for n, name in enumerate(name for name in run.body_names if name not in ground)}
     rows = np.zeros((6 * len(moving), 6 * len(joints)))

@@ -6,4 +6,4 @@ from kinform.function.resolve import Resolution, resolve
 
 __all__ = ["CODE_VERSION", "Resolution", "resolve"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3
