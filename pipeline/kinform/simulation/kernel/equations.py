@@ -231,7 +231,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float)
     for i in range(1, len(links)):
         if links[i, WIDTH] == 3:
             at = links[i, Q]
-            norm = math.sqrt(y[at] ** 2 + y[at + 1] ** 2 + y[at + 2] ** 2 + y[at + 3] ** 2)
+            norm = math.sqrt(y[at] * y[at] + y[at + 1] * y[at + 1] + y[at + 2] * y[at + 2] + y[at + 3] * y[at + 3])
             for j in range(4):
                 y[at + j] /= norm
     if rank == 0:

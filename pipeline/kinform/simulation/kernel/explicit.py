@@ -173,8 +173,10 @@ def try_step(
         slopes[NEW, i] = y[i] + h * total
         # What rounding does to a slope no step can do better than.
         allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i])) + h * ROUGH * slopes[ROUND, i]
-        third += (three / allowed) ** 2
-        fifth += (five / allowed) ** 2
+        # Products, not powers: those of numpy's numbers are not rounded as those of compiled ones.
+        three, five = three / allowed, five / allowed
+        third += three * three
+        fifth += five * five
     if fifth == 0.0 and third == 0.0:
         return 0.0
     # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
@@ -335,8 +337,9 @@ def advance(
         if margin < 0.0:
             return MASSLESS
         for i in range(size):
-            rough += (slopes[12, i] - slopes[11, i]) ** 2
-            moved += (slopes[NEW, i] - slopes[TRIED, i]) ** 2
+            bent, gone = slopes[12, i] - slopes[11, i], slopes[NEW, i] - slopes[TRIED, i]
+            rough += bent * bent
+            moved += gone * gone
         # What rounding leaves near a singular pose is no decay.
         real = rough > (10.0 * NOISE / max(clock[LEAST], 1e-6) ** 2) ** 2
         fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
