@@ -155,3 +155,51 @@ def test_a_carriage_overhanging_its_rail_tips_once_its_middle_is_beyond_the_end(
     assert not findings(carriage(tmp_path, 0.095), "KF506")
     (found,) = findings(carriage(tmp_path, 0.115), "KF506")
     assert "would separate" in found.message
+
+
+def bridge(folder, weight_at):
+    """A beam of 200 mm on two cubes that stand on a table; a load of 100 N pushes it down at `weight_at` (m)."""
+    trimesh.creation.box((0.6, 0.4, 0.02)).apply_translation((0, 0, -0.01)).export(folder / "table.stl")
+    for name, x in (("left", -0.06), ("right", 0.06)):
+        trimesh.creation.box((BLOCK,) * 3).apply_translation((x, 0, BLOCK / 2)).export(folder / f"{name}.stl")
+    beam = trimesh.creation.box((0.24, BLOCK, 0.02)).apply_translation((0, 0, BLOCK + 0.01))
+    beam.export(folder / "beam.stl")
+    parts = "".join(
+        f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\ndensity = 1000\n'
+        for name in ("table", "left", "right", "beam")
+    )
+    x, y = weight_at
+    text = f"""schema = 1
+[assembly]
+name = "bridge"
+units = "m"
+ground = "table"
+{parts}
+[function]
+[[function.load]]
+part = "beam"
+force = [0, 0, -100]
+point = [{x}, {y}, 0.06]
+[simulation]
+duration = 0.02
+step = 0.01
+"""
+    (folder / "bridge.toml").write_text(text)
+    return run(folder / "bridge.toml")
+
+
+@pytest.mark.parametrize(
+    ("place", "lifts"), [((0.0, 0.0), False), ((0.07, 0.015), False), ((0.09, 0.0), True), ((0.0, 0.025), True)]
+)
+def test_however_a_load_is_shared_by_redundant_supports_it_must_be_between_them(tmp_path, place, lifts):
+    """The supports end at x = ±80 mm and y = ±20 mm: their own weights, 0.63 N each, count little beside 100 N."""
+    design = bridge(tmp_path, place)
+    assert design.simulation.status == "done"
+    assert design.kinematics.mobility.redundant == 3
+    assert design.simulation.undetermined.any()
+    found = findings(design, "KF506")
+    assert bool(found) == lifts
+    for finding in found:
+        assert finding.severity == "warning"
+        assert set(finding.subject) == {"beam~left", "beam~right", "left~table", "right~table"}
+        assert "however redundant constraints share the load" in finding.message

@@ -21,7 +21,7 @@ from kinform.model.design import Design
 from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
-from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Mobility, Redundancy, Release
+from kinform.model.kinematics import ConstraintMatrix, Joint, Kinematics, Meshing, Mobility, Redundancy, Release
 from kinform.model.mass import MassProperties, MassReport
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -159,6 +159,11 @@ def mobilities(draw: Any) -> Mobility:
     return draw(of(Mobility, freedoms=array(draw(st.integers(0, 2)), draw(st.integers(0, 2)), 6)))
 
 
+def meshings() -> st.SearchStrategy[Any]:
+    """Teeth."""
+    return of(Meshing, normals=array(2, 3))
+
+
 def releases() -> st.SearchStrategy[Any]:
     """Ways out of contact."""
     return of(Release, twist=array(6))
@@ -220,6 +225,7 @@ def behaviours(draw: Any) -> Behaviour:
         lambda n: model.motion(n, other, draw(signals())), lambda n: model.effort(n, other, draw(signals())),
         lambda n: model.spring(n, other, number(), number()), lambda n: model.damper(n, other, number()),
         lambda n: model.stop(n, other, number(), number()), lambda n: model.gear(n, joint, other, number()),
+        lambda n: model.gear(n, joint, other, number(), pitch_point=vector(), flanks=(vector(), vector())),
         lambda n: model.servo(n, other, draw(signals()), gains), lambda n: model.voltage(n, motor, draw(signals())),
         lambda n: model.controller(n, motor, joint, draw(signals()), gains),
         lambda n: model.spring_between(n, base, last, (vector(), vector()), number(), number(), number()),
@@ -236,7 +242,7 @@ def behaviours(draw: Any) -> Behaviour:
 
 SPECIAL: dict[Any, Any] = {
     Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
-    Behaviour: behaviours, Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
+    Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip
 
 

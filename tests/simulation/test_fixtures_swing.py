@@ -16,7 +16,7 @@ GENERAL = {"ball_bearing", "geneva_driven"}
 """With contacts that are no joint of a port model."""
 SINGULAR = {"parallelogram_flat", "shaky_truss"}
 """Written in a pose where their loops branch, or hold only to first order."""
-ROUNDED = {"bennett", "bricard_rectangular"}
+PROPORTIONED = ("bennett", "bricard_rectangular")
 """Movable by proportions that the coordinates of a mesh file hold only to their rounding."""
 NAMES = sorted(path.parent.name for path in FIXTURES.glob("mechanisms/*/truth.json"))
 
@@ -39,12 +39,24 @@ def swung(derive_design):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_run_is_done_whose_loops_open_unsaid(name, swung):
+def test_no_run_is_done_whose_loops_open(name, swung):
     run = swung(name)
-    if run.status == "done" and run.residual.max() > 1e-8:
-        assert name in ROUNDED
-        assert run.residual.max() < 1e-6
-        assert any("redundant loops open by up to" in said for said in run.assumptions)
+    if run.status == "done":
+        assert run.residual.max() < 1e-10
+
+
+@pytest.mark.parametrize("name", PROPORTIONED)
+def test_loops_that_move_by_their_proportions_stay_closed_for_long(name, derive_design):
+    """Roundings of 1e-8 open the Bennett linkage of the meshes by 2e-6 where its links fold."""
+    found = derive_design(FIXTURES / "mechanisms" / name / f"{name}.toml")
+    request = SimulationRequest(gravity=np.array([3.0, -2.0, -9.0]), duration=2.0, step=0.02)
+    assembly = replace(found.assembly, simulation=request, function=replace(found.assembly.function, drives=()))
+    run = simulate(assembly, found.kinematics, found.mass, level="dynamic")
+    assert run.status == "done"
+    assert run.residual.max() < 1e-10
+    assert not any("open by up to" in said for said in run.assumptions)
+    total = run.energy @ np.array([1.0, 1.0, -1.0])
+    assert np.abs(total - total[0]).max() < 1e-7 * np.ptp(run.energy[:, 0])
 
 
 @pytest.mark.parametrize("name", sorted(set(NAMES) - GENERAL - SINGULAR))

@@ -171,9 +171,23 @@ class Model:
         """The joint's value stays between the limits, rad or m."""
         self.add(EndStop(name, name, lower, upper), shaft=joint)
 
-    def gear(self, name: str, a: Where, b: Where, ratio: float) -> None:
-        """The value of joint `a` is the ratio times that of joint `b`."""
-        self.add(Gear(name, name, ratio), a=a, b=b)
+    def gear(
+        self,
+        name: str,
+        a: Where,
+        b: Where,
+        ratio: float,
+        *,
+        pitch_point: ArrayLike | None = None,
+        flanks: tuple[ArrayLike, ArrayLike] | None = None,
+    ) -> None:
+        """The value of joint `a` is the ratio times that of joint `b`.
+
+        `pitch_point` (3,) m and `flanks`, the directions (3,) in which either side of the teeth at `a` pushes those at
+        `b`, where the force between the teeth is to be known, and what it does to the bearings.
+        """
+        flank, back = (None, None) if flanks is None else (_unit(side) for side in flanks)
+        self.add(Gear(name, name, ratio, _vector(pitch_point), flank, back), a=a, b=b)
 
     def servo(self, name: str, joint: Where, target: Signal, controller: Controller) -> None:
         """The effort on the joint is the controller's output for the target of its value."""

@@ -18,6 +18,8 @@ __all__ = ["Ratio", "coupled_through", "derived_ratio", "shown_ratio"]
 
 TEETH = 1e-2
 """Relative: what the ratio of teeth at one pose may be off."""
+COUNTED = 1e-3
+"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
 SCREW = 1e-3
 """Relative: what the pitch of a screw may be off."""
 MOST = 0.05
@@ -51,6 +53,10 @@ def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> R
             return f"the coupling through '{coupling.through}' is {coupling.status}"
         if coupling.kind == "cam":
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
+        if coupling.meshing is not None:
+            ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
+            relative += COUNTED
+            continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         known = math.isfinite(coupling.uncertainty)
         own = 3.0 * coupling.uncertainty / abs(coupling.ratio) if known else 0.0

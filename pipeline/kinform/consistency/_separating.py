@@ -12,7 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
+from kinform.consistency._shared import decidable, self_stresses
 from kinform.kinematics.carrying import missing, wrenches_at
 from kinform.kinematics.releases import ContactRows, stated
 from kinform.kinematics.screws import Frame
@@ -20,7 +22,7 @@ from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 
-__all__ = ["Lift", "Slip", "lifts", "slips"]
+__all__ = ["Lift", "Sharing", "Slip", "lifts", "slips"]
 
 Array = NDArray[np.float64]
 
@@ -30,6 +32,8 @@ CLOSE = 1e-3
 """Share below which it is rounding; in between nobody knows."""
 NOTHING = 1e-6
 """Share of the greatest wrench of the run in any joint below which a wrench is none."""
+LOOKS = 200
+"""Output times at which loads that redundant constraints share are looked at, besides those before a finding."""
 SLIDES = {"prismatic": 0, "cylindrical": 1, "screw": 0}
 """Column of the coordinate that slides, by type of joint."""
 
@@ -70,18 +74,89 @@ class _Patch:
     """m along the axis: of the surface on the first body and of that on the second, where the joint slides."""
 
 
-def lifts(design: Design) -> tuple[tuple[Lift, ...], tuple[str, ...], tuple[str, ...]]:
-    """First lift of each joint; names of joints that redundancy leaves open; names of those contact does not decide."""
+@dataclass(frozen=True)
+class Sharing:
+    """Joints whose reactions redundancy leaves open, and whether their contacts can carry the run by pushing."""
+
+    joints: tuple[str, ...]
+    time: float | None
+    """s, of the first output time at which they cannot; None where they always can."""
+    certain: bool
+    """False: by hardly more than tessellation explains, or too large to be looked at (then time is None)."""
+
+
+def lifts(design: Design) -> tuple[tuple[Lift, ...], Sharing | None, tuple[str, ...]]:
+    """First lift of each joint; those that redundancy leaves open, together; names of those contact does not decide."""
     run, kinematics, contacts = design.simulation, design.kinematics, design.contacts
     assert run is not None and kinematics is not None and contacts is not None
     known = [joint for joint in kinematics.joints if joint.name in run.joint_names]
     aside = tuple(joint.name for joint in known if stated(joint))
     doubtful = [joint for joint in known if not stated(joint) and joint.held is not True]
-    open_ = tuple(j.name for j in doubtful if run.undetermined[run.joint_names.index(j.name)].any())
+    loose = [j for j in doubtful if run.undetermined[run.joint_names.index(j.name)].any()]
+    open_ = {j.name for j in loose}
     rows = ContactRows(kinematics.matrix, kinematics.bodies, contacts.patches)
     greatest = float(np.linalg.norm(run.F_B[..., 3:], axis=2).max(initial=0.0))
     found = [_first_lift(design, rows, joint, NOTHING * greatest) for joint in doubtful if joint.name not in open_]
-    return tuple(lift for lift in found if lift is not None), open_, aside
+    shared = _shared(design, rows, known, loose, NOTHING * greatest) if loose else None
+    return tuple(lift for lift in found if lift is not None), shared, aside
+
+
+def _shared(design: Design, rows: ContactRows, known: list[Joint], loose: list[Joint], nothing: float) -> Sharing:
+    """Whether the contacts of the loose joints can carry the run together, however the load is shared."""
+    run, kinematics = design.simulation, design.kinematics
+    assert run is not None and kinematics is not None
+    names = tuple(joint.name for joint in loose)
+    patches = [list(_patches(design, rows, joint)) for joint in loose]
+    if not all(patches) or len(known) != len(run.joint_names) or not decidable(run):
+        return Sharing(names, None, False)
+    frames = [Frame.of(np.concatenate([patch.points for patch in own])) for own in patches]
+    points = [np.zeros(3) if joint.point is None else joint.point for joint in loose]
+    ends = [[run.body_names.index(name) for name in joint.bodies] for joint in known]
+    turned = [_relative(run, first, second) for first, second in ends]
+    slides = [_slide(run, joint, run.joint_names.index(joint.name)) for joint in loose]
+    length = frames[0].length
+    own = [known.index(joint) for joint in loose]
+
+    def share(k: int) -> float:
+        """Of all wrenches that no pushes make at output time k."""
+        turns, across = (np.array([pair[n][k] for pair in turned]) for n in (0, 1))
+        stresses = self_stresses(kinematics, run, known, turns, across, k, length)
+        wanted, pushes, given = [], [], []
+        for n, joint in enumerate(loose):
+            turn, frame, at = turns[own[n]], frames[n], points[n]
+            wrench = run.F_B[k, run.joint_names.index(joint.name)]
+            wanted.append(_as_seen(wrench[None], turn, at, frame)[0])
+            stress = stresses[:, own[n]] * np.array([length, length, length, 1.0, 1.0, 1.0])
+            pushes.append(_pushes(patches[n], joint, across[own[n]], float(slides[n][k]), frame))
+            given.append((_as_seen(stress, turn, at, frame), _driven(joint, across[own[n]], at, frame)))
+        whole = np.concatenate(wanted)
+        size = float(np.linalg.norm(whole))
+        if size <= nothing:
+            return 0.0
+        free = np.concatenate([stress for stress, _ in given], axis=1)
+        left = missing(block_diag(*pushes), np.concatenate([free, block_diag(*(d for _, d in given))]), whole)
+        return float(np.linalg.norm(left)) / size
+
+    last = len(run.time) - 1
+    doubt: int | None = None
+    before = -1
+    for k in np.unique(np.append(np.arange(0, last, max(1, last // LOOKS)), last)).tolist():
+        left = share(k)
+        if left > APART:
+            first = next(n for n in range(before + 1, k + 1) if n == k or share(n) > APART)
+            return Sharing(names, float(run.time[first]), True)
+        if doubt is None and left > CLOSE:
+            doubt = k
+        before = k
+    return Sharing(names, None if doubt is None else float(run.time[doubt]), doubt is None)
+
+
+def _as_seen(wrenches: Array, turn: Array, at: Array, frame: Frame) -> Array:
+    """World wrenches (n, 6) about the joint's point as the first body sees them, about the frame's centre, torques
+    over its length."""
+    out = np.concatenate([wrenches[:, :3] @ turn, wrenches[:, 3:] @ turn], axis=1)
+    out[:, :3] = (out[:, :3] + np.cross(at - frame.centre, out[:, 3:])) / frame.length
+    return out
 
 
 def _first_lift(design: Design, rows: ContactRows, joint: Joint, nothing: float) -> Lift | None:

@@ -57,8 +57,8 @@ class Chain:
 
     @property
     def looped(self) -> bool:
-        """Whether there are loops to close."""
-        return len(self.system.chords[0]) > 0
+        """Whether there are loops to close, or ratios to keep."""
+        return len(self.system.chords[0]) + len(self.system.ties) > 0
 
     @property
     def freedoms(self) -> int:
@@ -149,18 +149,25 @@ def mechanism_of(assembly: Assembly, kinematics: Kinematics) -> Chain | str:
 
 
 def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], root: str, prefer: str) -> Chain | str:
+    teeth = {coupling.through: coupling for coupling in kinematics.couplings if coupling.meshing is not None}
     for joint in joints:
         if joint.status == "ambiguous":
             return f"joint '{joint.name}' is ambiguous: {joint.reason}"
-        if joint.type == "general" and joint.freedoms:
+        if joint.type == "general" and joint.freedoms and joint.name not in teeth:
             return f"joint '{joint.name}' is known by its velocities only"
+    geared = [teeth[joint.name] for joint in joints if joint.type == "general" and joint.name in teeth]
+    joints = [joint for joint in joints if joint.type != "general" or joint.name not in teeth]
+    index = {joint.name: k for k, joint in enumerate(joints)}
+    if not all(name in index for coupling in geared for name in coupling.joints):
+        return f"the teeth of '{geared[0].through}' couple joints beside the chain"
     bodies = [root, *sorted({name for j in joints for name in j.bodies} - {root})]
     points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     if frame.length < 1e-9 or len(points) < 2:
         frame = Frame(frame.centre, max(_size(assembly), 1e-9))
     edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
-    system = loop_system(edges, [j.twists for j in joints], frame)
+    ties = [(index[c.joints[0]], index[c.joints[1]], c.meshing.ratio) for c in geared if c.meshing is not None]
+    system = loop_system(edges, [j.twists for j in joints], frame, ties)
     ranges = _ranges(assembly, kinematics, prefer)
     coordinates = [c for joint in joints for c in _coordinates(joint, frame, ranges)]
     return Chain(system, frame, tuple(bodies), tuple(coordinates))

@@ -112,7 +112,9 @@ def _sampled(chain: Chain) -> Array:
 def _box(chain: Chain) -> tuple[Array, Array]:
     """Ranges of all coordinates: a full turn where no range of a turn is known, or it is free."""
     low, high = chain.lower, chain.upper
-    turns = np.array([c.turns for c in chain.coordinates], dtype=np.bool_)
+    # what gears tie turns as often as its partner needs
+    tied = chain.system.ties.any(axis=0)
+    turns = np.array([c.turns for c in chain.coordinates], dtype=np.bool_) & ~tied
     return np.where(turns, np.maximum(low, -np.pi), low), np.where(turns, np.minimum(high, np.pi), high)
 
 

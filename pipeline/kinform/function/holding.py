@@ -87,7 +87,7 @@ def holding_effort(
 def _open_ended(chain: Chain) -> set[str]:
     """Joints that close no loop."""
     members: dict[int, str] = {int(j): c.joint for j, c in zip(chain.system.joint, chain.coordinates, strict=True)}
-    looped = np.abs(chain.system.loops).max(axis=0, initial=0.0) > 0.0
+    looped = (np.abs(chain.system.loops).max(axis=0, initial=0.0) > 0.0) | chain.system.ties.any(axis=0)
     return {members[int(j)] for j, closes in zip(chain.system.joint, looped, strict=True) if not closes}
 
 

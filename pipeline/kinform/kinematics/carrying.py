@@ -22,18 +22,19 @@ def wrenches_at(points: Array, normals: Array, centre: Array, length: float) -> 
 
 def missing(pushes: Array, given: Array, wrench: Array) -> Array:
     """(6,) part of the wrench (torque over the length; force) that neither the pushes (n, 6), with factors from zero
-    up, nor what is given both ways (m, 6), as by a drive, can make up: the least there is."""
+    up, nor what is given both ways (m, 6), as by a drive, can make up: the least there is. Of several contacts at
+    once everything is as many times as long."""
     from scipy.optimize import nnls
 
     size = float(np.linalg.norm(wrench))
     if size == 0.0:
-        return np.zeros(6)
+        return np.zeros(len(wrench))
     if len(given):
         # What drives give is free: only what is across of it has to be pushed.
         left, values, _ = np.linalg.svd(given.T, full_matrices=True)
         across = left[:, int(np.count_nonzero(values > 1e-9 * values[0])) :]
     else:
-        across = np.eye(6)
+        across = np.eye(len(wrench))
     wanted, columns = across.T @ wrench / size, across.T @ pushes.T
     if not columns.shape[1]:
         return np.asarray(across @ wanted * size)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -311,7 +311,9 @@ def _finish(
     turns = _idle(assembly, bodies, joints, patches, size, balls or {})
     idle = {name: len(own) for name, own in turns.items()}
     count = closure.mobility
-    finite = finite_mobility(edges, joints, len(bodies), count, size)
+    tied = couplings(assembly, bodies, joints, patches, closure)
+    constant = {coupling.through for coupling in tied if coupling.meshing is not None}
+    finite = finite_mobility(edges, joints, len(bodies), count, size, tied)
     poses = {part.name: part.X_WP for part in assembly.parts}
     places = [poses[body.parts[0]][:3, 3] for body in bodies]
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
@@ -324,7 +326,7 @@ def _finish(
         blocked=blocked,
         freedoms=_freedoms(closure, edges, spaces),
         idle_bodies=tuple(sorted(name for name, n in idle.items() if n)),
-        uncertain=tuple(j.name for j in joints if j.status in ("ambiguous", "blocked") or j.type == "general"),
+        uncertain=tuple(j.name for j in joints if _uncertain(j, constant)),
         finite_reason=finite.reason,
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
@@ -338,8 +340,12 @@ def _finish(
     links = links_between(clusters, bodies, joints, patches, rows)
     first = next(k for k, item in enumerate(clusters) if item.ground)
     apart, reason = separations([item.name for item in clusters], first, links)
-    tied = couplings(assembly, bodies, joints, patches, closure)
     return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason, tied)
+
+
+def _uncertain(joint: Joint, constant: Collection[str]) -> bool:
+    """Whether counts depend on a joint that is not certain; teeth of a constant ratio are."""
+    return joint.status in ("ambiguous", "blocked") or (joint.type == "general" and joint.name not in constant)
 
 
 def _freedoms(closure: Closure, edges: Sequence[tuple[int, int]], spaces: Sequence[Array]) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from kinform.kinematics.graph import UnionFind, blocks
 from kinform.kinematics.motion import LoopSystem, loop_system
 from kinform.kinematics.poses import first_order
 from kinform.kinematics.screws import Frame
-from kinform.model.kinematics import FiniteCertificate, Joint
+from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
 
 __all__ = ["Finite", "finite_mobility"]
@@ -46,10 +46,16 @@ class Finite:
 
 
 def finite_mobility(
-    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], nodes: int, instantaneous: int, size: float
+    edges: Sequence[tuple[int, int]],
+    joints: Sequence[Joint],
+    nodes: int,
+    instantaneous: int,
+    size: float,
+    ties: Sequence[Coupling] = (),
 ) -> Finite:
     """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
-    `instantaneous` freedoms of first order; `size` of the assembly (m)."""
+    `instantaneous` freedoms of first order; `size` of the assembly (m); `ties`: couplings of constant ratio, which
+    stand for the contacts that they go through."""
     certificates = []
     trees = UnionFind(nodes)
     for a, b in edges:
@@ -60,7 +66,7 @@ def finite_mobility(
         if len(block) == 1:
             open_ended += joints[block[0]].freedoms
             continue
-        found = _block([edges[k] for k in block], [joints[k] for k in block], size)
+        found = _block([edges[k] for k in block], [joints[k] for k in block], size, ties)
         if found is not None:
             certificates.append(found)
     first = [c.instantaneous for c in certificates if c.instantaneous is not None]
@@ -81,8 +87,13 @@ def finite_mobility(
     )
 
 
-def _block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: float) -> FiniteCertificate | None:
+def _block(
+    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: float, ties: Sequence[Coupling] = ()
+) -> FiniteCertificate | None:
     """The certificate of one block with loops; None where nothing in it moves, even at first order."""
+    geared = _geared(edges, joints, ties)
+    if geared is not None:
+        return _tied(joints, size, *geared)
     names = tuple(joint.name for joint in joints)
     frame = _frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
@@ -108,6 +119,42 @@ def _block(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: floa
     if len(doubtful or general) > 1:
         why = why.replace(" is ", " are ").replace("its", "their")
     return FiniteCertificate(names, count, None, statement=f"not known how the loops move over a distance: {why}")
+
+
+def _geared(
+    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], ties: Sequence[Coupling]
+) -> tuple[list[tuple[int, int]], list[Joint], list[tuple[int, int, float]]] | None:
+    """The block without the contacts of gears, and their ratios between the joints that are left; None where there
+    are none, or something else is not certain."""
+    known = {coupling.through: coupling for coupling in ties if coupling.meshing is not None}
+    general = [joint.name for joint in joints if joint.type == "general"]
+    if not general or not set(general) <= set(known) or any(joint.status == "ambiguous" for joint in joints):
+        return None
+    kept = [k for k, joint in enumerate(joints) if joint.type != "general"]
+    place = {joints[k].name: n for n, k in enumerate(kept)}
+    pairs = [known[name] for name in general]
+    if not all(name in place for coupling in pairs for name in coupling.joints):
+        return None
+    ratios = []
+    for coupling in pairs:
+        assert coupling.meshing is not None
+        a, b = coupling.joints
+        ratios.append((place[a], place[b], coupling.meshing.ratio))
+    return [edges[k] for k in kept], [joints[k] for k in kept], ratios
+
+
+def _tied(
+    every: Sequence[Joint],
+    size: float,
+    edges: Sequence[tuple[int, int]],
+    joints: Sequence[Joint],
+    ratios: Sequence[tuple[int, int, float]],
+) -> FiniteCertificate | None:
+    """The certificate of a block in which gears keep ratios."""
+    system = loop_system(edges, [joint.twists for joint in joints], _frame(joints, size), ratios)
+    found = flex(system)
+    certificate = _certificate([joint.name for joint in joints], system, found) if found.freedoms else None
+    return certificate and replace(certificate, joints=tuple(joint.name for joint in every))
 
 
 def _frame(joints: Sequence[Joint], size: float) -> Frame:

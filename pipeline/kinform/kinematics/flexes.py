@@ -110,7 +110,7 @@ def _submersion(system: LoopSystem, pose: Pose) -> bool:
         if len(larger) == len(algebra):
             break
         algebra = larger
-    return pose.rank == len(algebra) * len(system.loops)
+    return pose.rank == len(algebra) * len(system.loops) + len(system.ties)
 
 
 def _regular(system: LoopSystem, pose: Pose, mixes: Array, stride: float, step: float) -> tuple[float, float] | None:

@@ -31,9 +31,10 @@ class Closed:
     """How far the loops are from closing at a batch of D configurations, and how that changes."""
 
     residual: Array
-    """(D, 6 loops) rotation and shift of what each loop comes back with: zero where it closes."""
+    """(D, 6 loops + ties) rotation and shift of what each loop comes back with, then what ties miss: zero where it
+    closes."""
     jacobian: Array
-    """(D, 6 loops, n)."""
+    """(D, 6 loops + ties, n)."""
     columns: Array
     """(D, n, 6) twist of each coordinate where it is now."""
 
@@ -60,6 +61,8 @@ class LoopSystem:
     """(n, n) rates that add up to the twist of what a coordinate acts on."""
     reach: Array
     """(N, n) rates that add up to the twist of each body."""
+    ties: Array
+    """(k, n) combinations of coordinates that stay zero: ratios that gears keep. They count as rows of the closure."""
 
     @property
     def coordinates(self) -> int:
@@ -78,7 +81,12 @@ class LoopSystem:
             [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
         )
         jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
-        return Closed(residual.reshape(batch, -1), jacobian.reshape(batch, 6 * len(members), len(self.screws)), columns)
+        missed = residual.reshape(batch, 6 * len(members))
+        rows = jacobian.reshape(batch, 6 * len(members), len(self.screws))
+        if len(self.ties):
+            missed = np.concatenate([missed, q @ self.ties.T], axis=1)
+            rows = np.concatenate([rows, np.broadcast_to(self.ties, (batch, *self.ties.shape))], axis=1)
+        return Closed(missed, rows, columns)
 
     def bodies(self, q: Array) -> Array:
         """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
@@ -101,18 +109,25 @@ class LoopSystem:
         return bodies, inside, across
 
     def curvature(self, columns: Array, rates: Array) -> Array:
-        """(D, 6 loops) change of the Jacobian along `rates` (D, n), times `rates`: the acceleration that
+        """(D, 6 loops + ties) change of the Jacobian along `rates` (D, n), times `rates`: the acceleration that
         joint rates alone cause in each loop, Σ [twist ahead of i, column i] rateᵢ² and mixed terms.
         `columns` (n, 6) of one configuration."""
         moving = columns * rates[..., None]
         bent = bracket(self.ahead @ moving, moving)
-        return (self.loops @ bent).reshape(len(rates), -1)
+        turned: Array = (self.loops @ bent).reshape(len(rates), 6 * len(self.loops))
+        return np.concatenate([turned, np.zeros((len(rates), len(self.ties)))], axis=1) if len(self.ties) else turned
 
 
-def loop_system(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], frame: Frame) -> LoopSystem:
+def loop_system(
+    edges: Sequence[tuple[int, int]],
+    spaces: Sequence[Array],
+    frame: Frame,
+    ties: Sequence[tuple[int, int, float]] = (),
+) -> LoopSystem:
     """The loops of a connected block: `edges` between bodies of any numbers, `spaces[k]` the (f, 6) twists
     of joint k (ω; v at the world's origin) of its second body relative to its first, in the order of the
-    product of exponentials; `frame` centre and size (m) of the block."""
+    product of exponentials; `frame` centre and size (m) of the block. `ties` (a, b, ratio): joints of one freedom,
+    of which the first moves by ratio (SI) when the second moves by one, along their twists."""
     number = {body: i for i, body in enumerate(sorted({n for edge in edges for n in edge}))}
     inner = [(number[a], number[b]) for a, b in edges]
     sizes = [len(space) for space in spaces]
@@ -126,6 +141,16 @@ def loop_system(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], frame
     norms = np.where(turns, turning, sliding)
     local = local / np.maximum(norms, 1e-300)[:, None]
     local[~turns, :3] = 0.0
+    held = np.zeros((len(ties), total))
+    for line, (a, b, ratio) in zip(held, ties, strict=True):
+        # a coordinate of one is so much of the joint's own value
+        for k, factor in ((a, 1.0), (b, -ratio)):
+            line[start[k]] = (
+                factor
+                * (1.0 if turns[start[k]] else frame.length)
+                / np.linalg.norm(spaces[k][0, :3] if turns[start[k]] else spaces[k][0, 3:])
+            )
+        line /= np.abs(line).max()
     tree = forest(len(number), inner, 0)
     reach = np.zeros((len(number), total))
     depth = [0] * len(number)
@@ -160,6 +185,7 @@ def loop_system(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], frame
         loops=loops,
         ahead=reach[first[joint]] + earlier,
         reach=reach,
+        ties=held,
     )
 
 

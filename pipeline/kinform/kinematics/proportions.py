@@ -189,7 +189,7 @@ def _moves(
         gaps.append(beyond @ closed.residual[k])
     matrix, missing = np.concatenate(rows), np.concatenate(gaps)
     answer = np.linalg.lstsq(matrix, -missing, rcond=1e-9)[0].reshape(-1, 6)
-    local = np.einsum("jkl,jl->jk", weigh, answer)
+    local: Array = np.einsum("jkl,jl->jk", weigh, answer)
     out = local.copy()
     # from the block's units about its centre to metres about the world's origin
     out[:, 3:] = frame.length * local[:, 3:] + cross(np.broadcast_to(frame.centre, (len(local), 3)), local[:, :3])

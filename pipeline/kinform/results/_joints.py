@@ -8,6 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from kinform.model.assembly import freeze
 from kinform.model.kinematics import Blocker, Body, Coupling, Joint, Kinematics, Meshing, Misfit, Release, Separation
 from kinform.results._table import (
     flag,
@@ -138,8 +139,9 @@ def _couplings(group: h5py.Group) -> tuple[Coupling, ...]:
     rows = read_rows(group, "couplings", _COUPLINGS, added=("reason",))
     teeth = {}
     for row in read_rows(group, "meshings", _MESHINGS) if "meshings" in group else ():
-        normals = np.stack([row.pop("flank"), row.pop("back")])
-        teeth[row.pop("coupling")] = Meshing(**row, normals=normals)
+        normals = freeze(np.stack([row.pop("flank"), row.pop("back")]))
+        owner = row.pop("coupling")
+        teeth[owner] = Meshing(**row, normals=normals)
     return tuple(Coupling(**row, meshing=teeth.get(k)) for k, row in enumerate(rows))
 
 

@@ -1,7 +1,8 @@
 """Two joints are coupled in another ratio than intended.
 
-The ratio is read out of the motions that all contacts leave, at the pose of the meshes. A finding when it differs by
-more than 1 % a pair of teeth, 0.1 % a screw, or its uncertainty. Couplings that nothing could be derived for are
+Where teeth keep a constant ratio (`kinform show F.h5 mobility` counts them) it is that of their numbers; else the ratio
+is read out of the motions that all contacts leave, at the pose of the meshes. A finding when it differs by more than
+0.1 % where teeth are counted, 1 % where they are not, 0.1 % a screw, or its uncertainty. Couplings that nothing could be derived for are
 KF903.
 
 Why it matters: the driven side turns by another angle than is meant, or the other way.

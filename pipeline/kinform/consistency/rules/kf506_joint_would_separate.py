@@ -5,8 +5,10 @@ joints` says so) the wrench of each output time is compared with what pushes at 
 no tension, and no moment that would tip the part over an edge of its patch. Friction is not counted, nor are fasteners
 that are not modelled; what a drive gives acts through the joint's point. The finding names the first such time.
 
-Notes name the joints of which this cannot be known: those whose wrench redundant constraints leave open, those that
-are stated rather than found in contact, and those that are within 1 % of what their contacts carry. Parts that
+Where redundant constraints leave wrenches open, all that balance are admitted: a finding means that none of them can be
+pushed by all contacts at once. Notes name the joints of which it cannot be known: those that are stated rather than
+found in contact, those that are within 1 % of what their contacts carry, and open ones of very large mechanisms and of
+those with gears. Parts that
 contact alone fuses into one body are not looked at: no reaction is computed between them.
 
 Why it matters: from there on the real device moves in another way; the lid lifts, the block tips over.
@@ -21,7 +23,7 @@ from __future__ import annotations
 
 from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._separating import Lift, lifts
+from kinform.consistency._separating import Lift, Sharing, lifts
 from kinform.model.findings import Finding
 from kinform.words import number, quoted
 
@@ -40,17 +42,10 @@ def check(context: Context) -> Outcome:
         return skipped("without a dynamic run there are no reactions")
     if len(run.F_B) != len(run.time):
         return inconclusive("the run has no reactions: run `kinform simulate`")
-    found, open_, aside = lifts(context.design)
+    found, shared, aside = lifts(context.design)
     findings = [_finding(lift) if lift.certain else _doubt(lift) for lift in found]
-    if open_:
-        findings.append(
-            RULE.finding(
-                open_,
-                f"whether {quoted(open_)} would separate is not known: redundant constraints leave the reaction open",
-                severity="note",
-                remedy="Remove the redundant constraints: see KF303.",
-            )
-        )
+    if shared is not None and (shared.time is not None or not shared.certain):
+        findings.append(_shared(shared))
     reason = "" if not aside else f"not found in contact, and not looked at: {quoted(aside)}"
     return decided(findings, reason)
 
@@ -75,6 +70,34 @@ def _doubt(lift: Lift) -> Finding:
         "of what its contacts can carry",
         severity="note",
         place=lift.joint.point,
+    )
+
+
+def _shared(shared: Sharing) -> Finding:
+    """Of joints whose reactions redundant constraints leave open."""
+    names = shared.joints
+    if shared.time is None:
+        return RULE.finding(
+            names,
+            f"whether {quoted(names)} would separate is not known: redundant constraints leave the reaction open",
+            severity="note",
+            remedy="Remove the redundant constraints: see KF303.",
+        )
+    when = f"t = {number(shared.time, 6)} s"
+    if not shared.certain:
+        return RULE.finding(
+            names,
+            f"whether {quoted(names)} would separate at {when} is not certain: however redundant constraints share the "
+            "load, it is within 1 % of what their contacts can carry",
+            severity="note",
+        )
+    return RULE.finding(
+        names,
+        f"of {quoted(names)} at least one would separate at {when}: however redundant constraints share the load, "
+        "their contacts cannot carry it by pushing alone",
+        found=when,
+        intended="contact that pushes",
+        remedy="Hold the parts by something that pulls, or drive them more gently; state fasteners that are not modelled.",
     )
 
 

@@ -1,0 +1,100 @@
+"""Linkages that move by their proportions close all along their motion, and nothing is bent into moving."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from linkages import bennett, bricard, planar, ring
+
+from kinform.kinematics.joints import twists_of
+from kinform.kinematics.motion import loop_system
+from kinform.kinematics.proportions import proportioned
+from kinform.kinematics.screws import Frame
+from kinform.model.kinematics import Body, Joint, Misfit
+
+MECHANISMS = {"Bennett": ring(*bennett()), "Bricard": bricard()}
+
+
+def joints_of(mechanism, error=0.0, seed=0):
+    """Hinges, each turned and shifted at random by about `error` (rad, and m)."""
+    rng = np.random.default_rng(seed)
+    out = []
+    for first, second, kind, axis, point, _ in mechanism:
+        axis = axis + error * rng.normal(size=3)
+        axis = axis / np.linalg.norm(axis)
+        point = point + error * rng.normal(size=3)
+        a, b = sorted((first, second))
+        out.append(
+            Joint(
+                f"{a}~{b}", (a, b), kind, axis, point, None, None, 1, twists_of(kind, axis, point, None, None),
+                (), "determined", "", (), (), np.zeros(6),
+            )
+        )  # fmt: skip
+    return out
+
+
+def bodies_of(joints):
+    return [Body(name, (name,), name == "base") for name in sorted({name for j in joints for name in j.bodies})]
+
+
+def gap(joints, angle=1.2):
+    """What is left open (rad, and shares of the size) when the linkage is led on by `angle`, in steps."""
+    names = sorted({name for joint in joints for name in joint.bodies})
+    edges = [tuple(names.index(body) for body in joint.bodies) for joint in joints]
+    system = loop_system(edges, [j.twists for j in joints], Frame.of(np.array([j.point for j in joints])))
+    q, rank = np.zeros(len(joints)), len(joints) - 1
+    _, _, right = np.linalg.svd(system.close(q[None]).jacobian[0])
+    ahead = right[-1]
+    for _ in range(24):
+        q = q + angle / 24 * ahead / np.abs(ahead).max()
+        for _ in range(8):
+            closed = system.close(q[None])
+            left, values, right = np.linalg.svd(closed.jacobian[0])
+            q = q - ((left[:, :rank].T @ closed.residual[0]) / values[:rank]) @ right[:rank]
+        ahead = right[-1] * np.sign(right[-1] @ ahead)
+    return np.abs(system.close(q[None]).residual).max()
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+@pytest.mark.parametrize("seed", range(3))
+def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
+    joints = joints_of(MECHANISMS[name], 2e-9, seed)
+    assert gap(joints) > 1e-10
+    doubts = np.full((len(joints), 2), 1e-8)
+    fitted, misfit = proportioned(bodies_of(joints), joints, doubts, 2.0, Misfit())
+    assert gap(fitted) < 1e-12
+    assert gap(fitted, -0.8) < 1e-13
+    moved = max(np.linalg.norm(np.cross(a.axis, b.axis)) for a, b in zip(joints, fitted, strict=True))
+    assert 0.0 < moved < 3e-8
+    assert misfit.angle == pytest.approx(moved)
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_errors_beyond_the_uncertainty_stay_and_no_misfit_is_claimed(name):
+    joints = joints_of(MECHANISMS[name], 1e-5)
+    fitted, misfit = proportioned(bodies_of(joints), joints, np.full((len(joints), 2), 1e-8), 2.0, Misfit())
+    assert all(a is b for a, b in zip(joints, fitted, strict=True))
+    assert misfit == Misfit()
+
+
+def test_the_least_moves_are_those_of_the_least_certain_axes():
+    """One hinge known a thousand times worse than the others takes it all, as far as it is in the way at all."""
+    joints = joints_of(MECHANISMS["Bricard"])
+    worst = replace(joints[2], axis=joints[2].axis + np.array([0.0, 3e-6, 0.0]))
+    joints[2] = replace(worst, twists=twists_of("revolute", worst.axis, worst.point, None, None))
+    doubts = np.full((len(joints), 2), 1e-8)
+    doubts[2, 0] = 1e-5
+    fitted, _ = proportioned(bodies_of(joints), joints, doubts, 2.0, Misfit())
+    moved = [np.linalg.norm(np.cross(a.axis, b.axis)) for a, b in zip(joints, fitted, strict=True)]
+    assert 1e-6 < moved[2] < 3.1e-6
+    assert max(moved[:2] + moved[3:]) < 1e-8
+    assert gap(fitted) < 1e-12
+
+
+def test_loops_that_fit_exactly_are_left_alone():
+    joints = joints_of(planar((0, 0), (0, 2), (3, 3), (4, 0)))
+    fitted, misfit = proportioned(bodies_of(joints), joints, np.full((4, 2), 1e-8), 2.0, Misfit())
+    assert all(a is b for a, b in zip(joints, fitted, strict=True))
+    assert misfit == Misfit()
