@@ -109,7 +109,7 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
     return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
 
 
-def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], renamed: Mapping[str, str]) -> Iterator[Change]:
+def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
     for was, name in sorted(other.items(), key=lambda item: item[1]):
         yield Change("part-renamed", (name,), f"was named {_q(was)}, with the same mesh", was, name)
