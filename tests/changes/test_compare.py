@@ -100,7 +100,10 @@ CASES = {
     "refused": (replace(DESK, simulation=("refused", "")), [("simulation", "simulation", "was dynamic done, is refused")]),
     "findings": (
         replace(DESK, findings=(("KF402", ("hinge",), "error", 1),)),
-        [("finding-gone", "KF304", "note is gone"), ("finding-new", "KF402", "error is new")],
+        [
+            ("finding-gone", "KF304", "note is gone (freedom idle)"),
+            ("finding-new", "KF402", "error is new (joint wrong type)"),
+        ],
     ),
     "ground": (replace(DESK, ground="door"), [("ground", "door", "is the ground instead of 'frame'")]),
 }  # fmt: skip
@@ -228,3 +231,17 @@ def test_names_survive_in_every_format():
     tokens = MarkdownIt("commonmark").enable("table").parse(render(found, "md"))
     spans = [c.content for t in tokens for c in t.children or () if c.type == "code_inline"]
     assert "[m6] <b> a|b\\n::error::" in spans
+
+
+def test_a_part_with_another_name_and_the_same_mesh_is_renamed_and_nothing_else():
+    before = replace(DESK, shapes=(("door", "a"), ("drawer", "b"), ("frame", "c"), ("knob", "d")))
+    gate = replace(
+        before, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("gate",))), shapes=(*before.shapes[1:], ("gate", "a")),
+        joints=(SLIDE, replace(HINGE, name="frame~gate", bodies=("frame", "gate"), lower=-HINGE.upper, upper=-HINGE.lower)),
+        masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")), ranges=("drawer~frame", "frame~gate"),
+        interferences=((("frame", "gate"), 1e-4),), findings=(("KF304", ("gate",), "note", 1),),
+    )  # fmt: skip
+    assert told(gate, before) == [("part-renamed", "gate", "was named 'door', with the same mesh")]
+    # another mesh is another part
+    other = replace(gate, shapes=(*before.shapes[1:], ("gate", "z")))
+    assert {"body-gone", "body-new", "joint-gone", "joint-new"} <= {kind for kind, _, _ in told(other, before)}

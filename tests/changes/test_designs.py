@@ -89,3 +89,18 @@ def test_an_ignore_of_the_lock_that_ignores_nothing_is_a_finding_where_a_lock_is
     (found,) = (f for f in report.findings if f.code == "KF440")
     assert "ignores nothing" in found.message
     assert next(rule.outcome for rule in report.rules if rule.code == "KF440") == "failed"
+
+
+def test_a_block_that_is_turned_about_its_centre_of_mass_has_changed(tmp_path):
+    # the block lies flat on the plate either way: same joint, mass, centre of mass, and principal moments
+    plate = box(-60, 60, -60, 60, -5, 0)
+    made = []
+    for name, block in (("along", box(-30, 30, -10, 10, 0, 8)), ("across", box(-10, 10, -30, 30, 0, 8))):
+        (tmp_path / name).mkdir()
+        made.append(
+            derived(manifest(tmp_path / name, {"plate": plate, "block": block}, "", more='material = "steel"\n'))
+        )
+    one, two = map(snapshot, made)
+    assert [(c.kind, c.subject) for c in compare(one, two).changes] == [("inertia-axes", ("block",))]
+    report = with_lock(made[1].report, made[1], read_lock(write_lock(one), "b.json"))
+    assert [f.subject for f in report.findings if f.code == "KF450"] == [("block",)]

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+from fixtures.generators.solids import box, join
 from known import FIXTURES
 from requiring import WALL, bar, requiring, state
+from written import manifest
 
+from kinform import stages
 from kinform.consistency import check
 
 
@@ -76,3 +80,22 @@ def test_answers_do_not_depend_on_the_order_of_parts(derive_design):
     made = requiring(bar(WALL, reach=60), "clear", between=["bar", "base"], over="ranges")
     turned = replace(made, assembly=replace(made.assembly, parts=made.assembly.parts[::-1]))
     assert check(made).findings == check(turned).findings
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("names", [("rail", "slider"), ("zrail", "slider")], ids=["first", "second"])
+def test_a_slide_with_one_stop_leaves_the_other_way(tmp_path, mirrored, names):
+    rail, slider = names
+    rails = [box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10)]
+    rails += [box(-60, 60, -15, -8, 8, 10), box(-60, 60, 8, 15, 8, 10)]
+    parts = {rail: join(*rails, box(-55, -50, -11, 11, -1, 10)), slider: box(-20, 25, -10, 10, 0, 8)}
+    turn = "rpy = [0, 0, 180]\n" if mirrored else ""
+    path = manifest(tmp_path, parts, "", ground=rail, more=f'material = "steel"\n{turn}')
+    design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
+    made = stages.simulate(design, ranges=True)
+    out = [-1.0 if mirrored else 1.0, 0.0, 0.0]
+    found, finding = state(made, "retained", part=slider)
+    assert found == "violated"
+    assert finding.found == f"({out[0]:g}, 0, 0)"
+    assert state(made, "retained", part=slider, directions=[[-v for v in out]])[0] == "violated"
+    assert state(made, "retained", part=slider, directions=[out])[0] == "met"

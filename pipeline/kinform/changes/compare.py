@@ -8,11 +8,12 @@ way their directions point.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.changes.matching import holder, matched, renamed, with_names
 from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.tolerance import Tolerance
 from kinform.words import angle, direction, length, number, place
@@ -90,11 +91,13 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
     missing = [
         (name, "not computed " + ("before" if two else "after")) for name, (one, two) in known.items() if one != two
     ]
-    now = _matched(before, after)
+    other = renamed(before, after)
+    before = with_names(before, other)
+    now = matched(before, after)
     say = _Said(after.units)
     ranged = before.ranges is not None and after.ranges is not None
     steps = {
-        "bodies": lambda: _bodies(before, after, now),
+        "bodies": lambda: _bodies(before, after, now, other),
         "joints": lambda: _joints(before, after, now, within, say, ranged),
         "mobility": lambda: _mobility(before, after),
         "masses": lambda: _masses(before, after, now, within, say),
@@ -106,25 +109,13 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
     return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
 
 
-def _matched(before: Snapshot, after: Snapshot) -> dict[str, str]:
-    """By body before: the body after that holds most of its parts, where that is so the other way too."""
+def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
-    there = {name: _holder(parts, new) for name, parts in old.items()}
-    back = {name: _holder(parts, old) for name, parts in new.items()}
-    return {name: found for name, found in there.items() if found is not None and back[found] == name}
-
-
-def _holder(parts: tuple[str, ...], bodies: Mapping[str, tuple[str, ...]]) -> str | None:
-    shared = {name: len(set(parts).intersection(own)) for name, own in bodies.items()}
-    most = max(shared.values(), default=0)
-    return min((name for name, count in shared.items() if count == most), default=None) if most else None
-
-
-def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str]) -> Iterator[Change]:
-    old, new = dict(before.bodies or ()), dict(after.bodies or ())
+    for was, name in sorted(other.items(), key=lambda item: item[1]):
+        yield Change("part-renamed", (name,), f"was named {_q(was)}, with the same mesh", was, name)
     for name in sorted(old):
         if name not in now:
-            into = _holder(old[name], new)
+            into = holder(old[name], new)
             if into is None:
                 yield Change("body-gone", (name,), "is gone", ", ".join(old[name]), None)
             else:
@@ -132,12 +123,12 @@ def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str]) -> Iterat
     came_from = {found: name for name, found in now.items()}
     for name in sorted(new):
         if name not in came_from:
-            source = _holder(new[name], old)
+            source = holder(new[name], old)
             told = "is new" if source is None else f"was part of {_q(source)}"
             yield Change("body-new", (name,), told, source, ", ".join(new[name]))
             continue
         was = came_from[name]
-        if was != name:
+        if was != name and other.get(was) != name:
             yield Change("body-renamed", (name,), f"was named {_q(was)}", was, name)
         added, lost = sorted(set(new[name]) - set(old[was])), sorted(set(old[was]) - set(new[name]))
         if added:
@@ -157,7 +148,7 @@ def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str]) -> Iterat
 def _joints(
     before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: _Said, ranged: bool
 ) -> Iterator[Change]:
-    into = {name: now.get(name) or _holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
+    into = {name: now.get(name) or holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
     new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
     found = set()
     for joint in before.joints or ():
@@ -310,6 +301,13 @@ def _mass(old: BodyMass, new: BodyMass, within: Tolerance, say: _Said) -> Iterat
         if worst > within.share * largest:
             told = f"principal moments changed by up to {100.0 * worst / largest:.3g} %"
             yield Change("inertia", subject, told, _moments(old.moments), _moments(new.moments), worst, "kg·m²")
+        elif old.tensor is not None and new.tensor is not None:
+            turned = max(abs(two - one) for one, two in zip(old.tensor, new.tensor, strict=True))
+            if turned > within.share * largest:
+                told = (
+                    f"axes of inertia turned: entries of the tensor changed by up to {100.0 * turned / largest:.3g} %"
+                )
+                yield Change("inertia-axes", subject, told, _moments(old.tensor), _moments(new.tensor), turned, "kg·m²")
 
 
 def _interferences(before: Snapshot, after: Snapshot, within: Tolerance, say: _Said) -> Iterator[Change]:
@@ -340,12 +338,19 @@ def _findings(before: Snapshot, after: Snapshot) -> Iterator[Change]:
     for key in sorted(set(old) | set(new)):
         code, subject = key
         if key not in new:
-            yield Change("finding-gone", (code, *subject), f"{old[key][0]} is gone", old[key][0], None)
+            yield Change("finding-gone", (code, *subject), f"{old[key][0]} is gone{_rule(code)}", old[key][0], None)
         elif key not in old:
-            yield Change("finding-new", (code, *subject), f"{new[key][0]} is new", None, new[key][0])
+            yield Change("finding-new", (code, *subject), f"{new[key][0]} is new{_rule(code)}", None, new[key][0])
         elif old[key] != new[key]:
             one, two = (f"{count} × {severity}" for severity, count in (old[key], new[key]))
             yield Change("finding", (code, *subject), f"was {one}, is {two}", one, two)
+
+
+def _rule(code: str) -> str:
+    """What is wrong, by the name of the rule: " (parts collide)"."""
+    from kinform.consistency import RULES
+
+    return next((f" ({rule.name.replace('-', ' ')})" for rule in RULES if rule.code == code), "")
 
 
 def _q(name: str) -> str:
@@ -390,5 +395,5 @@ def _or_unknown(value: int | None) -> str:
     return "unknown" if value is None else str(value)
 
 
-def _moments(moments: Vector) -> str:
+def _moments(moments: Iterable[float]) -> str:
     return "(" + ", ".join(number(x) for x in moments) + ") kg·m²"

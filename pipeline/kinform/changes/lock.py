@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -139,7 +139,7 @@ class _Grain:
         grain = 0.1 * max(1e3 * self.tolerance.mass, self.tolerance.share * 1e3 * kilograms)
         return _rounded(1e3 * kilograms, grain)
 
-    def moments(self, values: Vector) -> list[float]:
+    def moments(self, values: Sequence[float]) -> list[float]:
         """g·mm²."""
         grain = 1e9 * 0.1 * self.tolerance.share * max(map(abs, values))
         return [_rounded(1e9 * value, grain) for value in values]
@@ -165,6 +165,7 @@ def _mass(body: BodyMass, grain: _Grain) -> dict[str, Any]:
         "mass_g": None if body.mass is None else grain.mass(body.mass),
         "centre_of_mass_mm": None if body.centre is None else grain.place(body.centre),
         "principal_moments_g_mm2": None if body.moments is None else grain.moments(body.moments),
+        "inertia_g_mm2": None if body.tensor is None else grain.moments(body.tensor),
     }
 
 
@@ -243,7 +244,16 @@ def _read_mass(body: Mapping[str, Any]) -> BodyMass:
         None if mass is None else 1e-3 * float(mass),
         _read_vector(body.get("centre_of_mass_mm"), 1e-3),
         _read_vector(body.get("principal_moments_g_mm2"), 1e-9),
+        _read_tensor(body.get("inertia_g_mm2")),
     )
+
+
+def _read_tensor(values: Sequence[float] | None) -> tuple[float, ...] | None:
+    if values is None:
+        return None
+    if len(values) != 6:
+        raise ValueError("inertia_g_mm2 has to have six numbers: xx, yy, zz, xy, xz, yz")
+    return tuple(1e-9 * float(value) for value in values)
 
 
 def _read_joint(joint: Mapping[str, Any]) -> JointState:

@@ -56,12 +56,15 @@ class JointState:
 
 @dataclass(frozen=True)
 class BodyMass:
-    """Mass (kg), centre of mass (m) and principal moments (kg·m²) of a body; None where they are not known."""
+    """Mass (kg), centre of mass (m) and moments of inertia (kg·m²) of a body; None where they are not known."""
 
     name: str
     mass: float | None
     centre: Vector | None
     moments: Vector | None
+    """Principal."""
+    tensor: tuple[float, ...] | None = None
+    """xx, yy, zz, xy, xz, yz about the centre of mass, in the world: with the moments it says how the body is turned."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,8 @@ class Snapshot:
     """(code, subject, severity, how many)."""
     ranges: tuple[str, ...] | None = None
     """Joints whose range was computed; None where no range was."""
+    shapes: tuple[tuple[str, str], ...] = ()
+    """(part, what its mesh is known by), where it has one."""
     units: str = "mm"
     """Of the assembly, for people; all values are SI."""
 
@@ -114,6 +119,7 @@ def snapshot(design: Design) -> Snapshot:
             )
         ),
         ranges=None if found is None else tuple(sorted(map(str, known))),
+        shapes=tuple(sorted((str(p.name), p.mesh.digest) for p in design.assembly.parts if p.mesh is not None)),
         units=design.assembly.units,
     )
 
@@ -149,7 +155,9 @@ def _counts(design: Design) -> tuple[tuple[str, int | None], ...]:
 
 
 def _mass(item: MassProperties) -> BodyMass:
-    return BodyMass(item.name, item.mass, _vector(item.centre_of_mass), _vector(item.principal_moments))
+    entries = item.inertia[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    tensor = tuple(map(float, entries)) if np.all(np.isfinite(entries)) else None
+    return BodyMass(item.name, item.mass, _vector(item.centre_of_mass), _vector(item.principal_moments), tensor)
 
 
 def _overlaps(design: Design) -> tuple[tuple[tuple[str, str], float], ...]:

@@ -64,7 +64,8 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     for pose in poses:
         held = _held(context, kinematics, mass, chain, joint, pose)
         if isinstance(held, str):
-            return undecided(f"pose {_shown(context, kinematics, pose)}: {held}", STATE)
+            told = held.replace(f"'{joint.name}'", f"'{name}'")
+            return undecided(f"at {_shown(context, kinematics, pose)}: {told}", STATE)
         if abs(held) > worst:
             worst, where = abs(held), _shown(context, kinematics, pose)
     shown = telling(lambda value, digits: effort(value, joint, digits), worst, values["limit"])

@@ -21,7 +21,7 @@ from kinform.consistency._context import Context
 from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
 from kinform.consistency._rule import Outcome
 from kinform.model.function import Requirement
-from kinform.model.kinematics import Body, Kinematics, Release, Separation
+from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
 from kinform.words import direction, quoted
 
 __all__ = ["RULE", "judge"]
@@ -100,26 +100,37 @@ def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
         )
     index = [b.name for b in kinematics.bodies].index(body.name)
     twists = kinematics.mobility.freedoms[:, index, :]
-    for way in _pure_slides(twists):
-        if _listed(way, listed) and _listed(-way, listed):
-            continue
-        ends = [j for j in own if j.axis is not None and abs(float(j.axis @ way)) > SAME and j.type == "prismatic"]
-        if any(j.range_status == "found" and _bounded(j.range_lower, j.range_upper) for j in ends):
-            continue
-        if any(j.range_status == "unbounded" for j in ends):
-            return violated(
-                f"'{body.name}' slides along {direction(way)} without an end", found=direction(way),
-                intended="held, but for the listed directions", place=ends[0].point, remedy=REMEDY,
-            )  # fmt: skip
-        return undecided(
-            f"'{body.name}' slides along {direction(way)}, and whether the slide has an end is not known",
-            "List both directions if it may leave there, or have the range of its joint found.",
-        )
-    return None
+    open_: Answer | None = None
+    for line in _pure_slides(twists):
+        for way in (line, -line):
+            if _listed(way, listed):
+                continue
+            ends = [_end(joint, body, way) for joint in own]
+            if "held" in ends:
+                continue
+            if "free" in ends:
+                guide = own[ends.index("free")]
+                return violated(
+                    f"'{body.name}' slides along {direction(way)} without an end", found=direction(way),
+                    intended="held, but for the listed directions", place=guide.point, remedy=REMEDY,
+                )  # fmt: skip
+            open_ = open_ or undecided(
+                f"'{body.name}' slides along {direction(way)}, and whether the slide has an end is not known",
+                "List the direction if it may leave there, or have the range of its joint found.",
+            )
+    return open_
 
 
-def _bounded(low: float | None, high: float | None) -> bool:
-    return low is not None and high is not None and bool(np.isfinite([low, high]).all())
+def _end(joint: Joint, body: Body, way: Array) -> str:
+    """Whether a slide of the body along its joint, that way, has an end: held, free, or "" where that is not known."""
+    if joint.type != "prismatic" or joint.axis is None or abs(float(joint.axis @ way)) <= SAME:
+        return ""
+    if joint.range_status not in ("found", "unbounded"):
+        return ""
+    # a joint value is of its second body along the axis
+    up = (float(joint.axis @ way) > 0.0) == (body.name == joint.bodies[1])
+    end = joint.range_upper if up else joint.range_lower
+    return "held" if end is not None and np.isfinite(end) else "free"
 
 
 def _pure_slides(twists: Array) -> Array:
