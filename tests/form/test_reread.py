@@ -8,9 +8,15 @@ from pathlib import Path
 import pytest
 from known import FIXTURES
 
+from kinform import stages
 from kinform.form.again import reread
-from kinform.form.read import load_with_contents
+from kinform.model.assembly import Assembly
 from kinform.results._digest import digest
+
+
+def read(manifest: Path) -> tuple[Assembly, dict[str, str]]:
+    design = stages.import_(manifest)
+    return design.assembly, design.fingerprints.files
 
 
 @pytest.fixture
@@ -20,10 +26,10 @@ def manifest(tmp_path: Path) -> Path:
 
 
 def test_a_mesh_that_changed_is_read_and_the_others_are_kept(manifest: Path) -> None:
-    earlier, files = load_with_contents(manifest)
+    earlier, files = read(manifest)
     shutil.copy(manifest.parent / "pin_c.stl", manifest.parent / "pin_a.stl")
     found = reread(manifest, earlier, files)
-    fresh, contents = load_with_contents(manifest)
+    fresh, contents = read(manifest)
     assert found is not None
     assert digest(found[0]) == digest(fresh)
     assert found[1] == contents
@@ -33,7 +39,7 @@ def test_a_mesh_that_changed_is_read_and_the_others_are_kept(manifest: Path) -> 
 
 @pytest.mark.parametrize("change", ["manifest", "broken", "gone", "outside", "other files"])
 def test_what_is_not_plain_is_left_to_the_reader(manifest: Path, tmp_path: Path, change: str) -> None:
-    earlier, files = load_with_contents(manifest)
+    earlier, files = read(manifest)
     mesh = manifest.parent / "pin_a.stl"
     if change == "manifest":
         manifest.write_text(manifest.read_text() + "\n")
