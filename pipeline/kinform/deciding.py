@@ -1,29 +1,31 @@
-"""Reuse inside the joints stage: what contact decides of single pairs of bodies.
+"""Reuse inside the joints stage: what single pairs, bodies and loops of them come out as.
 
-A decision is found by the hash of all that it depends on and of the versions of the code, and only where its seal says
+A result is found by the hash of all that its step was given and of the versions of the code, and only where its seal says
 that it is what was kept. A new one is packed and unpacked before it is used, so that it is, to the last bit, what a later
 run will find.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from kinform._version import __version__
-from kinform.kinematics.questions import Answer, Question
+from kinform.kinematics.questions import Answer
+from kinform.kinematics.releases import Leaving
 from kinform.ledger import Ledger
-from kinform.model.kinematics import Blocker, Joint
+from kinform.model.kinematics import Blocker, FiniteCertificate, Joint, Release
 from kinform.results import fingerprints
 from kinform.results._digest import digest
 from kinform.results._packed import pack, seal, unpack
 
 __all__ = ["Known"]
 
-_CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, Joint)}
+_CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, FiniteCertificate, Joint, Leaving, Release)}
 
 
 class Known:
-    """The `Answers` of an earlier run, if any, and all that were given in this one."""
+    """Gives the `Answers` of an earlier run, if any, and remembers all that were given in this one."""
 
     def __init__(self, ledger: Ledger | None):
         previous = None if ledger is None else ledger.previous
@@ -32,19 +34,17 @@ class Known:
         self.decisions: dict[str, tuple[str, str]] = {}
         """Packed answers with their seals, by the hash of the question: of those that were asked for."""
 
-    def __call__(self, question: Question, compute: Callable[[Question], Answer]) -> Answer:
-        """What the function gives for the question."""
-        key = digest("pair", self._code, question)
+    def __call__(self, step: str, given: Sequence[Any], compute: Callable[[], Any]) -> Any:
+        """What the step gives for what it is given."""
+        key = digest(step, self._code, *given)
         kept = self._kept.get(key)
         if kept is not None and kept[1] == seal(key, kept[0]):
             try:
                 found = unpack(kept[0], _CLASSES)
-                if isinstance(found, Answer):
-                    self.decisions[key] = kept
-                    return found
+                self.decisions[key] = kept
+                return found
             except (ValueError, TypeError, LookupError):  # nothing that this code packed
                 pass
-        text = pack(compute(question))
+        text = pack(compute())
         self.decisions[key] = text, seal(key, text)
-        answer: Answer = unpack(text, _CLASSES)
-        return answer
+        return unpack(text, _CLASSES)

@@ -93,6 +93,26 @@ def test_the_short_way_of_a_run_with_nothing_changed_says_what_the_long_one_says
     assert run("--fail-on", "nothing") == run("-f") == 2
 
 
+@pytest.mark.parametrize("spoil", ["mesh", "manifest", "nothing there"])
+def test_the_short_way_refuses_bad_input_as_the_long_one_does(folder, capsys, spoil):
+    run("-q")
+    before = (folder / "r.h5").read_bytes()
+    if spoil == "mesh":
+        (folder / "shaft.stl").write_bytes(b"solid nonsense")
+    elif spoil == "manifest":
+        (folder / "m.toml").write_text((folder / "m.toml").read_text() + "\n[[part]]\n")
+    else:
+        (folder / "shaft.stl").unlink()
+    capsys.readouterr()
+    told = []
+    for more in ((), ("--jobs", "1")):  # the second is left to the command line proper
+        assert run(*more) == 2
+        told.append(capsys.readouterr())
+    assert told[0] == told[1]
+    assert "error: " in told[0].err
+    assert (folder / "r.h5").read_bytes() == before
+
+
 def test_what_the_function_asks_for_first_gives_the_bytes_of_a_run_from_nothing(folder, capsys):
     plain = (folder / "m.toml").read_text()
     asked = plain + '\n[[function.require]]\nname = "held"\nkind = "retained"\npart = "shaft"\n'

@@ -53,6 +53,14 @@ def _lengthen(folder: Path) -> None:
     os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+def _reordered(folder: Path) -> None:
+    """Put the first part last."""
+    manifest = folder / "four_bar.toml"
+    head, first, rest = manifest.read_text().split("[[part]]", 2)
+    parts, tail = rest.split("[[group]]", 1)
+    manifest.write_text(f"{head}[[part]]{parts}[[part]]{first}[[group]]{tail}")
+
+
 EDITS = {
     "nothing": (lambda folder: None, ""),
     "new times": (lambda folder: [os.utime(path) for path in folder.iterdir()], ""),
@@ -67,6 +75,8 @@ EDITS = {
     "group": (_replaced('["rocker", "pin_c", "pin_d"]', '["rocker", "pin_d"]'), "contacts joints mass simulation findings"),
     "new shape": (_lengthen, "surfaces contacts joints mass simulation findings"),
     "renamed": (_replaced('name = "four_bar"', 'name = "linkage"'), "findings"),
+    "intended type": (_replaced('type = "revolute"', 'type = "cylindrical"'), "joints simulation findings"),
+    "parts in another order": (_reordered, "findings"),
 }  # fmt: skip
 
 
@@ -93,6 +103,58 @@ def test_a_change_recomputes_what_depends_on_it_and_gives_the_bytes_of_a_fresh_r
     assert computed == set(expected.split())
     assert {re.match(r"\w+", sentence)[0] for sentence in again.reused} >= set(STAGES) - computed
     assert all(re.search(r": (.* changed|new shape of pin_b|not looked at before)$", s) for s in again.recomputed)
+
+
+def _without_a_pin(folder: Path) -> None:
+    _replaced('[[part]]\nname = "pin_d"\nmesh = "pin_d.stl"\nmaterial = "steel"\nposition = [100, 0, 0]\n', "")(folder)
+    _replaced('["rocker", "pin_c", "pin_d"]', '["rocker", "pin_c"]')(folder)
+
+
+def _another_name(folder: Path) -> None:
+    manifest = folder / "four_bar.toml"
+    manifest.write_text(manifest.read_text().replace('"pin_c"', '"bolt"'))
+
+
+OTHER_PARTS = {
+    "a unit": _replaced('mesh = "pin_b.stl"', 'mesh = "pin_b.stl"\nunits = "cm"'),
+    "a part less": _without_a_pin,
+    "a part by another name": _another_name,
+    "surfaces only": _replaced('mesh = "pin_a.stl"', 'mesh = "pin_a.stl"\nsolid = false'),
+    "another file of the same shape": lambda folder: (
+        shutil.copy(folder / "pin_a.stl", folder / "pin_e.stl"),
+        _replaced('mesh = "pin_a.stl"', 'mesh = "pin_e.stl"')(folder),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OTHER_PARTS)
+def test_other_parts_keep_what_they_do_not_touch_and_give_the_bytes_of_a_fresh_run(
+    name: str, first: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "copy"
+    shutil.copytree(first, folder)
+    OTHER_PARTS[name](folder)
+    again = kinform.run(folder / "four_bar.toml", folder / "r.h5")
+    kinform.run(folder / "four_bar.toml", folder / "fresh.h5")
+    assert (folder / "r.h5").read_bytes() == (folder / "fresh.h5").read_bytes()
+    assert any(re.fullmatch(r"surfaces of [5-8] meshes", sentence) for sentence in again.reused)
+    assert any(sentence.startswith("contacts of") for sentence in again.reused)
+    assert again.recomputed
+
+
+def test_changes_one_after_the_other_and_back_give_the_bytes_of_the_beginning(first: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "copy"
+    shutil.copytree(first, folder)
+    files = {path.name: path.read_bytes() for path in folder.iterdir()}
+    for edit in (EDITS["moved"][0], EDITS["new shape"][0], OTHER_PARTS["a part less"]):
+        edit(folder)
+        kinform.run(folder / "four_bar.toml", folder / "r.h5")
+    assert (folder / "r.h5").read_bytes() != files["r.h5"]
+    for name, data in files.items():
+        if name != "r.h5":
+            (folder / name).write_bytes(data)
+    kinform.run(folder / "four_bar.toml", folder / "r.h5")
+    assert (folder / "r.h5").read_bytes() == files["r.h5"]
 
 
 def test_only_the_pairs_of_a_part_that_moved_are_computed_again(first: Path, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from kinform.kinematics.joints import stated_joint
 from kinform.kinematics.mobility import Closure, body_twists, close
 from kinform.kinematics.motions import named_freedoms
 from kinform.kinematics.proportions import proportioned
-from kinform.kinematics.questions import Answer, Answers, Question, answered, bare_patches, named
+from kinform.kinematics.questions import Answer, Answers, Question, answered, ask, bare_patches, named
 from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.separations import links_between, separations
@@ -83,7 +84,7 @@ def derive(
     closed = agree(bodies, snapped, patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
         assembly, bodies, closed, patches, misfit, strict, tuple(misaligned), extents.assembly,
-        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches), pairs.extremes,
+        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches), pairs.extremes, answers,
     )  # fmt: skip
 
 
@@ -168,7 +169,7 @@ class _Pairs:
         tolerances = self.assembly.tolerances
         contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
         question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
-        found = answered(question) if self._answers is None else self._answers(question, answered)
+        found = ask(self._answers, "pair", (question,), lambda: answered(question))
         self.extremes |= {index: own for (index, _, _), own in zip(members, found.extremes, strict=True)}
         return found
 
@@ -299,6 +300,7 @@ def _finish(
     clusters: tuple[Body, ...],
     balls: Mapping[tuple[int, PartName], Array] | None = None,
     extremes: Mapping[int, NDArray[np.int64]] | None = None,
+    answers: Answers | None = None,
 ) -> Kinematics:
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
@@ -308,12 +310,12 @@ def _finish(
     closure = close(len(bodies), edges, spaces, ground, size, doubts)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = close(len(bodies), edges, hard, ground, size, doubts).mobility if strict else closure.mobility
-    turns = _idle(assembly, bodies, joints, patches, size, balls or {})
+    turns = _idle(assembly, bodies, joints, patches, size, balls or {}, answers)
     idle = {name: len(own) for name, own in turns.items()}
     count = closure.mobility
     tied = couplings(assembly, bodies, joints, patches, closure)
     constant = {coupling.through for coupling in tied if coupling.meshing is not None}
-    finite = finite_mobility(edges, joints, len(bodies), count, size, tied)
+    finite = finite_mobility(edges, joints, len(bodies), count, size, tied, answers)
     poses = {part.name: part.X_WP for part in assembly.parts}
     places = [poses[body.parts[0]][:3, 3] for body in bodies]
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
@@ -336,10 +338,10 @@ def _finish(
     )
     matrix = assemble(bodies, joints, patches, extremes)
     rows = ContactRows(matrix, bodies, patches)
-    joints = with_releases(joints, pair_cones(rows, joints, patches))
+    joints = with_releases(joints, pair_cones(rows, joints, patches), answers)
     links = links_between(clusters, bodies, joints, patches, rows)
     first = next(k for k, item in enumerate(clusters) if item.ground)
-    apart, reason = separations([item.name for item in clusters], first, links)
+    apart, reason = separations([item.name for item in clusters], first, links, answers)
     return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason, tied)
 
 
@@ -365,6 +367,7 @@ def _idle(
     patches: tuple[Patch, ...],
     size: float,
     balls: Mapping[tuple[int, PartName], Array],
+    answers: Answers | None,
 ) -> dict[BodyName, Array]:
     """Idle turns (k, 6) of each body."""
     of_part = {part: body.name for body in bodies for part in body.parts}
@@ -389,7 +392,9 @@ def _idle(
             # a ball between others rolls; what lies on one other body only is there to move on it
             own = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
         named = [w for j in mine for w in intended[j.bodies]]
-        out[body.name] = idle_freedoms(body, mine, carried, named, size, own)
+        given = (body.ground, mine, carried, named, size, own)
+        find = partial(idle_freedoms, body, mine, carried, named, size, own)
+        out[body.name] = ask(answers, "idle", given, find)
     return out
 
 

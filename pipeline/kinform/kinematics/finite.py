@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from kinform.kinematics.flexes import Flex, flex
 from kinform.kinematics.graph import UnionFind, blocks
 from kinform.kinematics.motion import LoopSystem, loop_system
 from kinform.kinematics.poses import first_order
+from kinform.kinematics.questions import Answers, ask
 from kinform.kinematics.screws import Frame
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
@@ -52,6 +54,7 @@ def finite_mobility(
     instantaneous: int,
     size: float,
     ties: Sequence[Coupling] = (),
+    answers: Answers | None = None,
 ) -> Finite:
     """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
     `instantaneous` freedoms of first order; `size` of the assembly (m); `ties`: couplings of constant ratio, which
@@ -66,7 +69,9 @@ def finite_mobility(
         if len(block) == 1:
             open_ended += joints[block[0]].freedoms
             continue
-        found = _block([edges[k] for k in block], [joints[k] for k in block], size, ties)
+        own = tuple(tie for tie in ties if any(joints[k].name == tie.through for k in block))
+        given = ([edges[k] for k in block], [joints[k] for k in block], size, own)
+        found = ask(answers, "finite", given, partial(_block, *given))
         if found is not None:
             certificates.append(found)
     first = [c.instantaneous for c in certificates if c.instantaneous is not None]

@@ -1,13 +1,14 @@
-"""What is asked of one pair of bodies, and what is answered: all that a decision depends on, and all that it gives.
+"""Steps of the kinematics that depend on what they are given alone, so that their results may be known (`Answers`).
 
-A pair is decided from a `Question` alone, so that whoever knows the answer to the same one (`Answers`) need not ask
-again. It does not hold which surfaces of a mesh touch, nor the names of the bodies: a change of those changes no answer.
+The largest is what contact decides of one pair of bodies. Its `Question` does not hold which surfaces of a mesh touch, nor
+the names of the bodies: a change of those changes no answer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +23,10 @@ from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, JointName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["Answer", "Answers", "Question", "answered", "bare_patches", "named"]
+__all__ = ["Answer", "Answers", "Question", "answered", "ask", "bare_patches", "named"]
 
 Array = NDArray[np.float64]
+Given = TypeVar("Given")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +58,17 @@ class Answer:
     """m."""
 
 
-Answers = Callable[[Question, Callable[[Question], Answer]], Answer]
-"""Somebody who knows what a function gives for a question, or has it computed."""
+Answers = Callable[[str, Sequence[Any], Callable[[], Any]], Any]
+"""Somebody who knows what a step, by its name, gives for all that it is given, or has it computed."""
+
+
+def ask(answers: Answers | None, step: str, given: Sequence[Any], compute: Callable[[], Given]) -> Given:
+    """What `compute` gives, which depends on nothing but what is `given`: None, numbers, texts, arrays, and tuples and
+    dataclasses of such."""
+    if answers is None:
+        return compute()
+    found: Given = answers(step, given, compute)
+    return found
 
 
 def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:

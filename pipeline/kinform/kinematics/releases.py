@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.cone import FREE, HELD, extreme_rays, held_for_certain, opening, reduced, unit_rows, within
 from kinform.kinematics.constraints import extreme_samples
+from kinform.kinematics.questions import Answers, ask
 from kinform.kinematics.screws import Frame, cross, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint, Release
@@ -153,7 +155,9 @@ def stated(joint: Joint) -> bool:
     return not joint.patches or bool({"rim", "bolt circle", "assumption", "function"}.intersection(joint.evidence))
 
 
-def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tuple[Joint, ...]:
+def with_releases(
+    joints: Sequence[Joint], cones: Sequence[Cone | None], answers: Answers | None = None
+) -> tuple[Joint, ...]:
     """The joints with whether contact holds them, and how they come apart."""
     known = [k for k, cone in enumerate(cones) if cone is not None]
     certain = dict(zip(known, certainly_held([cone for cone in cones if cone is not None]), strict=True))
@@ -165,7 +169,7 @@ def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tupl
         elif certain[k]:
             out.append(replace(joint, held=True))
         else:
-            out.append(replace(joint, **vars(cone_of(cone))))
+            out.append(replace(joint, **vars(ask(answers, "leaving", (cone,), partial(cone_of, cone)))))
     return tuple(out)
 
 

@@ -14,12 +14,14 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.cone import HELD, reduced, unit_rows, within
 from kinform.kinematics.graph import UnionFind, blocks
+from kinform.kinematics.questions import Answers, ask
 from kinform.kinematics.releases import Cone, ContactRows, certainly_held, cone_of, released, stated
 from kinform.kinematics.screws import Frame, cross, scaled, twist_at_origin
 from kinform.model.contacts import Patch
@@ -87,7 +89,9 @@ def links_between(
     return out
 
 
-def separations(names: Sequence[BodyName], ground: int, links: Sequence[Link]) -> tuple[tuple[Separation, ...], str]:
+def separations(
+    names: Sequence[BodyName], ground: int, links: Sequence[Link], answers: Answers | None = None
+) -> tuple[tuple[Separation, ...], str]:
     """What can leave, and why it is not known of the rest ("" where it is)."""
     opened: set[int] = set()
     reason = ""
@@ -98,7 +102,9 @@ def separations(names: Sequence[BodyName], ground: int, links: Sequence[Link]) -
         if len(block) == 1:
             opened.update(loose)
             continue
-        solved = _opened([links[k] for k in block])
+        own = [links[k] for k in block]
+        given = [(link.ends, link.cone, link.twists) for link in own]
+        solved = ask(answers, "opened", given, partial(_opened, own))
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
             continue
@@ -110,7 +116,7 @@ def separations(names: Sequence[BodyName], ground: int, links: Sequence[Link]) -
     return found, reason
 
 
-def _opened(links: Sequence[Link]) -> list[int] | None:
+def _opened(links: Sequence[Link]) -> tuple[int, ...] | None:
     """Indices of the links of one block that can open together; None where the program is too large or fails."""
     from scipy.optimize import linprog
     from scipy.sparse import coo_matrix
@@ -163,7 +169,7 @@ def _opened(links: Sequence[Link]) -> list[int] | None:
     )  # fmt: skip
     if found.status != 0:
         return None
-    return [loose[k] for k in np.flatnonzero(found.x[width:] > 0.5)]
+    return tuple(loose[k] for k in np.flatnonzero(found.x[width:] > 0.5))
 
 
 def _common(frames: Sequence[Frame]) -> Frame:

@@ -30,6 +30,8 @@ ROUNDING = 1e-9
 """Uncertainty (rad, and relative to the reach) of exact geometry in double precision."""
 EXACT = 1e-14
 """Relative: smaller moves are rounding, no misfit."""
+DIGITS = 12
+"""Decimals of a direction that several axes have in common."""
 LINES = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line, not only a direction."""
 
@@ -185,7 +187,8 @@ def _mean_direction(bundle: Sequence[_Axis]) -> Array:
         return bundle[0].direction
     lead = bundle[0].direction
     signed = [a.direction / a.angle**2 * (1.0 if float(a.direction @ lead) > 0.0 else -1.0) for a in bundle]
-    return canonical(np.sum(signed, axis=0))
+    # far below any uncertainty: the rounding of one axis is not carried to all others
+    return canonical(np.round(canonical(np.sum(signed, axis=0)), DIGITS))
 
 
 def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:

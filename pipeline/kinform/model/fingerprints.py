@@ -31,4 +31,4 @@ class Fingerprints:
     """By stage, of joints, mass, simulation and findings: hash of each input, by its name in words. What `stages` was
     made of, to say what changed."""
     decisions: dict[str, tuple[str, str]] = field(default_factory=dict)
-    """What contact decides of single pairs of bodies, packed, and a seal on it, by the hash of all that decides it."""
+    """What single pairs, bodies and loops come out as, packed, and a seal on it, by the hash of all that decides it."""

@@ -20,7 +20,7 @@ __all__ = ["digest"]
 Chunks = list[Any]
 """Bytes, or arrays as bytes."""
 
-_RESULTS = frozenset({"MeshSurfaces", "Contacts", "Kinematics", "MassReport", "Simulation"})
+_RESULTS = frozenset({"MeshSurfaces", "Contacts", "Patch", "Kinematics", "MassReport", "Simulation"})
 """Classes of results of stages, by name, so that none need be imported: large, never changed, and part of the inputs
 of several stages."""
 _FEW = 4096
