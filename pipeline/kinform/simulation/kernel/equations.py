@@ -55,7 +55,7 @@ TORN = 1e-4
 SLOW = 0.05
 """Corrections that leave more than this share of a gap are made by new factors."""
 
-__all__ = ["derivative", "impose", "move", "project"]
+__all__ = ["derivative", "impose", "move", "pace_of", "project", "torn"]
 
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
@@ -139,6 +139,26 @@ def move(links: Index, vectors: Table, y: Row) -> None:
         y[at + 3] = c + 0.5 * (d2 * w + d0 * b - d1 * a)
 
 
+def pace_of(ints: Ints, nums: Nums, state: Table, y: Row, row: int) -> float:
+    """How fast row `row` of the loops opens at the rates in y, which the links' twists have."""
+    total = gained(ints[CLOSURES], nums[CLOSURES], state, nums[CONSTANTS][0, LENGTH], row, TWIST)
+    gear = row - 6 * len(ints[CLOSURES])
+    if gear >= 0:
+        for k in range(ints[COUNTS][0, RATES]):
+            total += nums[GEARS][gear, k] * y[ints[COUNTS][0, POSITIONS] + k]
+    return total
+
+
+def torn(ints: Ints, nums: Nums, work: Work, y: Row) -> float:
+    """The greatest gap of the loops or of their rates in y, where `derivative` was just called."""
+    state, length, most = work[STATE], nums[CONSTANTS][0, LENGTH], 0.0
+    for r in range(ints[COUNTS][0, RANK]):
+        row = ints[MODE][CHOSEN, r]
+        gap = gap_of(ints[COUNTS], ints[CLOSURES], nums[CLOSURES], nums[GEARS], state, y, length, row)
+        most = max(most, abs(gap), abs(pace_of(ints, nums, state, y, row)))
+    return most
+
+
 def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float, factored: bool) -> float:
     """Closes the loops in y to `closed` by least corrections, by mass, of positions and then of rates.
 
@@ -194,12 +214,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     for _ in range(2 if factored else 1):
         twist_links(ints, work, y)
         for r in range(rank):
-            total = gained(closures, nums[CLOSURES], state, length, mode[CHOSEN, r], TWIST)
-            gear = mode[CHOSEN, r] - 6 * len(closures)
-            if gear >= 0:
-                for k in range(n):
-                    total += nums[GEARS][gear, k] * y[first + k]
-            vectors[GAP, r] = -total
+            vectors[GAP, r] = -pace_of(ints, nums, state, y, mode[CHOSEN, r])
         for k in range(n):
             vectors[ACC, k] = 0.0
         settle(ints, work)

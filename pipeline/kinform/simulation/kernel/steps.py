@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from kinform.simulation.kernel.equations import derivative, project
+from kinform.simulation.kernel.equations import derivative, project, torn
 from kinform.simulation.kernel.layout import (
     ATOL,
     B_ROW,
@@ -59,8 +59,10 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: floa
             clock[MARGIN], clock[TIGHTEST] = margin, t
         # An error of accelerations grows with the inverse square of the margin.
         share = margin / clock[NEAR]
-        project(ints, nums, work, t, y, max(clock[CLOSED], CLOSE * clock[RTOL] * share * share), margin > 0.0)
-        margin = derivative(ints, nums, work, t, y, dy)
+        closed = max(clock[CLOSED], CLOSE * clock[RTOL] * share * share)
+        if margin == 0.0 or torn(ints, nums, work, y) > closed:
+            project(ints, nums, work, t, y, closed, margin > 0.0)
+            margin = derivative(ints, nums, work, t, y, dy)
     return margin
 
 
