@@ -371,7 +371,9 @@ class PairTest:
         own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
         inside = np.flatnonzero(own.contains(middles))
         inside = inside[far.contains(other[inside])]
-        inside = inside[np.unique(np.linspace(0, len(inside) - 1, finer * INSIDE).astype(int))] if len(inside) else inside
+        inside = (
+            inside[np.unique(np.linspace(0, len(inside) - 1, finer * INSIDE).astype(int))] if len(inside) else inside
+        )
         total = own.whole().depths(middles[inside])[0] + far.whole().depths(other[inside])[0]
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
