@@ -35,7 +35,7 @@ def threaded(kin, pitch, bodies=frozenset({"base", "spindle"})):
     return replace(kin, joints=joints, mobility=replace(kin.mobility, named=()))
 
 
-@pytest.mark.parametrize(("pitch", "seed"), [(2e-3, None), (-2e-3, 3), (2.5e-4, None)])
+@pytest.mark.parametrize(("pitch", "seed"), [(2e-3, None), (-2e-3, 3)])
 def test_a_jack_goes_from_its_collar_to_the_end_of_its_post(pitch, seed):
     X = np.eye(4) if seed is None else random_pose(np.random.default_rng(seed))
     made, known, touching, kin = derived(jack(), X, ground="base")
@@ -56,7 +56,7 @@ def test_a_jack_goes_from_its_collar_to_the_end_of_its_post(pitch, seed):
     assert [abs(value) for value in found] == pytest.approx([2.0 * np.pi * 0.030 / abs(pitch)], rel=1e-5)
 
 
-@pytest.mark.parametrize("pitch", [1e-3, 2.5e-4])
+@pytest.mark.parametrize("pitch", [1e-3, 2e-4])
 def test_the_head_of_a_fine_screw_stops_on_its_plate(pitch):
     solids = {
         "plate": box(-20, 20, -20, 20, -10, 0) - rod(5, -20, 10, 48),
@@ -68,3 +68,7 @@ def test_the_head_of_a_fine_screw_stops_on_its_plate(pitch):
     stops = [end for end in (item.lower, item.upper) if end.status == "found"]
     assert [abs(end.value) for end in stops] == pytest.approx([2.0 * np.pi * 0.002 / pitch], rel=1e-4)
     assert stops[0].parts == ("plate", "screw")
+    # the other way round it leaves its bore
+    (free,) = (end for end in (item.lower, item.upper) if end.status != "found")
+    assert free.status == "unbounded"
+    assert abs(free.leaves) == pytest.approx(2.0 * np.pi * 0.012 / pitch, rel=1e-4)
