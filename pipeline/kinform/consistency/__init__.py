@@ -34,4 +34,4 @@ __all__ = [
     "words",
 ]
 
-CODE_VERSION: int = 11
+CODE_VERSION: int = 12
