@@ -24,6 +24,12 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
+DRIFT = 0.02
+"""Share of the advance of a screw by which its threads' pitch may be off."""
+EVEN = 1e-6
+"""Advance a radian, relative to a surface's radius, that is rounding."""
+
+
 @dataclass(frozen=True)
 class Allowed:
     """What a surface may be off and still count: `length` (m) for turns, `angle` (rad)."""
@@ -60,11 +66,14 @@ class Slippage:
     """(s,) m."""
     turns: Flags
     """(k,) whether a twist turns."""
+    drift: Array
+    """(s, k) share of what a twist that turns advances along its axis by which points of a surface leave it along that."""
 
     def within(self, allowed: Allowed) -> Flags:
         """(s,) which surfaces all twists map onto themselves, but for what is allowed."""
         limit = np.where(self.turns, allowed.length + allowed.angle * self.radius[:, None], allowed.angle)
-        return np.asarray((self.speed <= limit).all(axis=1))
+        # what a screw advances adds up from turn to turn, however little it is
+        return np.asarray(((self.speed <= limit) & (self.drift <= DRIFT)).all(axis=1))
 
 
 class OwnMotions:
@@ -83,11 +92,17 @@ class OwnMotions:
     def slippage(self, twists: Array) -> Slippage:
         """Of unit twists (k, 6) (ω; v at the part's origin)."""
         speed = np.full((len(self._extent.radius), len(twists)), np.inf)
+        drift = np.zeros_like(speed)
+        axes = twists[:, :3]
+        advance = np.abs(np.einsum("ki,ki->k", axes, twists[:, 3:]))
         for members, basis in self._bases:
             wanted = self._at(np.broadcast_to(twists, (len(members), *twists.shape)), members)
             rest = wanted - (wanted @ basis) @ np.swapaxes(basis, 1, 2)
             speed[members] = np.linalg.norm(rest[..., :3], axis=2) + np.linalg.norm(rest[..., 3:], axis=2)
-        return Slippage(speed, self._extent.radius, np.linalg.norm(twists[:, :3], axis=1) > 0.0)
+            along = np.abs(np.einsum("ski,ki->sk", rest[..., 3:], axes))
+            screws = advance > EVEN * self._extent.radius[members, None]
+            drift[members] = np.where(screws, along / np.maximum(advance, 1e-300), 0.0)
+        return Slippage(speed, self._extent.radius, np.linalg.norm(axes, axis=1) > 0.0, drift)
 
     def _at(self, twists: Array, members: NDArray[np.int64]) -> Array:
         """Twists (n, k, 6) as velocities (m/s) of surfaces: of the rim by the turn, and of the middle."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from kinform.collisions.pairs import Shapes
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
-from kinform.collisions.single import drive_alone
+from kinform.collisions.single import drive_alone, guide, joint_twist
 from kinform.kinematics.graph import forest
 from kinform.kinematics.motion import LoopSystem, exponentials, inverse, loop_system
 from kinform.kinematics.screws import Frame
@@ -30,6 +30,7 @@ from kinform.model.names import BodyName, PartName
 __all__ = ["drive_loops"]
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Edge = tuple[int, int]
 
 STEP = 0.04
@@ -41,6 +42,12 @@ RANK = 1e-4
 SINGULAR = 2e-3
 
 
+LEAVES = "leaves its guide"
+LONG, TRIED, EVENLY, SAME = 0.4, 30, 6000, 1e-9
+"""rad of a step, steps after which it is believed, steps in all, and change of the closure's Jacobian where a motion goes
+on evenly: screws and slides along one line, on which there is nothing to be passed over."""
+MET = 1e-5
+"""rad and share of the size by which a motion may miss where it began and be back there."""
 RETURNED = "returned"
 """How a motion ends that is back where it began."""
 NARROW = 1e-2
@@ -132,6 +139,10 @@ class _Linkage:
             q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * RANK)[0], float)
         return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
 
+    def jacobian(self, q: Array) -> Array:
+        """(m, n) of the loops at q."""
+        return np.asarray(self.system.close(q[None]).jacobian[0])
+
     def tangent(self, q: Array) -> tuple[Array, bool] | None:
         """Unit null vector at q, and whether it is the only one; None where there is none."""
         jacobian = np.vstack([self.system.close(q[None]).jacobian[0], self.held])
@@ -147,31 +158,64 @@ class _Linkage:
 class _Path:
     q: Array
     """(T, n)."""
+    s: Array
+    """(T,) arc length in steps."""
     why: str
     """How it ended: returned, or why no further."""
+    even: bool = False
+    """Whether it goes on the same for ever, as a nut on its screw does."""
 
 
 def _follow(linkage: _Linkage, sign: float) -> _Path:
     q = np.zeros(linkage.system.coordinates)
     found = linkage.tangent(q)
     assert found is not None
-    along = sign * found[0]
-    path = [q]
+    along, even, step = sign * found[0], linkage.jacobian(q), STEP
+    path, s = [q], [0.0]
     turns = np.array(linkage.turns)
-    for _ in range(STEPS):
-        following = linkage.closed(q + STEP * along)
-        if following is None or float(np.linalg.norm(following - q)) < 0.3 * STEP:
-            return _Path(np.array(path), "the loops cannot be closed further")
+
+    def ended(why: str) -> _Path:
+        return _Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
+
+    while len(path) <= STEPS:
+        if even is not None and len(path) > TRIED:
+            rest = np.arange(1.0, EVENLY)[:, None] * step * along
+            if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < CLOSED:
+                path.extend(q + rest)
+                s.extend(s[-1] + np.arange(1.0, EVENLY) * step / STEP)
+                break
+        following = linkage.closed(q + step * along)
+        if following is None or float(np.linalg.norm(following - q)) < 0.3 * step:
+            return ended("the loops cannot be closed further")
         found = linkage.tangent(following)
         if found is None or not found[1]:
-            return _Path(np.array(path), "a singular pose, from which motions branch")
+            return ended("a singular pose, from which motions branch")
+        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > SAME:
+            even = None
         q = following
         path.append(q)
+        s.append(s[-1] + step / STEP)
+        step = STEP if even is None else min(2.0 * step, LONG)
         along = found[0] if float(found[0] @ along) >= 0.0 else -found[0]
-        around = np.where(turns, (q + math.pi) % (2.0 * math.pi) - math.pi, q)
-        if len(path) > 8 and float(np.linalg.norm(around)) < STEP:
-            return _Path(np.array(path), RETURNED)
-    return _Path(np.array(path), "the motion is too long to be followed to its end")
+        if len(path) > 8 and float(np.linalg.norm(_around(q, turns))) < step and _meets_start(linkage, q, turns):
+            return ended(RETURNED)
+    return ended("the motion is too long to be followed to its end")
+
+
+def _around(q: Array, turns: Flags) -> Array:
+    """Coordinates less whole turns."""
+    return np.where(turns, (q + math.pi) % (2.0 * math.pi) - math.pi, q)
+
+
+def _meets_start(linkage: _Linkage, q: Array, turns: Flags) -> bool:
+    """Whether the motion goes through the start near q, rather than past it, as a nut does that is a turn further."""
+    for _ in range(4):
+        found = linkage.tangent(q)
+        moved = None if found is None else linkage.closed(q - float(_around(q, turns) @ found[0]) * found[0])
+        if moved is None:
+            return False
+        q = moved
+    return float(np.linalg.norm(_around(q, turns))) < MET
 
 
 def drive_loops(
@@ -262,6 +306,8 @@ class _Between:
 class _Travelled:
     q: Array
     """(T, n) of what is free."""
+    s: Array
+    """(T,)."""
     why: str
     parts: tuple[PartName, ...]
     place: Array | None
@@ -271,8 +317,8 @@ class _Travelled:
 def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: _Path) -> _Travelled:
     """The path until parts meet."""
     names = [str(body.name) for body in kinematics.bodies]
-    s = np.arange(len(path.q), dtype=float)
-
+    path = _guided(shapes, kinematics, linkage, path) if path.even else path
+    s = path.s
     at = _Between(linkage, path.q, s)
     # pairs halve the same steps: most poses are asked for by several
     between = lru_cache(maxsize=None)(lambda x: linkage.poses(at(x)[None])[0])
@@ -292,15 +338,37 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: 
         elif found.at is not None and found.place is not None and not item.rolls:
             end, why, parts = found.at, "", test.part_names
             place = (nodes.between(found.at)[item.first] @ np.append(found.place, 1.0))[:3]
-    q = np.concatenate([path.q[: int(end) + 1], at(end)[None]])
-    return _Travelled(q, why, parts, place, tuple(sorted(left_out)))
+    kept = s < end
+    q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
+    return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)))
+
+
+def _guided(shapes: Shapes, kinematics: Kinematics, linkage: _Linkage, path: _Path) -> _Path:
+    """The path until the first of its slides and screws has left its guide."""
+    end, why = float(path.s[-1]), path.why
+    for n, k in enumerate(linkage.owner):
+        joint = kinematics.joints[k]
+        if joint.type not in ("prismatic", "screw") or joint.axis is None:
+            continue
+        values = path.q[:, n] * linkage.unit[n] * _sense(joint, linkage.twists[n])
+        low, high = guide(shapes, joint, joint_twist(joint))
+        limit = high if values[-1] > 0.0 else low
+        if abs(values[-1]) > abs(limit):
+            at = float(np.interp(abs(limit), np.abs(values), path.s))
+            if at < end:
+                end, why = at, f"'{joint.name}' {LEAVES}"
+    kept = path.s < end
+    last = np.array([np.interp(end, path.s, column) for column in path.q.T])
+    return _Path(np.vstack([path.q[kept], last]), np.append(path.s[kept], end), why, True)
 
 
 def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travelled]) -> JointRange:
     """The values that one joint takes along what is free to both sides."""
     unit = linkage.unit[column] * _sense(joint, linkage.twists[column])
     values = [end.q[:, column] * unit for end in ends]
-    low, high = (min(_least(sign * v) for v in values) * sign for sign in (1.0, -1.0))
+    low, high = (
+        min(_least(sign * v, end.s) for v, end in zip(values, ends, strict=True)) * sign for sign in (1.0, -1.0)
+    )
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     returned = any(end.why == RETURNED for end in ends)
     if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
@@ -313,6 +381,8 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
         end = ends[n]
         if at_end and end.parts:
             sides.append(RangeEnd("found", float(value), end.parts, end.place))
+        elif at_end and end.why.endswith(LEAVES):
+            sides.append(RangeEnd("unbounded", reason=end.why, leaves=float(value)))
         elif at_end and end.why != RETURNED:
             sides.append(RangeEnd("unknown", reason=end.why))
         elif left_out:
@@ -322,14 +392,13 @@ def _range(joint: Joint, linkage: _Linkage, column: int, ends: Sequence[_Travell
     return JointRange(joint.name, sides[0], sides[1], left_out)
 
 
-def _least(values: Array) -> float:
-    """The least of values at even steps, between them where it is not at an end: of the parabola through three."""
+def _least(values: Array, s: Array) -> float:
+    """The least of values at parameters, between them where it is not at an end: of the parabola through three."""
     n = int(np.argmin(values))
     if n == 0 or n >= len(values) - 2:
         return float(values[n])
-    a, b, c = (float(v) for v in values[n - 1 : n + 2])
-    bend = a - 2.0 * b + c
-    return b - (a - c) ** 2 / (8.0 * bend) if bend > 0.0 else b
+    bend, slope, least = (float(c) for c in np.polyfit(s[n - 1 : n + 2] - s[n], values[n - 1 : n + 2], 2))
+    return least - slope * slope / (4.0 * bend) if bend > 0.0 else least
 
 
 def _overlap(pairs: Sequence[tuple[str, str]]) -> str:

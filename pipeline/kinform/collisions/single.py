@@ -31,8 +31,8 @@ ANGLE = math.radians(2e-5)
 """rad: to which a stop of a turn is found."""
 LENGTH = 1e-5
 """To which a stop of a slide is found, relative to the size of the smaller part."""
-TURNS = 20
-"""Turns of a screw that are tried to each side."""
+TURNS, MOST_TURNS = 20, 400
+"""Turns of a screw that are tried at once to each side, and in all."""
 
 
 def preserved(patch: Patch, twists: Array) -> bool:
@@ -94,8 +94,7 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
     elif joint.type == "screw":
-        most = 2.0 * math.pi * TURNS
-        below, above = max(below, -most), min(above, most)
+        return _screwed(joint, candidates, twist, below, above)
     else:
         reach = _clear(list(profiles.values()))
         below, above = max(below, -reach), min(above, reach)
@@ -108,6 +107,26 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
                 ends[sign] = _end(candidates, twist, sign, 2.0 * math.pi - abs(other.value), math.pi)
     left_out = {pair for _, pairs in ends.values() for pair in pairs}
     done = [_leaving(ends[sign][0], joint, limit) for sign, limit in ((-1, below), (1, above))]
+    return JointRange(joint.name, done[0], done[1], tuple(sorted(left_out)))
+
+
+def _screwed(joint: Joint, candidates: Sequence[_Candidate], twist: Array, below: float, above: float) -> JointRange:
+    """The range of a screw whose threads are left at `below` and `above` (rad; infinite where that is not known)."""
+    left_out: set[Pair] = set()
+    done = []
+    for sign, limit in ((-1, abs(below)), (1, above)):
+        last = min(limit, 2.0 * math.pi * (MOST_TURNS if math.isfinite(limit) else TURNS))
+        free, end = 0.0, RangeEnd("unbounded")
+        while free < last and end.status == "unbounded":
+            further = min(free + 2.0 * math.pi * TURNS, last)
+            end, pairs = _end(candidates, twist, sign, further, free)
+            left_out.update(pairs)
+            free = further
+        if end.status == "unbounded" and last < limit:
+            end = RangeEnd(
+                "unknown", reason=f"nothing stops it in {last / (2.0 * math.pi):.6g} turns, and no further was tried"
+            )
+        done.append(_leaving(end, joint, sign * limit))
     return JointRange(joint.name, done[0], done[1], tuple(sorted(left_out)))
 
 

@@ -1,9 +1,9 @@
 """Distance between parts that move, by FCL, without the surfaces by which a pair mates.
 
-Mating surfaces touch or nearly do wherever the pair is, and so do the edges beside them. Left out of a pair are the
-facets of the surfaces that have a patch with the other part, and pairs of other facets that are both within the
-contact tolerance of the other part at the pose of the meshes. Each facet that is near there still meets all that
-is not. Where two parts overlap beyond their mating surfaces nothing else is left out. A part that lies wholly inside another is not told from one outside: surfaces are compared, not solids.
+Mating surfaces touch or nearly do wherever the pair is, and so do the edges beside them. A surface that mates counts
+against all of the other part but the surfaces that it mates with, those that border on these, and those that it is
+within the contact tolerance of at the pose of the meshes. Of the other facets, pairs are left out that are both within
+that of the other part there. Each facet that is near there still meets all that is not. Where two parts overlap beyond their mating surfaces nothing else is left out. A part that lies wholly inside another is not told from one outside: surfaces are compared, not solids.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.contacts.bvh import fcl_distance, fcl_model, fcl_pose
+from kinform.contacts.bvh import MeshIndex, fcl_distance, fcl_model, fcl_pose
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
@@ -56,6 +56,8 @@ class _Pair:
     first: Part
     second: Part
     tests: tuple[tuple[_Side, _Side], ...]
+    mates: int = 0
+    """Pairs of surfaces by which they mate, between which the distance does not count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +70,11 @@ class Apart:
     radius: float
     size: float
     """m: diagonal of the smaller group."""
+
+    @property
+    def left_out(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of parts of which the surfaces by which they mate do not count against each other, sorted."""
+        return tuple(sorted((pair.first.name, pair.second.name) for pair in self.pairs if pair.mates))
 
     def at(self, X: Array, enough: float = np.inf) -> Nearest:
         """The least distance when the second group is displaced by X (4, 4) relative to the first. Where it is more
@@ -139,10 +146,37 @@ def _pair(
         tests = [(keep_a & ~near_a, keep_b)]
         if near_a.any():
             tests.append((near_a, keep_b & ~near_b))
+    paired = sorted({(s[1], s[0]) if swapped else (s[0], s[1]) for s in mates})
+    tolerance = contacts.tolerance.get(names, 0.0)
+    tests += _mating(a, b, surfaces, paired, tolerance)
+    tests += [(one, other) for other, one in _mating(b, a, surfaces, [(j, i) for i, j in paired], tolerance)]
     sides = [
         (_side(a.mesh, one, shared), _side(b.mesh, other, shared)) for one, other in tests if one.any() and other.any()
     ]
-    return _Pair(a, b, tuple(sides))
+    return _Pair(a, b, tuple(sides), len(paired))
+
+
+def _mating(
+    a: Part, b: Part, surfaces: Mapping[str, MeshSurfaces], paired: Sequence[tuple[int, int]], tolerance: float
+) -> list[tuple[Flags, Flags]]:
+    """Facets of each surface of `a` that mates (`paired` with one of `b`), and those of `b` that are nothing to its mates."""
+    assert a.mesh is not None
+    assert b.mesh is not None
+    own, other = surfaces.get(a.mesh.digest), surfaces.get(b.mesh.digest)
+    if own is None or other is None or not paired:
+        return []
+    index = MeshIndex(b.mesh)
+    together: dict[bytes, tuple[Flags, Flags]] = {}
+    for surface in sorted({i for i, _ in paired}):
+        mates = {j for i, j in paired if i == surface}
+        beside = mates | {k for j in mates for k in index.neighbours(other, j)}
+        mine = own.labels == surface
+        far = ~np.isin(other.labels, sorted(beside))
+        touched = _near(a, mine, b, far, tolerance)[1] if far.any() else far
+        far &= ~np.isin(other.labels, np.unique(other.labels[touched]))
+        before = together.get(far.tobytes())
+        together[far.tobytes()] = (mine if before is None else before[0] | mine, far)
+    return [together[key] for key in sorted(together)]
 
 
 def _without(mesh: Mesh, surfaces: Mapping[str, MeshSurfaces], mated: set[int]) -> Flags:

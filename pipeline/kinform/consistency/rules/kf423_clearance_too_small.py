@@ -1,8 +1,9 @@
 """Two parts collide, or come nearer than the required distance, along the simulated motion or over the ranges.
 
-Distances are those of the surfaces, by FCL, without the surfaces by which a pair mates and the edges that touch beside
-them. Along the motion steps are as long as the distance allows, so that nothing is passed over; between output times
-poses are interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
+Distances are those of the surfaces, by FCL. Surfaces by which a pair mates do not count against each other, nor against
+what borders on their mates or touches beside them; they count against all the rest. Messages name such pairs. Along the
+motion steps are as long as the distance allows, so that nothing is passed over; between output times poses are
+interpolated. Over the ranges every combination of joint values between the two is covered, cell by cell.
 Distances are certain up to 1e-4 of the size of the smaller part, 1e-3 where several joints move at once. A simulation
 that did not run, a range that is not known, a loop between the two (over ranges), or too many cells make the
 requirement inconclusive (KF902).
@@ -36,6 +37,7 @@ from kinform.consistency._requirements import (
     violated,
 )
 from kinform.consistency._rule import Outcome
+from kinform.function.clearances import Apart
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.sweeps import Swept, along, over
 from kinform.model.function import Requirement
@@ -114,10 +116,11 @@ def _one(
     required = float(requirement.values.get("distance", 0.0))
     if simulation is not None:
         swept = along(groups, _displaced(simulation, a), _displaced(simulation, b), required)
-        return _answer(context, swept, required, quoted([*own[:2], *other[:2]]), _time(simulation, swept))
+        return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), _time(simulation, swept))
     if a.name == b.name:
         still = np.eye(4)[None]
-        return _answer(context, along(groups, still, still, required), required, quoted([*own[:2], *other[:2]]), "")
+        swept = along(groups, still, still, required)
+        return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), "")
     chain = chain_between(context.assembly, kinematics, a.name, b.name, "stated")
     if isinstance(chain, str):
         return undecided(chain, "See KF401 and KF901.")
@@ -125,7 +128,8 @@ def _one(
     if isinstance(box, Answer):
         return box
     swept = over(groups, chain, a.name, b.name, *box, required)
-    return _answer(context, swept, required, quoted([*own[:2], *other[:2]]), _values(context, chain, swept))
+    values = _values(context, chain, swept)
+    return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), values)
 
 
 def _ranges(context: Context, chain: Chain) -> tuple[Array, Array] | Answer:
@@ -159,7 +163,7 @@ def _displaced(simulation: Simulation, body: Body) -> Array:
     return X
 
 
-def _answer(context: Context, swept: Swept, required: float, names: str, where: str) -> Answer:
+def _answer(context: Context, groups: Apart, swept: Swept, required: float, names: str, where: str) -> Answer:
     units, near = context.units, swept.worst
     told = telling(lambda value, digits: length(value, units, digits), near.distance, required)
     shown = told(near.distance)
@@ -177,7 +181,15 @@ def _answer(context: Context, swept: Swept, required: float, names: str, where: 
             "Lower the distance, or check it by other means.", found=f"nearest measured {shown}",
         )  # fmt: skip
     few = counted(swept.poses, "measured pose")
-    return met(f"{names} stay clear, certain within {length(swept.floor, units)} by {few}")
+    text = f"{names} stay clear, certain within {length(swept.floor, units)} by {few}"
+    return met(f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text)
+
+
+def _mating(groups: Apart) -> str:
+    """The pairs of parts whose mating surfaces do not count against each other."""
+    shown = [" and ".join(quoted([name]) for name in pair) for pair in groups.left_out[:3]]
+    more = len(groups.left_out) - len(shown)
+    return "; ".join([*shown, counted(more, "more pair")] if more else shown)
 
 
 def _time(simulation: Simulation, swept: Swept) -> str:
