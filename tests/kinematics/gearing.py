@@ -36,6 +36,30 @@ def gear_pair(first=20, second=30, turn=0.1, points=12, thin=0.0, lag=0.0, idler
     return {"housing": housing, **out}
 
 
+def limited(outline, low, high):
+    """An outline with its tips and roots on these radii."""
+    radius = np.hypot(*outline.T)
+    return outline * (np.clip(radius, low, high) / radius)[:, None]
+
+
+def ring(teeth, outer, tips):
+    """A wheel with inner teeth, whose spaces are the teeth of an outer one; short enough not to foul a pinion's roots."""
+    outline = limited(Gear(teeth, thin=-0.08).outline(), tips, outer)
+    return rod(outer, 0, WIDTH, 96) - extrusion(outline, -1, WIDTH + 1)
+
+
+def epicyclic():
+    """A carrier about z bears a planet of 20 teeth, 15 mm off, in a ring of 50 that belongs to the frame."""
+    apart, low = 0.5 * (50 - 20), -12
+    frame = ring(50, 30, 24.2) + rod(30, low - 4, low, 96) + (rod(30, low, 0, 96) - rod(27, low - 1, 1, 96))
+    frame += rod(3, low, -2, 48) + rod(5, low, -9, 48) + rod(5, -4, -2.5, 48)
+    carrier = rod(7, -9, -4, 48) + box(0, apart, -3, 3, -8, -5) + rod(5, -8, 0, 48).translate((apart, 0, 0))
+    carrier -= rod(3, -20, 5, 48)
+    carrier += (rod(3, 0, WIDTH + 1, 48) + rod(5, WIDTH, WIDTH + 1, 48)).translate((apart, 0, 0))
+    planet = wheel(limited(Gear(20, thin=0.04).outline(), 0.0, 10.7), apart)
+    return {"frame": frame, "carrier": carrier, "planet": planet}
+
+
 def rack_and_pinion(teeth=20, turn=0.1, points=12, thin=0.0):
     """A pinion about z at the origin, and a rack below it that slides along x in a T slot."""
     gear = Gear(teeth, thin=thin, points=points)

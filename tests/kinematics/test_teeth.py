@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gearing import WIDTH, gear_pair, rack_and_pinion, wheel
+from gearing import WIDTH, gear_pair, limited, rack_and_pinion, ring, wheel
 from generators.involute import Gear, mesh_angle
-from solids import box, derived, extrusion, part, random_pose, rod
+from solids import box, derived, part, random_pose, rod
 
 from kinform.kinematics.teeth import Side, meshing
 
@@ -63,18 +63,6 @@ def test_an_idler_between_keeps_both_ratios():
     kinematics, _ = derived(**gear_pair(20, 30, 0.1, 10, idler=24))
     ratios = sorted(coupling.meshing.ratio for coupling in kinematics.couplings)
     assert ratios == pytest.approx([-1.25, -1.2])
-
-
-def limited(outline, low, high):
-    """An outline with its tips and roots on these radii."""
-    radius = np.hypot(*outline.T)
-    return outline * (np.clip(radius, low, high) / radius)[:, None]
-
-
-def ring(teeth, outer, tips):
-    """A wheel with inner teeth, whose spaces are the teeth of an outer one; short enough not to foul a pinion's roots."""
-    outline = limited(Gear(teeth, thin=-0.08).outline(), tips, outer)
-    return rod(outer, 0, WIDTH, 96) - extrusion(outline, -1, WIDTH + 1)
 
 
 def side(solid, centre, axis=Z):

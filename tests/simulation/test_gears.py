@@ -6,12 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gearing import epicyclic
 from known import FIXTURES
+from solids import assembly, part
 from validators import package
 
-from kinform import stages
+from kinform import contacts, kinematics, stages, surfaces
 from kinform.exports import export
-from kinform.model.function import Coupling, Drive, Law, SimulationRequest
+from kinform.mass import compile_mass
+from kinform.model.function import Coupling, Drive, Function, Law, SimulationRequest
+from kinform.simulation import simulate
 
 PRESSURE = np.radians(20.0)
 PINION, WHEEL = "frame~pinion", "frame~wheel"
@@ -152,3 +156,30 @@ def test_mujoco_turns_them_by_its_own_coupling(run, tmp_path):
     for _ in range(2000):
         mujoco.mj_step(model, state)
     np.testing.assert_allclose(state.qpos, found.simulation.joint_position[-1], rtol=1e-7)
+
+
+def test_a_planet_in_a_ring_turns_back_as_its_carrier_turns_on():
+    """ω_planet = (1 − 50/20) ω_carrier; α = T / (I_c + m a² + I_p (1 − 50/20)²)."""
+    made = assembly(*(part(name, solid, np.eye(4)) for name, solid in epicyclic().items()), ground="frame")
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    joined = kinematics.derive(made, found, contacts.find(made, found))
+    assert (joined.mobility.instantaneous, joined.mobility.finite) == (1, 1)
+    mass, torque = compile_mass(made, joined, found), 3e-5
+    request = SimulationRequest(gravity=np.zeros(3), duration=0.2, step=0.02)
+    drive = driven("carrier~frame", "effort", type="constant", value=torque)
+    run = simulate(replace(made, simulation=request, function=Function(drives=(drive,))), joined, mass, level="dynamic")
+    assert run.status == "done", run.reason
+    bodies = {body.name: body for body in mass.bodies}
+
+    def about_z(name):
+        body = bodies[name]
+        return body.inertia[2, 2] + body.mass * (body.centre_of_mass[:2] @ body.centre_of_mass[:2])
+
+    own = bodies["planet"].inertia[2, 2]
+    rate = torque / (about_z("carrier") + about_z("planet") - own + own * 1.5**2)
+    # values of `carrier~frame` are of the frame relative to the carrier
+    turned = -run.joint_position[:, run.joint_names.index("carrier~frame")]
+    np.testing.assert_allclose(np.abs(turned), 0.5 * rate * run.time**2, rtol=1e-8, atol=1e-12)
+    w, _, _, z = run.q_WB[-1, run.body_names.index("planet")]
+    np.testing.assert_allclose(2.0 * np.arctan2(z, w), -1.5 * turned[-1], rtol=1e-8)
+    assert run.balance.max() < 1e-9

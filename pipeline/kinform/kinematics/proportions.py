@@ -36,14 +36,14 @@ GAP = 1e-12
 """rad, and shares of the size: loops that stay closed to this need nothing."""
 STRIDE, STRIDES = 0.12, 16
 """rad (of the joint that turns most) from one pose to the next, and poses on each side of the start."""
-GLANCE = 3
-"""Of these the first ones, which tell loops that close exactly."""
 FREEDOMS, RATES = 3, 48
 """Blocks with more are left as they are."""
 SOUND = 0.01
 """Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes."""
 RANK = 1e-6
 """Relative singular value below which rows depend on the others."""
+PARALLEL = 1e-14
+"""Sine below which axes are exactly parallel: snapping makes them so."""
 ROUNDS = 8
 """Of Gauss and Newton: they converge in three."""
 
@@ -81,7 +81,7 @@ class _Walk:
 
 def _fitted(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], sigma: Array, size: float) -> Sequence[Joint]:
     """The joints of a block, moved where that closes its loops."""
-    if sum(joint.freedoms for joint in joints) > RATES:
+    if sum(joint.freedoms for joint in joints) > RATES or _planar(joints):
         return joints
     frame = _frame(joints, size)
     system = loop_system(edges, [joint.twists for joint in joints], frame)
@@ -90,7 +90,7 @@ def _fitted(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], sigma: Ar
     freedoms = system.coordinates - rank
     if rank == 6 * len(system.loops) or not 0 < freedoms <= FREEDOMS:
         return joints
-    if _walk(system, rank, GLANCE).gap < 0.1 * GAP:
+    if _glance(system, rank) < 0.1 * GAP:
         return joints
     before = _walk(system, rank)
     if before.gap < GAP:
@@ -116,13 +116,48 @@ def _fitted(edges: Sequence[tuple[int, int]], joints: Sequence[Joint], sigma: Ar
     return now
 
 
+def _planar(joints: Sequence[Joint]) -> bool:
+    """Whether all turns are about exactly parallel axes and all slides along or across them: such loops close
+    exactly by their kind, and are by far the most."""
+    turns = [j.axis for j in joints if j.type in ("revolute", "cylindrical", "planar") and j.axis is not None]
+    slides = [j.axis for j in joints if j.type == "prismatic" and j.axis is not None]
+    if len(turns) + len(slides) < len(joints) or not turns:
+        return False
+    crossed = np.linalg.norm(cross(np.array(turns), turns[0]), axis=1).max()
+    tilted = [min(abs(float(s @ turns[0])), float(np.linalg.norm(cross(s, turns[0])))) for s in slides]
+    return bool(max([float(crossed), *tilted]) < PARALLEL)
+
+
 def _frame(joints: Sequence[Joint], size: float) -> Frame:
     points = np.array([joint.point for joint in joints if joint.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), size)
     return Frame(frame.centre, max(frame.length, 0.05 * size))
 
 
-def _walk(system: LoopSystem, rank: int, strides: int = STRIDES) -> _Walk:
+def _glance(system: LoopSystem, rank: int) -> float:
+    """The gap one stride on, along all freedoms together: it tells loops that close exactly, as most do."""
+    start = np.zeros(system.coordinates)
+    _, _, right = np.linalg.svd(system.close(start[None]).jacobian[0])
+    ahead = right[rank:].sum(axis=0)
+    q, sound = _closed(system, rank, start + STRIDE * ahead / np.abs(ahead).max())[:2]
+    return float(np.abs(system.close(q[None]).residual).max()) if sound else np.inf
+
+
+def _closed(system: LoopSystem, rank: int, q: Array) -> tuple[Array, bool, Array]:
+    """The pose near q (n,) that closes the loops as well as its rank allows, whether it is far from singular ones, and
+    its freedoms (k, n)."""
+    change, values, right = np.ones(1), np.ones(1), np.eye(len(q))
+    for _ in range(8):
+        closed = system.close(q[None])
+        left, values, right = np.linalg.svd(closed.jacobian[0])
+        change = -(left[:, :rank].T @ closed.residual[0] / values[:rank]) @ right[:rank]
+        q = q + change
+        if np.abs(change).max() < 1e-13:
+            break
+    return q, bool(values[rank - 1] >= SOUND * values[0] and np.abs(change).max() <= 1e-9), right[rank:]
+
+
+def _walk(system: LoopSystem, rank: int) -> _Walk:
     """Along each freedom and all of them together, to both sides, until a pose is nearly singular."""
     start = np.zeros(system.coordinates)
     _, _, right = np.linalg.svd(system.close(start[None]).jacobian[0])
@@ -131,19 +166,10 @@ def _walk(system: LoopSystem, rank: int, strides: int = STRIDES) -> _Walk:
     poses, gap = [], 0.0
     for way in (sign * way for way in ways for sign in (1.0, -1.0)):
         q, ahead = start, way
-        for _ in range(strides):
-            q = q + STRIDE * ahead / np.abs(ahead).max()
-            for _ in range(8):
-                closed = system.close(q[None])
-                left, values, right = np.linalg.svd(closed.jacobian[0])
-                parts = left[:, :rank].T @ closed.residual[0]
-                change = -(parts / values[:rank]) @ right[:rank]
-                q = q + change
-                if np.abs(change).max() < 1e-13:
-                    break
-            if values[rank - 1] < SOUND * values[0] or np.abs(change).max() > 1e-9:
+        for _ in range(STRIDES):
+            q, sound, null = _closed(system, rank, q + STRIDE * ahead / np.abs(ahead).max())
+            if not sound:
                 break
-            null = right[rank:]
             ahead = null.T @ (null @ ahead)
             if np.abs(ahead).max() < 1e-3:
                 break
