@@ -11,11 +11,14 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency._requirements import Answer, met, undecided, violated
+from kinform.consistency._context import Context
+from kinform.consistency._requirements import Answer, met, resolved, simulated, undecided, violated
+from kinform.model.function import Requirement
+from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 from kinform.words import number, telling
 
-__all__ = ["peak"]
+__all__ = ["of_joint", "peak"]
 
 
 def peak(
@@ -56,6 +59,22 @@ def peak(
     apart = f", {number(float(np.diff(simulation.time).max()))} s apart" if len(simulation.time) > 1 else ""
     more = f", and between them at about {shown(summit)}" if shown(summit) != shown(float(values[k])) else ""
     return met(f"{text}, of {len(values)} output times{apart}{more}", found=shown(float(values[k])), intended=intended)
+
+
+def of_joint(
+    context: Context, requirement: Requirement, *, dynamic: bool = False
+) -> tuple[Joint, Simulation, int] | Answer:
+    """The joint of a requirement, the run, and the joint's column in it; or why there is none."""
+    found = resolved(context, requirement.values["joint"])
+    if isinstance(found, Answer):
+        return found
+    simulation = simulated(context, dynamic=dynamic)
+    if isinstance(simulation, Answer):
+        return simulation
+    joint = found[0]
+    if joint.name not in simulation.joint_names:
+        return undecided(f"the simulation does not have the joint '{joint.name}'", "See KF501.")
+    return joint, simulation, int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
 
 
 def _between(values: NDArray[np.float64]) -> float:
