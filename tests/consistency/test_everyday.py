@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from fixtures.generators.solids import bore, box, cut, join, rod
-from written import manifest
+from written import manifest, stated_joint
 
 from kinform import stages
 from kinform.consistency import check
@@ -29,19 +29,14 @@ def test_a_drive_through_a_loose_pin_is_undecided_not_wrong(tmp_path):
     pin = join(rod(5, -2.05, -0.05, 48), rod(3, -0.05, 12.15, 48), rod(5, 12.15, 14.15, 48))
     path = manifest(
         tmp_path, bars | {"pin": pin},
-        """
+        f"""
 [function]
 mobility = 1
-[[function.joint]]
-name = "swing"
-between = ["base", "arm"]
-type = "revolute"
-axis = [0, 0, 1]
-point = [0, 0, 0]
+{stated_joint("swing", ("base", "arm"), "revolute")}
 [[function.drive]]
 joint = "swing"
 kind = "effort"
-law = {type = "constant", value = 1}
+law = {{type = "constant", value = 1}}
 """,
     )  # fmt: skip
     design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
@@ -77,18 +72,8 @@ axis = [0, 0, 1]
 point = [0, 0, 0]
 pitch = -2
 reason = "not modelled"
-[[function.joint]]
-name = "thread"
-between = ["spindle", "base"]
-type = "screw"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-pitch = -2
-[[function.joint]]
-name = "lift"
-between = ["base", "table"]
-type = "prismatic"
-axis = [0, 0, 1]
+{stated_joint("thread", ("spindle", "base"), "screw")}pitch = -2
+{stated_joint("lift", ("base", "table"), "prismatic")}
 [[function.coupling]]
 joints = ["lift", "thread"]
 ratio = {ratio!r}
