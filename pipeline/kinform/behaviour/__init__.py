@@ -82,4 +82,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 3
+CODE_VERSION: int = 4

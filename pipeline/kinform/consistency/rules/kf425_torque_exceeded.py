@@ -1,7 +1,8 @@
 """The effort that the drive of a joint gives exceeds its limit during the simulation.
 
 The greatest of the output times counts; where a smooth peak between them would be above the limit, the requirement is
-inconclusive (KF902): a shorter `step` decides, and finds shorter peaks. Without a dynamic simulation that ran
+inconclusive (KF902), and so do output times that are too few to follow the motion: a shorter `step` decides, and finds
+shorter peaks. Without a dynamic simulation that ran
 to its end, or without a drive on the joint, the requirement is inconclusive (KF902).
 
 Why it matters: the motor stalls, or the gear breaks.
