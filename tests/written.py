@@ -7,7 +7,27 @@ from pathlib import Path
 from fixtures.generators.solids import Solid
 from fixtures.generators.writers import binary_stl
 
-__all__ = ["manifest"]
+__all__ = ["manifest", "stated_joint", "stated_part"]
+
+Vector = tuple[float, float, float]
+
+
+def stated_part(name: str, mass: float, centre: Vector = (0, 0, 0)) -> str:
+    """A `[[part]]` without mesh, of 1e-4 kg·m² about every axis."""
+    inertia = "[[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]"
+    return f'[[part]]\nname = "{name}"\nmass = {mass}\ncentre_of_mass = {list(centre)}\ninertia = {inertia}\n'
+
+
+def stated_joint(
+    name: str, between: tuple[str, str], kind: str, axis: Vector = (0, 0, 1), point: Vector = (0, 0, 0)
+) -> str:
+    """A `[[function.joint]]`; a slide has no point."""
+    where = "" if kind == "prismatic" else f"point = {list(point)}\n"
+    first, second = between
+    return (
+        f'[[function.joint]]\nname = "{name}"\nbetween = ["{first}", "{second}"]\ntype = "{kind}"\n'
+        f"axis = {list(axis)}\n{where}"
+    )
 
 
 def manifest(folder: Path, parts: dict[str, Solid], rest: str, *, ground: str = "", more: str = "") -> Path:

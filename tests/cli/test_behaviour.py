@@ -6,42 +6,17 @@ import json
 from pathlib import Path
 
 import pytest
+from written import stated_joint, stated_part
 
 from kinform_cli.main import main
 
-MOTOR = """schema = 1
-[assembly]
-name = "motor"
-units = "m"
-ground = "stator"
-[[part]]
-name = "stator"
-mass = 0.5
-centre_of_mass = [0, 0, 0]
-inertia = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]
-[[part]]
-name = "rotor"
-mass = 0.2
-centre_of_mass = [0, 0.01, 0]
-inertia = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]
-[[function.joint]]
-name = "bearing"
-between = ["stator", "rotor"]
-type = "revolute"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-"""
-
-DEVICE = """schema = 1
-[assembly]
-name = "device"
-units = "m"
-ground = "base"
-[[part]]
-name = "base"
-mass = 1
-centre_of_mass = [0, 0, 0]
-inertia = [[1e-4, 0, 0], [0, 1e-4, 0], [0, 0, 1e-4]]
+HEAD = 'schema = 1\n[assembly]\nname = "device"\nunits = "m"\n'
+MOTOR = (
+    f'{HEAD}ground = "stator"\n{stated_part("stator", 0.5)}{stated_part("rotor", 0.2, (0, 0.01, 0))}'
+    f"{stated_joint('bearing', ('stator', 'rotor'), 'revolute')}"
+)
+DEVICE = f"""{HEAD}ground = "base"
+{stated_part("base", 1)}
 [[subassembly]]
 name = "yaw"
 file = "motor.toml"
@@ -50,22 +25,12 @@ name = "pitch"
 file = "motor.toml"
 position = [0.1, 0, 0.1]
 rpy = [0, 90, 0]
-[[function.joint]]
-name = "pan"
-between = ["base", "yaw/stator"]
-type = "revolute"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-[[function.joint]]
-name = "mount"
-between = ["yaw/rotor", "pitch/stator"]
-type = "revolute"
-axis = [0, 1, 0]
-point = [0.1, 0, 0]
+{stated_joint("pan", ("base", "yaw/stator"), "revolute")}
+{stated_joint("mount", ("yaw/rotor", "pitch/stator"), "revolute", (0, 1, 0), (0.1, 0, 0))}
 [[function.drive]]
 joint = "yaw/bearing"
 kind = "motion"
-law = {type = "sine", amplitude = 20, frequency = 1}
+law = {{type = "sine", amplitude = 20, frequency = 1}}
 [[function.drive]]
 joint = "pitch/bearing"
 kind = "dc_motor"

@@ -168,10 +168,12 @@ def test_a_lock_holds_until_the_behaviour_changes(folder, capsys):
     run("-q")
     capsys.readouterr()
     assert main(["check", "r.h5", "--lock", "b.json", "-q", "-f", "concise"]) == 1
-    said = capsys.readouterr().out
-    assert said.startswith("b.json:") and "error KF450 block: mass +" in said
+    line = next(
+        n for n, text in enumerate((folder / "b.json").read_text().splitlines(), 1) if '"name": "block"' in text
+    )
+    assert f"b.json:{line}: error KF450 block: mass" in capsys.readouterr().out
     assert main(["check", "r.h5", "--lock", "b.json", "-f", "github", "--manifest-folder", "deeper/down"]) == 1
-    assert "::error file=b.json,title=KF450" in capsys.readouterr().out
+    assert f"::error file=b.json,line={line},title=KF450" in capsys.readouterr().out
     assert main(["check", "r.h5", "--lock", "absent.json"]) == 2
     assert main(["check", "r.h5", "--lock", "m.toml"]) == 2
     assert main(["import", "m.toml", "-o", "a.h5", "-q"]) == 0
@@ -213,6 +215,22 @@ def test_watch_runs_again_on_a_save_survives_bad_input_and_ends_cleanly(folder):
         assert "watching ended" in errors
         assert "Traceback" not in errors
         assert out.count("rules ran") == 2
+    finally:
+        watching.kill()
+        watching.communicate()
+
+
+def test_watch_sees_a_file_that_was_missing_appear(folder):
+    text = (folder / "m.toml").read_text()
+    (folder / "m.toml").write_text(text + '[[part]]\nname = "lid"\nmesh = "lid.stl"\n')
+    watching = started()
+    try:
+        assert any("lid.stl does not exist" in line for line in said(watching, "watching"))
+        shutil.copy(folder / "shaft.stl", folder / "lid.stl")
+        lines = said(watching, "watching")
+        assert not any("does not exist" in line for line in lines)
+        watching.send_signal(signal.SIGINT)
+        watching.communicate(timeout=60)
     finally:
         watching.kill()
         watching.communicate()

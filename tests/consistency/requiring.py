@@ -103,13 +103,13 @@ def parallelogram(range_=None):
     return design(parts, joints, wanted=wanted)
 
 
-def wheel(law=None, kind="motion", level=None, com=(0.0, 0, 0), duration=1.0):
+def wheel(law=None, kind="motion", level=None, com=(0.0, 0, 0), duration=1.0, step=0.01):
     """A disc of 2 kg and 0.01 kg·m² about the z axis, driven."""
     turn = joint("base", "disc", "revolute", Z, ORIGIN)
     wanted = [intended("spin", "base", "disc", "revolute", Z, ORIGIN)]
     drives = [] if law is None else [drive("spin", kind, law)]
     parts = [body("disc", 2.0, com, (0.006, 0.006, 0.01))]
-    return design(parts, [turn], wanted=wanted, drives=drives, run=True, level=level, duration=duration, step=0.01)
+    return design(parts, [turn], wanted=wanted, drives=drives, run=True, level=level, duration=duration, step=step)
 
 
 def circle(rows=101, radius=0.1, amplitude=30.0, shift=0.0, turned=False, last=1.0):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from fixtures.generators.solids import bore, box, cut, join, rod
-from written import manifest
+from written import manifest, stated_joint
 
 from kinform import stages
 from kinform.consistency import check
@@ -29,19 +29,14 @@ def test_a_drive_through_a_loose_pin_is_undecided_not_wrong(tmp_path):
     pin = join(rod(5, -2.05, -0.05, 48), rod(3, -0.05, 12.15, 48), rod(5, 12.15, 14.15, 48))
     path = manifest(
         tmp_path, bars | {"pin": pin},
-        """
+        f"""
 [function]
 mobility = 1
-[[function.joint]]
-name = "swing"
-between = ["base", "arm"]
-type = "revolute"
-axis = [0, 0, 1]
-point = [0, 0, 0]
+{stated_joint("swing", ("base", "arm"), "revolute")}
 [[function.drive]]
 joint = "swing"
 kind = "effort"
-law = {type = "constant", value = 1}
+law = {{type = "constant", value = 1}}
 """,
     )  # fmt: skip
     design = stages.mass(stages.joints(stages.contacts(stages.import_(path))))
@@ -77,18 +72,8 @@ axis = [0, 0, 1]
 point = [0, 0, 0]
 pitch = -2
 reason = "not modelled"
-[[function.joint]]
-name = "thread"
-between = ["spindle", "base"]
-type = "screw"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-pitch = -2
-[[function.joint]]
-name = "lift"
-between = ["base", "table"]
-type = "prismatic"
-axis = [0, 0, 1]
+{stated_joint("thread", ("spindle", "base"), "screw")}pitch = -2
+{stated_joint("lift", ("base", "table"), "prismatic")}
 [[function.coupling]]
 joints = ["lift", "thread"]
 ratio = {ratio!r}
@@ -138,3 +123,21 @@ def test_a_load_on_the_ground_is_not_verified(tmp_path, part, outcome):
     found = [f for f in design.report.findings if f.code == "KF905"]
     assert [f.found for f in found] == (["without effect"] if part == "rail" else [])
     assert all(f.place is not None and "load" in path.read_text().splitlines()[f.line - 1] for f in found)
+
+
+def test_a_load_on_a_group_is_carried_as_one_on_its_parts(tmp_path):
+    rail = join(box(-60, 60, -15, 15, -5, 0), box(-60, 60, -15, -10, -1, 10), box(-60, 60, 10, 15, -1, 10))
+    parts = {"rail": rail, "slider": box(-20, 25, -10, 10, 0, 8), "lid": box(-20, 25, -10, 10, 8, 12)}
+    group = '[[group]]\nname = "carriage"\nparts = ["slider", "lid"]\n'
+    moved = {}
+    for named in ("carriage", "slider"):
+        (tmp_path / named).mkdir()
+        text = f'{group}[function]\nload = [{{part = "{named}", force = [1, 0, 0]}}]\n[simulation]\nduration = 0.1\n'
+        path = manifest(tmp_path / named, parts, text, more='material = "steel"\n', ground="rail")
+        design = stages.simulate(stages.mass(stages.joints(stages.contacts(stages.import_(path)))))
+        assert design.simulation.level == "dynamic"
+        moved[named] = design.simulation.joint_position[-1, 0]
+    # a frictionless slide: 1 N on both together for 0.1 s
+    mass = sum(p.mass for p in design.mass.parts if p.name != "rail")
+    assert abs(moved["carriage"]) == pytest.approx(0.5 / mass * 0.1**2, rel=1e-6)
+    assert moved["carriage"] == pytest.approx(moved["slider"], rel=1e-9)

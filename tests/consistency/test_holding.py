@@ -65,3 +65,12 @@ def test_what_an_unknown_mass_leaves_open():
     found, finding = state(made, "hold", joint="shoulder", limit=100.0)
     assert found == "undecided"
     assert "'lower'" in finding.message
+
+
+@pytest.mark.parametrize(("bend", "found"), [(29.0, "met"), (30.0, "met"), (31.0, "undecided"), (-31.0, "undecided")])
+def test_a_pose_outside_of_the_range_is_not_held(bend, found):
+    made = arm(elbow=(-math.radians(30.0), math.radians(30.0)))
+    pose = {"elbow": math.radians(bend)}
+    answer, finding = state(made, "hold", joint="shoulder", limit=100.0, poses=[pose])
+    assert answer == found
+    assert found == "met" or "joint 'elbow' would be outside of its range" in finding.message

@@ -6,8 +6,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from devices import sine
-from requiring import circle, state, wheel
+import pytest
+from devices import intended, joint, rod, sine
+from requiring import ORIGIN, G, Y, circle, design, state, wheel
+
+from kinform.consistency import check
+from kinform.model.function import InitialValue
 
 
 def test_the_peak_speed_of_a_driven_joint():
@@ -87,8 +91,12 @@ def test_a_smooth_peak_between_output_times_is_not_passed():
     # as if the output times lay half a step beside the peak
     run = made.simulation
     step = float(run.time[1])
-    shifted = np.sin(math.pi * (run.time + 0.5 * step)) * math.radians(30.0) * math.pi
-    coarse = replace(made, simulation=replace(run, joint_velocity=shifted[:, None]))
+    phase = math.pi * (run.time + 0.5 * step)
+    moved = math.radians(30.0) * np.array([-np.cos(phase), math.pi * np.sin(phase), math.pi**2 * np.cos(phase)])
+    shifted = moved[1]
+    position, velocity, acceleration = moved[:, :, None]
+    coarse = replace(run, joint_position=position, joint_velocity=velocity, joint_acceleration=acceleration)
+    coarse = replace(made, simulation=coarse)
     sampled = float(np.abs(shifted).max())
     true = math.radians(30.0) * math.pi
     assert sampled < true
@@ -102,5 +110,43 @@ def test_a_jump_has_no_peak_beside_it():
     made = wheel(sine(30.0, 0.5))
     run = made.simulation
     jumping = np.where(run.time < 0.5, 0.0, 1.0)[:, None]
-    jumped = replace(made, simulation=replace(run, joint_velocity=jumping))
+    along = np.maximum(run.time - 0.5, 0.0)[:, None]
+    jumped = replace(run, joint_position=along, joint_velocity=jumping, joint_acceleration=np.zeros_like(jumping))
+    jumped = replace(made, simulation=jumped)
     assert state(jumped, "speed", joint="spin", limit=1.001)[0] == "met"
+
+
+@pytest.mark.parametrize("share", [1, 2, 3, 4])
+def test_a_motion_of_which_there_are_too_few_output_times_is_not_passed(share):
+    """At a half or a quarter of the period of 0.5 Hz all that is seen is at rest, or at full speed and without torque."""
+    spin, peak = sine(30.0, 0.5), 0.01 * math.radians(30.0) * math.pi**2
+    made = wheel(spin, duration=8.0, step=2.0 / share)
+    assert len(made.simulation.time) == 4 * share + 1
+    seen = float(np.abs(made.simulation.joint_effort).max())
+    assert seen < 0.99 * peak or share == 4
+    assert state(made, "torque", joint="spin", limit=max(1.01 * seen, 0.5 * peak))[0] == "undecided"
+    fine = wheel(spin, duration=8.0, step=2.0 / 16)
+    assert state(fine, "torque", joint="spin", limit=1.01 * peak)[0] == "met"
+    assert state(fine, "torque", joint="spin", limit=0.5 * peak)[0] == "violated"
+
+
+def test_a_pendulum_of_which_there_are_too_few_output_times_is_not_passed():
+    """It swings by itself: no law says how fast."""
+    turn, start = joint("base", "bob", "revolute", Y, ORIGIN), InitialValue("swing", 20.0, 0.0, 1.0, "m.toml", 9)
+    made = lambda step: design(
+        [rod("bob", ORIGIN, (0, 0, -0.3), 1.0)], [turn], wanted=[intended("swing", "base", "bob", "revolute", Y, ORIGIN)],
+        run=True, initial=(start,), duration=4.0, step=step,
+    )  # fmt: skip
+    # half the period of a rod of 0.3 m: 2π √(2·0.3/(3 g)), a little longer at 20°
+    period = 2.0 * math.pi * math.sqrt(2.0 * 0.3 / (3.0 * G)) * (1.0 + math.radians(20.0) ** 2 / 16.0)
+    fastest = math.sqrt(3.0 * G / 0.3 * (1.0 - math.cos(math.radians(20.0))))
+    assert state(made(period / 2), "speed", joint="swing", limit=0.5 * fastest)[0] != "met"
+    assert state(made(period / 20), "speed", joint="swing", limit=1.02 * fastest)[0] == "met"
+    assert state(made(period / 20), "speed", joint="swing", limit=0.95 * fastest)[0] == "violated"
+
+
+def test_energy_that_only_rounding_exchanges_between_output_times_is_no_finding():
+    # at full speed at every output time
+    made = wheel(sine(30.0, 0.5), duration=8.0, step=2.0)
+    assert float(np.ptp(made.simulation.energy[:, 0])) < 1e-9 * float(made.simulation.energy[:, 0].max())
+    assert "KF504" not in {finding.code for finding in check(made).findings}

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from written import stated_joint
 
 from kinform.errors import InputError
 from kinform.form import load
 
-HEAD = """schema = 1
+HEAD = (
+    """schema = 1
 [assembly]
 name = "x"
 units = "mm"
@@ -15,15 +17,12 @@ units = "mm"
 name = "a"
 [[part]]
 name = "b"
-[[function.joint]]
-name = "j"
-between = ["a", "b"]
-type = "revolute"
-axis = [0, 0, 1]
-point = [0, 0, 0]
-[[function.require]]
+"""
+    + stated_joint("j", ("a", "b"), "revolute")
+    + """[[function.require]]
 name = "r"
 """
+)
 REACH = 'kind = "reach"\npart = "b"\n'
 WRONG = {
     "bounds the wrong way round": ('kind = "mass"\nminimum = 2\nmaximum = 1', "minimum, 2, is above", 2),

@@ -57,14 +57,17 @@ def watch(
     try:
         while True:
             before = _stamps(_files(manifest, output))
-            code = _run(manifest, output, allow_outside, cores(jobs), format, fail_on)
+            found = _run(manifest, output, allow_outside, cores(jobs), format, fail_on)
+            code = errors.NOT_VERIFIED if found is None else found
             runs += 1
             if runs == max_runs:
                 break
             watched = _files(manifest, output)
-            console.say(f"watching {len(watched)} files; Ctrl-C ends")
             # what was saved while the run went on counts as saved after it
-            seen = {path: before.get(path, stamp) for path, stamp in _stamps(watched).items()}
+            # after bad input the folders count too: what was missing may appear, and nothing was written there
+            folders = [] if found is not None else sorted({path.parent for path in watched})
+            seen = {path: before.get(path, stamp) for path, stamp in _stamps([*watched, *folders]).items()}
+            console.say(f"watching {len(watched)} files; Ctrl-C ends")
             _wait(seen, period)
     except KeyboardInterrupt:
         console.say("watching ended")
@@ -73,8 +76,8 @@ def watch(
 
 def _run(
     manifest: Path, output: Path, allow_outside: bool, jobs: int, format: FindingsFormat, fail_on: Severity
-) -> int:
-    """One run: prints its findings or its errors; the exit code that it is due."""
+) -> int | None:
+    """One run: prints its findings or its errors; the exit code that it is due, None where the input is bad."""
     import kinform
 
     try:
@@ -87,7 +90,8 @@ def _run(
                 allow_outside=allow_outside,
             )
     except (kinform.KinformError, OSError) as error:
-        return errors.report(error)
+        errors.report(error)
+        return None
     return show(outcome.gist, format, fail_on, manifest.parent, outcome)
 
 

@@ -149,19 +149,21 @@ def mesh_gear(coupling: Found, joints: Joints) -> Gear | str:
 
 
 def make_load(
-    kinematics: Kinematics, mass: MassReport | None, load: Load, number: int
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, load: Load, number: int
 ) -> tuple[LoadComponent | None, str, str]:
     """(component, body, why not)."""
     try:
-        body = kinematics.body_of(load.part).name
+        parts = assembly.parts_of(load.part)
     except KeyError:
-        return None, "", f'a load acts on "{load.part}", which is no part'
+        return None, "", f'a load acts on "{load.part}", which is no part or group'
+    body = kinematics.body_of(parts[0]).name
     point = load.point
     if point is None:
-        known = [p for p in (() if mass is None else mass.parts) if p.name == load.part and p.mass is not None]
-        if not known:
+        known = [p for p in (() if mass is None else mass.parts) if p.name in parts]
+        whole = sum(p.mass or 0.0 for p in known)
+        if len(known) < len(parts) or any(p.mass is None for p in known) or not whole > 0.0:
             return None, "", "a load acts at its centre of mass, which is not known"
-        point = known[0].centre_of_mass
+        point = np.sum([(p.mass or 0.0) * p.centre_of_mass for p in known], axis=0) / whole
     force = np.zeros(3) if load.force is None else load.force
     torque = np.zeros(3) if load.torque is None else load.torque
     if not np.all(np.isfinite(np.concatenate([force, torque, point]))):

@@ -110,7 +110,7 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
             else:
                 failures.append(("coupling of " + " and ".join(stated.joints), why))
     for number, load in enumerate(assembly.function.loads, start=1):
-        component_load, body_name, why = make_load(kinematics, mass, load, number)
+        component_load, body_name, why = make_load(assembly, kinematics, mass, load, number)
         if component_load is not None:
             builder.add(component_load, frame=f"body {body_name}")
         else:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
 from kinform.consistency._context import Context
+from kinform.consistency._rule import Declared, Outcome, Rule, decided, inconclusive
 from kinform.function import resolve
 from kinform.model.kinematics import Kinematics
 from kinform.words import counted, quoted
 
-__all__ = ["actuated", "loose"]
+__all__ = ["actuated", "loose", "without_freedom"]
 
 DRIVEN = ("revolute", "prismatic", "screw")
 """Joints with one freedom, on which a single value acts."""
@@ -27,6 +31,39 @@ def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, 
         return "unknown", f"joint '{joint.name}' is general, with {counted(joint.freedoms, 'freedom')}"
     short = ("absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}")
     return _unknown(loose(context, name)) or short
+
+
+class Acting(Declared, Protocol):
+    """Something in the manifest that acts on a joint."""
+
+    @property
+    def joint(self) -> str: ...
+
+
+def without_freedom(
+    context: Context, rule: Rule, acting: Sequence[Acting], told: Callable[[Any], str], remedy: str
+) -> Outcome:
+    """A finding for each that acts on a joint which has not exactly one freedom; `told` says what acts."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return kinematics
+    findings, unknown = [], []
+    for item in acting:
+        state, reason = actuated(context, kinematics, item.joint)
+        if state == "unknown":
+            unknown.append(reason)
+        elif state == "absent":
+            findings.append(
+                rule.finding(
+                    [item.joint],
+                    f"the {told(item)} '{item.joint}' has no freedom to act on: {reason}",
+                    found=reason,
+                    intended="a joint with one freedom",
+                    declared=item,
+                    remedy=remedy,
+                )
+            )
+    return inconclusive("; ".join(dict.fromkeys(unknown)), findings) if unknown else decided(findings)
 
 
 def _unknown(reason: str) -> tuple[str, str] | None:

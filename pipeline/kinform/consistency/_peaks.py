@@ -11,11 +11,20 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency._requirements import Answer, met, undecided, violated
+from kinform.consistency._context import Context
+from kinform.consistency._requirements import Answer, met, resolved, simulated, undecided, violated
+from kinform.model.function import Requirement
+from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 from kinform.words import number, telling
 
-__all__ = ["peak"]
+__all__ = ["of_joint", "peak"]
+
+SINGLE = ("revolute", "prismatic", "screw")
+MANY = 0.2
+"""Share of the steps."""
+QUIET = 1e-9
+"""rad/s or m/s below which nothing moves."""
 
 
 def peak(
@@ -48,6 +57,12 @@ def peak(
             )  # fmt: skip
     if not known.all():
         return undecided(f"{what} is not known at all times of the simulation", "See the notes of the simulation.")
+    if _coarse(simulation):
+        step = number(float(np.diff(simulation.time).max())) if len(simulation.time) > 1 else "0"
+        return undecided(
+            f"{text}, but output times {step} s apart are too few to follow the motion", "Ask for a shorter `step` of the output.",
+            intended=intended,
+        )  # fmt: skip
     if simulation.status != "done":
         return undecided(
             f"the simulation stopped at t = {number(float(simulation.time[-1]))} s: {simulation.reason}",
@@ -56,6 +71,46 @@ def peak(
     apart = f", {number(float(np.diff(simulation.time).max()))} s apart" if len(simulation.time) > 1 else ""
     more = f", and between them at about {shown(summit)}" if shown(summit) != shown(float(values[k])) else ""
     return met(f"{text}, of {len(values)} output times{apart}{more}", found=shown(float(values[k])), intended=intended)
+
+
+RESOLVED = 0.1
+"""Share of the greatest rate by which a rate may miss what its derivatives at both ends of a step make of it; a sine is
+within it from six output times a period."""
+
+
+def _coarse(simulation: Simulation) -> bool:
+    """Whether speeds and positions change between output times by other than speeds and accelerations there say, in many
+    steps: single kinks and jumps of a law are no reason."""
+    turns = [int(simulation.joint_offset[k]) for k, kind in enumerate(simulation.joint_types) if kind in SINGLE]
+    if len(simulation.time) < 2 or len(simulation.joint_acceleration) != len(simulation.time):
+        return False
+    h = np.diff(simulation.time)[:, None]
+    q, v, a = (
+        x[:, turns] for x in (simulation.joint_position, simulation.joint_velocity, simulation.joint_acceleration)
+    )
+    if not (np.isfinite(a).all() and np.isfinite(v).all()):
+        return False
+    fastest = np.abs(v).max(axis=0, initial=0.0)
+    by_rates = 0.5 * h * (v[:-1] + v[1:]) + h**2 / 12.0 * (a[:-1] - a[1:])
+    missed = np.abs(np.diff(v, axis=0) - 0.5 * h * (a[:-1] + a[1:])) > RESOLVED * fastest
+    missed |= np.abs(np.diff(q, axis=0) - by_rates) > RESOLVED * h * fastest
+    return bool(((missed.mean(axis=0) > MANY) & (fastest > QUIET)).any())
+
+
+def of_joint(
+    context: Context, requirement: Requirement, *, dynamic: bool = False
+) -> tuple[Joint, Simulation, int] | Answer:
+    """The joint of a requirement, the run, and the joint's column in it; or why there is none."""
+    found = resolved(context, requirement.values["joint"])
+    if isinstance(found, Answer):
+        return found
+    simulation = simulated(context, dynamic=dynamic)
+    if isinstance(simulation, Answer):
+        return simulation
+    joint = found[0]
+    if joint.name not in simulation.joint_names:
+        return undecided(f"the simulation does not have the joint '{joint.name}'", "See KF501.")
+    return joint, simulation, int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
 
 
 def _between(values: NDArray[np.float64]) -> float:

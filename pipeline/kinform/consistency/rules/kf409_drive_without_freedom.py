@@ -11,9 +11,9 @@ Example: a drive on the elbow of an arm whose elbow is welded by a group.
 
 from __future__ import annotations
 
-from kinform.consistency._actuated import actuated
+from kinform.consistency._actuated import without_freedom
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._rule import Outcome, Rule, skipped
 
 __all__ = ["RULE"]
 
@@ -23,26 +23,8 @@ def check(context: Context) -> Outcome:
     drives = context.function.drives
     if not drives:
         return skipped("the function states no drive")
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    findings, unknown = [], []
-    for drive in drives:
-        state, reason = actuated(context, kinematics, drive.joint)
-        if state == "unknown":
-            unknown.append(reason)
-        elif state == "absent":
-            findings.append(
-                RULE.finding(
-                    [drive.joint],
-                    f"the {drive.kind} drive on '{drive.joint}' has no freedom to act on: {reason}",
-                    found=reason,
-                    intended="a joint with one freedom",
-                    declared=drive,
-                    remedy="Correct `joint` of the drive, or the geometry of the joint.",
-                )
-            )
-    return inconclusive("; ".join(dict.fromkeys(unknown)), findings) if unknown else decided(findings)
+    remedy = "Correct `joint` of the drive, or the geometry of the joint."
+    return without_freedom(context, RULE, drives, lambda drive: f"{drive.kind} drive on", remedy)
 
 
 RULE = Rule("KF409", "drive-without-freedom", "error", __doc__, check)

@@ -11,9 +11,9 @@ Example: `[simulation.initial.elbow]` where the elbow is a ball joint.
 
 from __future__ import annotations
 
-from kinform.consistency._actuated import actuated
+from kinform.consistency._actuated import without_freedom
 from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency._rule import Outcome, Rule, skipped
 
 __all__ = ["RULE"]
 
@@ -23,26 +23,8 @@ def check(context: Context) -> Outcome:
     request = context.assembly.simulation
     if request is None or not request.initial:
         return skipped("no initial value is stated")
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    findings, unknown = [], []
-    for value in request.initial:
-        state, reason = actuated(context, kinematics, value.joint)
-        if state == "unknown":
-            unknown.append(reason)
-        elif state == "absent":
-            findings.append(
-                RULE.finding(
-                    [value.joint],
-                    f"the initial value of '{value.joint}' has no freedom to act on: {reason}",
-                    found=reason,
-                    intended="a joint with one freedom",
-                    declared=value,
-                    remedy="Correct the name in [simulation.initial], or the geometry of the joint.",
-                )
-            )
-    return inconclusive("; ".join(dict.fromkeys(unknown)), findings) if unknown else decided(findings)
+    remedy = "Correct the name in [simulation.initial], or the geometry of the joint."
+    return without_freedom(context, RULE, request.initial, lambda _: "initial value of", remedy)
 
 
 RULE = Rule("KF410", "initial-value-without-freedom", "error", __doc__, check)

@@ -27,6 +27,7 @@ from kinform.consistency._requirements import (
     requirement_rule,
     resolved,
     shown_value,
+    stated_as,
     undecided,
     violated,
 )
@@ -43,6 +44,8 @@ __all__ = ["RULE", "judge"]
 
 Array = NDArray[np.float64]
 
+AT_END = 1e-6
+"""rad or m: a pose at the very end of a range is inside."""
 REMEDY = "Balance the joint, lighten what it carries, or take a stronger drive."
 STATE = "State masses, drives and joints so that the load is determined."
 
@@ -88,6 +91,10 @@ def _held(
         if found.joint is None:
             return f"joint '{name}' is not found: {found.reason}"
         wanted[found.joint.name] = found.sign * value
+    for coordinate in chain.coordinates:
+        asked = wanted.get(coordinate.joint)
+        if asked is not None and not coordinate.lower - AT_END <= asked <= coordinate.upper + AT_END:
+            return f"joint '{stated_as(context, coordinate.joint)[0]}' would be outside of its range"
     q = posed(chain, wanted)
     if isinstance(q, str):
         return q

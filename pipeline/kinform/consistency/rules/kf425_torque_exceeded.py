@@ -1,7 +1,8 @@
 """The effort that the drive of a joint gives exceeds its limit during the simulation.
 
 The greatest of the output times counts; where a smooth peak between them would be above the limit, the requirement is
-inconclusive (KF902): a shorter `step` decides, and finds shorter peaks. Without a dynamic simulation that ran
+inconclusive (KF902), and so do output times that are too few to follow the motion: a shorter `step` decides, and finds
+shorter peaks. Without a dynamic simulation that ran
 to its end, or without a drive on the joint, the requirement is inconclusive (KF902).
 
 Why it matters: the motor stalls, or the gear breaks.
@@ -16,8 +17,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency._context import Context
-from kinform.consistency._peaks import peak
-from kinform.consistency._requirements import Answer, effort, requirement_rule, resolved, simulated, undecided
+from kinform.consistency._peaks import of_joint, peak
+from kinform.consistency._requirements import Answer, effort, requirement_rule, undecided
 from kinform.function import resolve
 from kinform.model.function import Requirement
 
@@ -27,21 +28,15 @@ __all__ = ["RULE", "judge"]
 def judge(context: Context, requirement: Requirement) -> Answer:
     """The peak effort beside its limit."""
     name = requirement.values["joint"]
-    found = resolved(context, name)
+    found = of_joint(context, requirement, dynamic=True)
     if isinstance(found, Answer):
         return found
-    simulation = simulated(context, dynamic=True)
-    if isinstance(simulation, Answer):
-        return simulation
-    joint, _ = found
+    joint, simulation, column = found
     kinematics = context.design.kinematics
     assert kinematics is not None
     driven = {resolve(context.assembly, kinematics, drive.joint).joint for drive in context.function.drives}
     if joint not in driven:
         return undecided(f"nothing drives the joint '{name}'", "Add a [[function.drive]] for it.")
-    if joint.name not in simulation.joint_names:
-        return undecided(f"the simulation does not have the joint '{joint.name}'", "See KF501.")
-    column = int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
     values = np.abs(simulation.joint_effort[:, column])
     return peak(
         simulation, values, requirement.values["limit"], f"the effort of joint '{name}'",

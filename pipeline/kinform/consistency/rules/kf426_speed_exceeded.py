@@ -1,7 +1,8 @@
 """The speed of a joint exceeds its limit during the simulation.
 
 The greatest of the output times counts; where a smooth peak between them would be above the limit, the requirement is
-inconclusive (KF902): a shorter `step` decides, and finds shorter peaks. Without a simulation that ran to its
+inconclusive (KF902), and so do output times that are too few to follow the motion: a shorter `step` decides, and finds
+shorter peaks. Without a simulation that ran to its
 end the requirement is inconclusive (KF902).
 
 Why it matters: motors, encoders and bearings have a greatest speed.
@@ -16,8 +17,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency._context import Context
-from kinform.consistency._peaks import peak
-from kinform.consistency._requirements import Answer, requirement_rule, resolved, shown_value, simulated, undecided
+from kinform.consistency._peaks import of_joint, peak
+from kinform.consistency._requirements import Answer, requirement_rule, shown_value
 from kinform.model.function import Requirement
 
 __all__ = ["RULE", "judge"]
@@ -25,17 +26,11 @@ __all__ = ["RULE", "judge"]
 
 def judge(context: Context, requirement: Requirement) -> Answer:
     """The peak speed beside its limit."""
-    name = requirement.values["joint"]
-    found = resolved(context, name)
+    found = of_joint(context, requirement)
     if isinstance(found, Answer):
         return found
-    simulation = simulated(context)
-    if isinstance(simulation, Answer):
-        return simulation
-    joint, _ = found
-    if joint.name not in simulation.joint_names:
-        return undecided(f"the simulation does not have the joint '{joint.name}'", "See KF501.")
-    column = int(simulation.joint_offset[simulation.joint_names.index(joint.name)])
+    joint, simulation, column = found
+    name = requirement.values["joint"]
     values = np.abs(simulation.joint_velocity[:, column])
     return peak(
         simulation, values, requirement.values["limit"], f"the speed of joint '{name}'",
