@@ -29,10 +29,14 @@ def reread(
         return None
     problems = Problems()
     sources = Sources(path.parent, problems, allow_outside, earlier_meshes(earlier, files))
+    meshes = []
     for name, content in files.items():
         found = sources.find(name, path.parent, path.name, 1, "the file")
         if found is None or (found.suffix.lower() not in MESHES and sources.content(found) != content):
             return None
+        if found.suffix.lower() in MESHES:
+            meshes.append(found)
+    sources.look_at(meshes)
     parts = []
     for part in earlier.parts:
         again = _with_mesh(part, path.parent, sources, earlier.tolerances.weld)

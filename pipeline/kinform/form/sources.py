@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,6 +24,18 @@ MESHES = (".stl", ".obj")
 def content(data: bytes) -> str:
     """SHA-256 (hex) of the content of a file."""
     return hashlib.sha256(data).hexdigest()
+
+
+def _content_of(path: Path) -> str:
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _content_or_none(path: Path) -> str | None:
+    try:
+        return _content_of(path)
+    except OSError:
+        return None
 
 
 def read_raw(path: Path) -> RawMesh:
@@ -164,6 +177,13 @@ class Sources:
         chosen = raw if body is None else select_body(raw, body)
         return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
 
+    def look_at(self, paths: Sequence[Path]) -> None:
+        """Hash mesh files, several at a time; what cannot be read is told when it is asked for."""
+        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
+            for path, found in zip(paths, pool.map(_content_or_none, paths), strict=True):
+                if found is not None:
+                    self._digests[path] = found
+
     def content(self, path: Path) -> str | None:
         """SHA-256 (hex) of a file that `find` found and that is no mesh; None where it cannot be read."""
         return self._texts.get(path)
@@ -173,8 +193,7 @@ class Sources:
         if path not in self._digests:
             try:
                 if self._earlier:
-                    with open(path, "rb") as stream:
-                        self._digests[path] = hashlib.file_digest(stream, "sha256").hexdigest()
+                    self._digests[path] = _content_of(path)
                 else:
                     self._digests[path] = content(self._bytes(path))
             except OSError as error:
