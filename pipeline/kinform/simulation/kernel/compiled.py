@@ -98,20 +98,24 @@ def compiled() -> types.SimpleNamespace:
     import numba
 
     config: Any = numba.config
-    collecting, level = gc.isenabled(), config.OPT
+    collecting = gc.isenabled()
+    before = {name: getattr(config, name) for name in ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE")}
     # A compiler makes much and drops little: collecting between costs a tenth of its time. The higher
-    # levels of optimisation cost a quarter of it, and the result is no faster.
+    # levels of optimisation cost a quarter of it, vectors a tenth, and the result is no faster.
     gc.disable()
-    config.OPT = type(level)(min(level, 1))
+    config.OPT = type(config.OPT)(min(config.OPT, 1))
+    config.LOOP_VECTORIZE = config.SLP_VECTORIZE = 0
     try:
         return _compile(numba)
     finally:
-        config.OPT = level
+        for name, value in before.items():
+            setattr(config, name, value)
         if collecting:
             gc.enable()
 
 
 def _compile(numba: Any) -> types.SimpleNamespace:
+    """Functions in the order of the modules, so that each finds those that it calls."""
     from llvmlite import binding
 
     digest, kinds, cached = _digest(), _kinds(), is_cached()
@@ -124,6 +128,7 @@ def _compile(numba: Any) -> types.SimpleNamespace:
             shape = inspect.signature(function)
             taken = [kinds[argument.annotation] for argument in shape.parameters.values()]
             if function not in _UNITS:
+                # Without a signature nothing is compiled until a unit asks for it, which none in the cache does.
                 signature = None if cached else tuple(kind for kind, _ in taken)
                 inner = numba.jit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
                 copy.mean(function, inner(copy.of(function)))
