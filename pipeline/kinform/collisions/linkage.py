@@ -170,7 +170,8 @@ def _follow(linkage: _Linkage, sign: float) -> _Path:
     q = np.zeros(linkage.system.coordinates)
     found = linkage.tangent(q)
     assert found is not None
-    along, even, step = sign * found[0], linkage.jacobian(q), STEP
+    along, step = sign * found[0], STEP
+    even: Array | None = linkage.jacobian(q)
     path, s = [q], [0.0]
     turns = np.array(linkage.turns)
 
