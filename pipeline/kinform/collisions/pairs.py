@@ -248,7 +248,7 @@ class PairTest:
             return float("inf"), (0, 0)
         self._place(D)
         result = fcl.DistanceResult()
-        return fcl_distance(*self._objects, result), (result.b1, result.b2)
+        return fcl_distance(self._objects[0], self._objects[1], result), (result.b1, result.b2)
 
     def hits(self, D: Array) -> Ints:
         """(n, 2) facets, as counted by FCL, that touch or cross at a displacement (4, 4)."""

@@ -160,6 +160,6 @@ def _course(bodies: tuple[int, int], nodes: Nodes, steps: Array) -> Course:
     def travel(s: float) -> float:
         n = min(max(bisect_right(known, s) - 1, 0), len(known) - 2)
         share = (s - known[n]) / (known[n + 1] - known[n])
-        return way[n] + min(max(share, 0.0), 1.0) * (way[n + 1] - way[n])
+        return float(way[n] + min(max(share, 0.0), 1.0) * (way[n + 1] - way[n]))
 
     return Course(displacement, travel, nodes.s)

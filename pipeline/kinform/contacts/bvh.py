@@ -216,7 +216,7 @@ class MeshIndex:
         out = np.full(len(points), np.inf)
         for tree, radius in self._near:
             out = np.minimum(out, tree.query(points)[0] - radius)
-        return np.maximum(out, 0.0)
+        return np.asarray(np.maximum(out, 0.0))
 
     def contains(self, points: Array) -> Flags:
         """(n,) whether points (n, 3) of the part frame lie inside: the median of three rays' crossings.

@@ -256,7 +256,7 @@ def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, tuple[
     """Distance (0 where they cross), and the facets between which it is."""
     result = fcl.DistanceResult()
     objects = [fcl.CollisionObject(side.model, fcl_pose(X)) for side, X in ((a, X_a), (b, X_b))]
-    distance = fcl_distance(*objects, result)
+    distance = fcl_distance(objects[0], objects[1], result)
     facets = [k if 0 <= k < len(side.triangles) else 0 for k, side in ((int(result.b1), a), (int(result.b2), b))]
     return distance, (facets[0], facets[1])
 
