@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import intended, joint, rod, sine
+from devices import Z, intended, joint, rod, sine
 from requiring import ORIGIN, G, Y, circle, design, state, wheel
 
 from kinform.consistency import check
-from kinform.model.function import InitialValue
+from kinform.model.function import InitialValue, Law
 
 
 def test_the_peak_speed_of_a_driven_joint():
@@ -150,3 +150,31 @@ def test_energy_that_only_rounding_exchanges_between_output_times_is_no_finding(
     made = wheel(sine(30.0, 0.5), duration=8.0, step=2.0)
     assert float(np.ptp(made.simulation.energy[:, 0])) < 1e-9 * float(made.simulation.energy[:, 0].max())
     assert "KF504" not in {finding.code for finding in check(made).findings}
+
+
+@pytest.mark.parametrize(
+    ("axis", "between", "range_", "fires"),
+    [
+        (Z, ("base", "disc"), (-10, 31), False),
+        (Z, ("base", "disc"), (-31, 10), True),
+        ((0, 0, -1.0), ("base", "disc"), (-10, 31), True),
+        ((0, 0, -1.0), ("base", "disc"), (-31, 10), False),
+        (Z, ("disc", "base"), (-10, 31), True),
+        ((0, 0, -1.0), ("disc", "base"), (-10, 31), False),
+        (Z, ("base", "disc"), (-10, math.inf), False),
+    ],
+)
+def test_a_motion_beyond_the_stated_range_is_told_in_the_designers_sense(axis, between, range_, fires):
+    """A ramp from 0 to 30° about z, of the disc relative to the base."""
+    made = wheel(Law("ramp", rate=30.0))
+    (own,) = made.assembly.function.joints
+    stated = replace(own, axis=np.asarray(axis, float), between=between, range=tuple(np.radians(range_)))
+    # the drive is of kinform's joint, whose sense is another
+    drives = tuple(replace(item, joint="base~disc") for item in made.assembly.function.drives)
+    function = replace(made.assembly.function, joints=(stated,), drives=drives)
+    made = replace(made, assembly=replace(made.assembly, function=function))
+    found = [f for f in check(made).findings if f.code == "KF413"]
+    assert len(found) == fires
+    if fires:
+        assert "30°" in found[0].found
+        assert "10°" in found[0].intended

@@ -132,6 +132,13 @@ def apart(derive):
     return with_function(made, Function(joints=(intended("j", first, second, "revolute", Z, ORIGIN),)))
 
 
+def ranging(reach):
+    """A disc that is driven to 30°, with a stated range."""
+    made = wheel(RUN)
+    (stated,) = made.assembly.function.joints
+    return changed_function(made, joints=(replace(stated, range=(-np.radians(reach), np.radians(reach))),))
+
+
 RUN = sine(30.0, 0.5)
 POINT = {"part": "disc", "point": [0.1, 0, 0], "path": "p.csv", "tolerance": 1e-3}
 STOCK = MassOverride(1.0, np.zeros(3), np.eye(3))
@@ -172,6 +179,7 @@ OF_THEIR_OWN = {
     "KF407": (lambda _: triangle("planar"), lambda _: triangle("revolute")),
     "KF408": (lambda _: design([body("one")], [joint("base", "one", "revolute", Z, ORIGIN)],
                                wanted=[intended("a", "base", "base", "fixed")]), lambda _: triangle()),
+    "KF413": (lambda _: ranging(29.0), lambda _: ranging(30.0)),
     "KF421": (
         lambda _: requiring(gimbal(), "reach", part="inner", direction=[1.0, 0, 0],
                             region={"type": "poses", "directions": [[0, 0, 1.0]]}),

@@ -35,4 +35,4 @@ __all__ = [
     "words",
 ]
 
-CODE_VERSION: int = 12
+CODE_VERSION: int = 13

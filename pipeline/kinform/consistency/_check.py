@@ -68,7 +68,7 @@ def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckRepor
 
 
 SPEAK_FOR = {
-    "KF501": ("KF502", "KF503", "KF504", "KF505", "KF506", "KF507"),
+    "KF501": ("KF413", "KF502", "KF503", "KF504", "KF505", "KF506", "KF507"),
     "KF902": tuple(rule.code for rule in RULES_OF.values()),
     "KF903": ("KF411",),
     "KF904": ("KF412",),

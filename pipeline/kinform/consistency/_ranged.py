@@ -10,9 +10,10 @@ from kinform.consistency._context import Context
 from kinform.consistency._rule import Outcome
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
 from kinform.words import angle, length, quoted
 
-__all__ = ["Ranged", "ranged", "shown"]
+__all__ = ["Ranged", "matched", "ranged", "shown"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,23 +59,35 @@ def _of_sticks(context: Context, intended: IntendedJoint) -> Ranged | None:
 
 
 def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -> Ranged:
-    run, joint = context.design.simulation, comparison.joint
-    if not comparison.right_type or joint is None or joint.type != intended.type or joint.axis is None:
+    run, match = context.design.simulation, matched(comparison)
+    if match is None:
         return Ranged(intended, reason="no joint of that type was found directly between its parts")
+    joint, sign = match
     if run is None or run.ranges is None:
         return Ranged(intended, reason="ranges have not been computed: run `kinform simulate`")
     found = next((item for item in run.ranges if item.joint == joint.name), None)
-    if found is None or intended.axis is None:
+    if found is None:
         return Ranged(intended, reason="no range was computed for it")
-    sign = 1.0 if float(joint.axis @ intended.axis) >= 0.0 else -1.0
-    if comparison.bodies[0].name != joint.bodies[0]:
-        sign = -sign
     ends = (found.lower, found.upper) if sign > 0.0 else (found.upper, found.lower)
     return Ranged(intended, *ends, sign=sign, left_out=found.left_out)
 
 
-def shown(value: float, joint: IntendedJoint, units: str) -> str:
-    """A value of a range in words."""
+def matched(comparison: Comparison) -> tuple[Joint, float] | None:
+    """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the designer's
+    values run against those of kinform, else 1; None where there is none."""
+    intended, joint = comparison.intended, comparison.joint
+    if not (comparison.right_type or comparison.state == "stated") or joint is None or joint.type != intended.type:
+        return None
+    if joint.axis is None or intended.axis is None:
+        return None
+    sign = 1.0 if float(joint.axis @ intended.axis) >= 0.0 else -1.0
+    return joint, sign if comparison.bodies[0].name == joint.bodies[0] else -sign
+
+
+def shown(value: float, joint: IntendedJoint, units: str, digits: int | None = None) -> str:
+    """A value of a range in words; digits: significant ones."""
     if math.isinf(value):
         return "free"
-    return length(value, units) if joint.type == "prismatic" else angle(value)
+    if joint.type == "prismatic":
+        return length(value, units, digits or 4)
+    return angle(value, digits or 3)

@@ -1,0 +1,86 @@
+"""The simulated motion takes a joint beyond the range that the function states.
+
+Positions at the output times count; what lies between them is not looked at. Inconclusive where a joint with a stated
+range was not found as it is intended, directly between its two bodies.
+
+Why it matters: nothing says that the device may be there. The drive, the initial value or the range is wrong.
+
+What to do: drive the joint less far, add what stops it, or state the range that is used.
+
+Example: a pan axis that is stated to turn by ±45° is driven by a sine of 50°.
+"""
+
+from __future__ import annotations
+
+import math
+
+from kinform.consistency._context import Context
+from kinform.consistency._ranged import matched, shown
+from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.model.findings import Finding
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
+from kinform.model.simulation import Simulation
+from kinform.words import number, quoted, telling
+
+__all__ = ["RULE"]
+
+SHARE = 1e-6
+"""Share of the range by which a motion may pass its end: a drive to just there is no finding."""
+
+
+def check(context: Context) -> Outcome:
+    """Both sides of every stated range beside the run."""
+    stated = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
+    if not stated:
+        return skipped("no range is stated")
+    run = context.simulation
+    if isinstance(run, Outcome):
+        return run
+    if len(run.time) < 2:
+        return skipped("nothing moved")
+    if isinstance(context.comparisons, Outcome):
+        return context.comparisons
+    found = {item.intended.name: matched(item) for item in context.comparisons}
+    findings, unknown = [], []
+    for intended in stated:
+        match = found[intended.name]
+        if match is None or match[0].name not in run.joint_names:
+            unknown.append(intended.name)
+            continue
+        findings += _beyond(context, run, intended, *match)
+    if unknown:
+        return inconclusive(f"{quoted(unknown)}: no such joint was found directly between its bodies", findings)
+    return decided(findings)
+
+
+def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: Joint, sign: float) -> list[Finding]:
+    """A finding for each side that the motion passes."""
+    values = sign * run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)])]
+    lower, upper = intended.range or (-math.inf, math.inf)
+    allowed = SHARE * (upper - lower) if math.isfinite(upper - lower) else SHARE
+    findings = []
+    for side, end, toward, k in (
+        ("lower", lower, -1.0, int(values.argmin())),
+        ("upper", upper, 1.0, int(values.argmax())),
+    ):
+        value = float(values[k])
+        if not toward * (value - end) > allowed:
+            continue
+        told = telling(lambda v, digits: shown(v, intended, context.units, digits), value, end)
+        findings.append(
+            RULE.finding(
+                (intended.name,),
+                f"joint '{intended.name}' moves to {told(value)} at t = {number(float(run.time[k]))} s, beyond the "
+                f"{side} end of its stated range, {told(end)}",
+                found=told(value),
+                intended=f"{'at least' if toward < 0.0 else 'at most'} {told(end)}",
+                place=joint.point,
+                declared=intended,
+                remedy="Drive the joint less far, add what stops it, or state the range that is used.",
+            )
+        )
+    return findings
+
+
+RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check)
