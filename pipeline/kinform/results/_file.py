@@ -50,6 +50,8 @@ _NONSENSE = (
 _COMPUTE = "compute it from the manifest: kinform run MANIFEST -o FILE"
 _RECOMPUTE = f"delete it, and {_COMPUTE}"
 _NAME_ONE = "name a results file of kinform"
+_GROWTH = 1 << 20
+"""Bytes by which the image of a file grows: with fewer it is copied often."""
 _STAGE_OF = {"constraints": "joints", "mobility": "joints", "behaviour": "simulation"}
 
 
@@ -193,7 +195,10 @@ class Earlier:
 
 def to_bytes(design: Design) -> bytes:
     """The results file as bytes: the same design gives the same bytes, everywhere."""
-    file = h5py.File("results", "w", driver="core", backing_store=False, libver=("earliest", "v108"), track_order=False)
+    file = h5py.File(
+        "results", "w", driver="core", backing_store=False, block_size=_GROWTH, libver=("earliest", "v108"),
+        track_order=False,
+    )  # fmt: skip
     with file:
         file.attrs["schema"] = SCHEMA
         file.attrs["kinform"] = __version__
