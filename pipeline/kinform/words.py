@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 __all__ = [
+    "CODE_VERSION",
     "angle",
     "area",
     "counted",
@@ -20,6 +21,8 @@ __all__ = [
     "telling",
     "volume",
 ]
+
+CODE_VERSION: int = 1
 
 IN_METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 

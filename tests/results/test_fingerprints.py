@@ -69,7 +69,7 @@ def test_a_value_without_content_is_refused() -> None:
 def _imports(package: str) -> set[str]:
     """Packages of kinform that the code of a package imports."""
     found = set()
-    for path in (PACKAGE / package).rglob("*.py"):
+    for path in (*(PACKAGE / package).rglob("*.py"), *PACKAGE.glob(f"{package}.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("kinform."):
                 found.add(node.module.split(".")[1])

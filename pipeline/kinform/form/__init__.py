@@ -45,6 +45,6 @@ def init_manifest(
 
 def schema() -> dict[str, Any]:
     """JSON Schema of the manifest."""
-    from kinform.form.schema import json_schema
+    from kinform.form.manifest import json_schema
 
     return json_schema()

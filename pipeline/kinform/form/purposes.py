@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from kinform.form.manifest.common import Quantity
 from kinform.form.problems import did_you_mean, quoted
 from kinform.form.requirements import faults
-from kinform.form.schema.common import Quantity
 from kinform.form.scope import Scope
 from kinform.form.sources import Sources
 from kinform.form.tables import columns, path_rows

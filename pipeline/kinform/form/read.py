@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.errors import InputError, Problem
+from kinform.form.manifest.common import Posed
+from kinform.form.manifest.parts import Part as PartTable
+from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.poses import UNIT, pose, unit_error
 from kinform.form.problems import Problems, did_you_mean, quoted
 from kinform.form.purposes import Purposes
-from kinform.form.schema.common import Posed
-from kinform.form.schema.parts import Part as PartTable
-from kinform.form.schema.parts import TolerancesTable
 from kinform.form.scope import Scope, parse
 from kinform.form.sources import Sources, earlier_meshes
 from kinform.form.units import metres_per

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from kinform.form.manifest import require
 from kinform.form.problems import quoted
-from kinform.form.schema import require
 
 __all__ = ["faults"]
 

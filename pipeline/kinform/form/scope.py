@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from kinform.form import translate
 from kinform.form.lines import LineTable
 from kinform.form.lines import Path as KeyPath
+from kinform.form.manifest import Manifest
 from kinform.form.problems import Problems
-from kinform.form.schema import Manifest
 from kinform.form.units import metres_per
 from kinform.model.assembly import Source
 

@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from kinform.form.lines import LineTable, Path
+from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems, did_you_mean, listed, quoted
-from kinform.form.schema import json_schema
 
 __all__ = ["names_of", "report", "without_errors"]
 

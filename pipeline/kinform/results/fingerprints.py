@@ -58,6 +58,7 @@ _CODE = {
     ),
     "findings": (
         "consistency",
+        "words",
         "function",
         "kinematics",
         "simulation",
@@ -68,7 +69,7 @@ _CODE = {
         "surfaces",
     ),
 }
-"""Packages whose code decides the result of each stage."""
+"""Packages and modules whose code decides the result of each stage."""
 
 _ASSEMBLY_FIELDS = (
     "name", "units", "parts", "groups", "assumptions", "ground", "tolerances", "infer_fasteners", "function",
@@ -95,13 +96,14 @@ def _version_of(package: str) -> int:
 @functools.cache
 def _stated_version(package: str) -> int:
     """As the text of the package says, since importing it takes longer than a run that reuses everything."""
-    try:
-        text = pkgutil.get_data("kinform", f"{package}/__init__.py") or b""
-    except OSError:  # compiled only
-        text = b""
-    stated = re.search(rb"^CODE_VERSION(?:: int)? = (\d+)$", text, re.MULTILINE)
-    if stated is not None:
-        return int(stated[1])
+    for file in (f"{package}/__init__.py", f"{package}.py"):
+        try:
+            text = pkgutil.get_data("kinform", file) or b""
+        except OSError:  # another kind of module, or compiled only
+            continue
+        stated = re.search(rb"^CODE_VERSION(?:: int)? = (\d+)$", text, re.MULTILINE)
+        if stated is not None:
+            return int(stated[1])
     return int(importlib.import_module(f"kinform.{package}").CODE_VERSION)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from kinform.form.schema.common import (
+from kinform.form.manifest.common import (
     JointType,
     Matrix,
     Name,

@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from kinform.form.schema import check, common, function, parts, require
-from kinform.form.schema.check import CheckTable
-from kinform.form.schema.common import Finite, Positive, Table, Vector
-from kinform.form.schema.function import FunctionTable
-from kinform.form.schema.parts import (
+from kinform.form.manifest import check, common, function, parts, require
+from kinform.form.manifest.check import CheckTable
+from kinform.form.manifest.common import Finite, Positive, Table, Vector
+from kinform.form.manifest.function import FunctionTable
+from kinform.form.manifest.parts import (
     AssemblyTable,
     Assume,
     Fasteners,

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.schema.common import Finite, Name, NonNegative, Positive, Quantity, Reference, Table, Vector
+from kinform.form.manifest.common import Finite, Name, NonNegative, Positive, Quantity, Reference, Table, Vector
 
 __all__ = ["Require"]
 

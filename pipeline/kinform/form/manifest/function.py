@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.schema.common import (
+from kinform.form.manifest.common import (
     Finite,
     JointType,
     Name,
@@ -17,7 +17,7 @@ from kinform.form.schema.common import (
     Table,
     Vector,
 )
-from kinform.form.schema.require import Require
+from kinform.form.manifest.require import Require
 
 __all__ = ["Coupling", "Drive", "FunctionTable", "IntendedJointTable", "LawTable", "Load"]
 
