@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
+from known import FIXTURES
+from once import common, once
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -15,27 +17,27 @@ def bytecode_kept(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         if os.environ.get("PYTHONDONTWRITEBYTECODE"):
             patch.delenv("PYTHONDONTWRITEBYTECODE")
-            patch.setenv("PYTHONPYCACHEPREFIX", str(together(tmp_path_factory) / "bytecode"))
+            patch.setenv("PYTHONPYCACHEPREFIX", str(common(tmp_path_factory) / "bytecode"))
         yield
 
 
-def together(tmp_path_factory) -> Path:
-    """A folder of this session that all its workers have in common."""
-    folder = tmp_path_factory.getbasetemp()
-    return folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
-
-
 @pytest.fixture(scope="session")
-def derive_design():
+def derive_design(tmp_path_factory):
     """A manifest to a design with findings, each computed once a session."""
     from kinform import stages
 
     known = {}
 
+    def made(manifest: Path):
+        design = stages.joints(stages.contacts(stages.import_(manifest)))
+        return stages.check(stages.simulate(stages.mass(design)))
+
     def derive(manifest: Path):
         if manifest not in known:
-            design = stages.joints(stages.contacts(stages.import_(manifest)))
-            known[manifest] = stages.check(stages.simulate(stages.mass(design)))
+            shared = "PYTEST_XDIST_WORKER" in os.environ and manifest.is_relative_to(FIXTURES)
+            known[manifest] = (
+                once(common(tmp_path_factory), str(manifest), lambda: made(manifest)) if shared else made(manifest)
+            )
         return known[manifest]
 
     return derive
