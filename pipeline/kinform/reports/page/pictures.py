@@ -248,7 +248,7 @@ def _weights(corners: Array, facet: Ints, x: Array, y: Array) -> Array:
     px, py = x - ax, y - ay
     s = (px * vy - py * vx) / area
     t = (ux * py - uy * px) / area
-    return np.clip(np.array([1.0 - s - t, s, t]), 0.0, 1.0)
+    return np.asarray(np.clip(np.array([1.0 - s - t, s, t]), 0.0, 1.0))
 
 
 def _light(normal: Array) -> Array:
