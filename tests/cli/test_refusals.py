@@ -135,16 +135,31 @@ def test_meshes_need_a_unit(folder, command):
     assert command("import", "shaft.stl", "block.stl", "--units", "mm", "-o", "r.h5").returncode == 0
 
 
-def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, kinform):
-    assert kinform("import", NAME, "-o", "r.h5").returncode == 0
+INTERRUPTED = """
+import sys
+from pathlib import Path
+from kinform import stages
+from kinform_cli.main import entry
+found = stages.contacts
+def contacts(*given, **named):
+    Path("begun").touch()
+    return found(*given, **named)
+stages.contacts = contacts
+entry()
+"""
+
+
+def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, command):
+    assert command("import", NAME, "-o", "r.h5").returncode == 0
     old = (folder / "r.h5").read_bytes()
-    seeker = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
+    platform = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
     running = subprocess.Popen(
-        [sys.executable, "-m", "kinform_cli", "run", str(seeker), "-o", "r.h5", "--jobs", "1"],
+        [sys.executable, "-c", INTERRUPTED, "run", str(platform), "-o", "r.h5", "--jobs", "1"],
         cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
     )  # fmt: skip
-    time.sleep(1.5)
-    assert running.poll() is None
+    while not (folder / "begun").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
     running.send_signal(signal.SIGINT)
     out, error = running.communicate(timeout=60)
     assert running.returncode == 2
