@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import functools
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -71,6 +72,7 @@ def test_a_value_without_content_is_refused() -> None:
         digest(object())
 
 
+@functools.cache
 def _imports(package: str) -> set[str]:
     """Packages of kinform that the code of a package imports."""
     found = set()
