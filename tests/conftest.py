@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+# before numpy is imported: the threads of BLAS wait for each other in loops, on processors that other workers need
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
 from known import FIXTURES
 from once import common, once
