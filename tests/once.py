@@ -5,6 +5,7 @@ Not by a results file: those are among what is tested.
 
 from __future__ import annotations
 
+import dataclasses
 import fcntl
 import hashlib
 import os
@@ -27,25 +28,34 @@ def once(folder: Path, name: str, make: Callable[[], Any]) -> Any:
     path = folder / (hashlib.sha256(name.encode()).hexdigest()[:16] + ".pickle")
     with path.with_suffix(".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if path.exists():
-            return pickle.loads(path.read_bytes())
-        made = make()
-        begun = path.with_suffix(".part")
-        with begun.open("wb") as file:
-            _Pickler(file).dump(made)
-        begun.replace(path)
-        return made
+        if not path.exists():
+            begun = path.with_suffix(".part")
+            with begun.open("wb") as file:
+                _Pickler(file).dump(make())
+            begun.replace(path)
+        return pickle.loads(path.read_bytes())
 
 
 class _Pickler(pickle.Pickler):
-    """Arrays that cannot be written stay so."""
+    """Arrays that cannot be written stay so. Of records the fields count: what is kept beside them may know other
+    objects by their places in memory."""
 
     def reducer_override(self, value: Any) -> Any:
         if type(value) is np.ndarray and not value.flags.writeable:
             return _fixed, (value.copy(),)
+        if dataclasses.is_dataclass(value) and not isinstance(value, type):
+            names = [field.name for field in dataclasses.fields(value)]
+            return _record, (type(value), {name: getattr(value, name) for name in names})
         return NotImplemented
 
 
 def _fixed(array: np.ndarray) -> np.ndarray:
     array.flags.writeable = False
     return array
+
+
+def _record(kind: type, fields: dict[str, Any]) -> Any:
+    made = object.__new__(kind)
+    for name, value in fields.items():
+        object.__setattr__(made, name, value)
+    return made
