@@ -46,11 +46,11 @@ def controlled(
     dy: Row,
 ) -> float:
     """Output of the controller whose kp, ki, kd, limit begin in column `first` of actor k."""
-    target, rate, _ = law(values, pieces, actors[k, LAW], t)
-    wanted = numbers[k, first] * (target - q) + numbers[k, first + 2] * (rate - v)
-    limit = numbers[k, first + 3]
+    target, rate, _ = law(values, pieces, actors[k][LAW], t)
+    wanted = numbers[k][first] * (target - q) + numbers[k][first + 2] * (rate - v)
+    limit = numbers[k][first + 3]
     if at >= 0:
-        wanted += numbers[k, first + 1] * held
+        wanted += numbers[k][first + 1] * held
         # The integral rests while the output is at its limit and it would push further (anti-windup).
         stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
         dy[at] = 0.0 if stuck else target - q
@@ -73,34 +73,34 @@ def drive(
     apart, which store."""
     power = 0.0
     for k in range(n):
-        force[FORCE, k] = 0.0
-        force[GIVEN, k] = 0.0
+        force[FORCE][k] = 0.0
+        force[GIVEN][k] = 0.0
     for k in range(len(actors)):
-        q, v = y[actors[k, AT_Q]], y[first + actors[k, AT_V]]
-        does, one, two = actors[k, DOES], actors[k, FIRST_STATE], actors[k, SECOND_STATE]
+        q, v = y[actors[k][AT_Q]], y[first + actors[k][AT_V]]
+        does, one, two = actors[k][DOES], actors[k][FIRST_STATE], actors[k][SECOND_STATE]
         effort = 0.0
         if does == EFFORT:
-            effort, _, _ = law(values, pieces, actors[k, LAW], t)
+            effort, _, _ = law(values, pieces, actors[k][LAW], t)
         elif does == SPRING:
-            effort = numbers[k, 0] * (numbers[k, 1] - q)
+            effort = numbers[k][0] * (numbers[k][1] - q)
         elif does == DAMPER:
-            effort = -numbers[k, 0] * v
+            effort = -numbers[k][0] * v
         elif does == SERVO:
             effort = controlled(actors, numbers, values, pieces, k, 0, one, y[one], t, q, v, dy)
         elif does >= MOTOR:
             if does == MOTOR:
-                voltage, _, _ = law(values, pieces, actors[k, LAW], t)
+                voltage, _, _ = law(values, pieces, actors[k][LAW], t)
             else:
                 voltage = controlled(actors, numbers, values, pieces, k, 4, two, y[two], t, q, v, dy)
-            constant = numbers[k, 2] * numbers[k, 3]
+            constant = numbers[k][2] * numbers[k][3]
             if one >= 0:
                 current = y[one]
-                dy[one] = (voltage - numbers[k, 0] * current - constant * v) / numbers[k, 1]
+                dy[one] = (voltage - numbers[k][0] * current - constant * v) / numbers[k][1]
             else:
-                current = (voltage - constant * v) / numbers[k, 0]
+                current = (voltage - constant * v) / numbers[k][0]
             effort = constant * current
-        force[FORCE, actors[k, AT_V]] += effort
-        force[GIVEN, actors[k, AT_V]] += effort
+        force[FORCE][actors[k][AT_V]] += effort
+        force[GIVEN][actors[k][AT_V]] += effort
         if does != SPRING:
             power += effort * v
     return power
@@ -124,9 +124,9 @@ def loads(table: Index, numbers: Table, state: Table) -> float:
     """Given forces and torques on links; the power that they put in."""
     power = 0.0
     for k in range(len(table)):
-        i = table[k, 0]
+        i = table[k][0]
         # Vectors that do not turn with the link are those of the ground, link 0.
-        frame = i if table[k, 1] == 1 else 0
+        frame = i if table[k][1] == 1 else 0
         f0, f1, f2 = turned(state, frame, *three(numbers, k, 0))
         n0, n1, n2 = turned(state, frame, *three(numbers, k, 3))
         x, y, z = place(state, i, *three(numbers, k, 6))
@@ -142,7 +142,7 @@ def between(table: Index, numbers: Table, state: Table) -> float:
     """Springs and dampers between points of two links; the power of their dampers."""
     power = 0.0
     for k in range(len(table)):
-        a, b = table[k, 0], table[k, 1]
+        a, b = table[k][0], table[k][1]
         x, y, z = place(state, a, *three(numbers, k, 0))
         u, v, w = place(state, b, *three(numbers, k, 3))
         d0, d1, d2 = u - x, v - y, w - z
@@ -151,8 +151,8 @@ def between(table: Index, numbers: Table, state: Table) -> float:
             continue
         d0, d1, d2 = d0 / length, d1 / length, d2 / length
         speed = pace(state, b, u, v, w, d0, d1, d2) - pace(state, a, x, y, z, d0, d1, d2)
-        pull = numbers[k, 6] * (length - numbers[k, 8]) + numbers[k, 7] * speed
-        power -= numbers[k, 7] * speed * speed
+        pull = numbers[k][6] * (length - numbers[k][8]) + numbers[k][7] * speed
+        power -= numbers[k][7] * speed * speed
         push(state, a, x, y, z, pull * d0, pull * d1, pull * d2)
         push(state, b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
     return power

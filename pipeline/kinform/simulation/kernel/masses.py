@@ -41,7 +41,7 @@ def momentum(
     state: Table, i: int, w0: float, w1: float, w2: float, l0: float, l1: float, l2: float
 ) -> tuple[float, float, float, float, float, float]:
     """Inertia of link i (or what it carries) times the twist, about the centre."""
-    m = state[i, INERT]
+    m = state[i][INERT]
     c0, c1, c2 = three(state, i, INERT + 1)
     xx, yy, zz = three(state, i, INERT + 4)
     xy, xz, yz = three(state, i, INERT + 7)
@@ -68,17 +68,17 @@ def inertias(ints: Ints, nums: Nums, work: Work) -> None:
     links, numbers, state = ints[LINKS], nums[LINKS], work[STATE]
     for i in range(1, len(links)):
         for j in range(INERT, INERT + 10):
-            state[i, j] = 0.0
-        if links[i, HEAVY] == 0:
+            state[i][j] = 0.0
+        if links[i][HEAVY] == 0:
             continue
-        m = numbers[i, WEIGHT]
+        m = numbers[i][WEIGHT]
         c0, c1, c2 = place(state, i, *three(numbers, i, COM))
-        state[i, INERT] = m
+        state[i][INERT] = m
         put(state, i, INERT + 1, m * c0, m * c1, m * c2)
         heavy(state, i, m, c0, c1, c2)
         for j in range(3):
             u0, u1, u2 = turned(state, i, *three(numbers, i, TENSOR + 4 * j + 1))
-            heavy(state, i, numbers[i, TENSOR + 4 * j], u0, u1, u2)
+            heavy(state, i, numbers[i][TENSOR + 4 * j], u0, u1, u2)
 
 
 def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
@@ -88,7 +88,7 @@ def wrenches(ints: Ints, nums: Nums, work: Work) -> None:
     for i in range(1, len(links)):
         put(state, i, WRENCH, 0.0, 0.0, 0.0)
         put(state, i, WRENCH + 3, 0.0, 0.0, 0.0)
-        if links[i, HEAVY] == 0:
+        if links[i][HEAVY] == 0:
             continue
         w0, w1, w2 = three(state, i, TWIST)
         l0, l1, l2 = three(state, i, TWIST + 3)
@@ -109,8 +109,8 @@ def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
     links, before = ints[LINKS], ints[COLUMNS]
     state, screws, matrix, force = work[STATE], work[SCREWS], work[MASS], work[VECTORS]
     for i in range(len(links) - 1, 0, -1):
-        p = links[i, PARENT]
-        for k in range(links[i, FIRST], links[i, FIRST] + links[i, WIDTH]):
+        p = links[i][PARENT]
+        for k in range(links[i][FIRST], links[i][FIRST] + links[i][WIDTH]):
             w0, w1, w2 = three(screws, k, 0)
             l0, l1, l2 = three(screws, k, 3)
             n0, n1, n2, f0, f1, f2 = momentum(state, i, w0, w1, w2, l0, l1, l2)
@@ -118,44 +118,44 @@ def mass_matrix(ints: Ints, work: Work, with_forces: bool) -> None:
             while j >= 0:
                 w0, w1, w2 = three(screws, j, 0)
                 l0, l1, l2 = three(screws, j, 3)
-                matrix[k, j] = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
-                j = before[j, BEFORE]
+                matrix[k][j] = dot(w0, w1, w2, n0, n1, n2) + dot(l0, l1, l2, f0, f1, f2)
+                j = before[j][BEFORE]
             if with_forces:
                 for c in range(6):
-                    force[FORCE, k] -= screws[k, c] * state[i, WRENCH + c]
+                    force[FORCE][k] -= screws[k][c] * state[i][WRENCH + c]
         if p > 0:
             for c in range(INERT, INERT + 10):
-                state[p, c] += state[i, c]
+                state[p][c] += state[i][c]
             if with_forces:
                 for c in range(WRENCH, WRENCH + 6):
-                    state[p, c] += state[i, c]
+                    state[p][c] += state[i][c]
 
 
 def cholesky(matrix: Table, n: int) -> bool:
     """Lᵀ L of the lower triangle, in place, from the last row up: zeros of a tree stay zeros. False when
     a pivot is not positive."""
     for k in range(n - 1, -1, -1):
-        if not matrix[k, k] > 0.0:
+        if not matrix[k][k] > 0.0:
             return False
-        pivot = math.sqrt(matrix[k, k])
-        matrix[k, k] = pivot
+        pivot = math.sqrt(matrix[k][k])
+        matrix[k][k] = pivot
         for i in range(k):
-            matrix[k, i] /= pivot
+            matrix[k][i] /= pivot
         for i in range(k):
-            factor = matrix[k, i]
+            factor = matrix[k][i]
             if factor != 0.0:
                 for j in range(i + 1):
-                    matrix[i, j] -= factor * matrix[k, j]
+                    matrix[i][j] -= factor * matrix[k][j]
     return True
 
 
 def solve_cholesky(matrix: Table, n: int, x: Row) -> None:
     """Solves Lᵀ L z = x in place."""
     for k in range(n - 1, -1, -1):
-        x[k] /= matrix[k, k]
+        x[k] /= matrix[k][k]
         for i in range(k):
-            x[i] -= matrix[k, i] * x[k]
+            x[i] -= matrix[k][i] * x[k]
     for k in range(n):
         for i in range(k):
-            x[k] -= matrix[k, i] * x[i]
-        x[k] /= matrix[k, k]
+            x[k] -= matrix[k][i] * x[i]
+        x[k] /= matrix[k][k]

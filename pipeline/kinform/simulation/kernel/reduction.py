@@ -40,45 +40,45 @@ def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
     """Takes the mass matrix times x from `out`. The matrix has numbers where rates carry each other only."""
     for k in range(n):
         total, own = 0.0, x[k]
-        j = before[k, BEFORE]
+        j = before[k][BEFORE]
         while j >= 0:
-            total += matrix[k, j] * x[j]
-            out[j] -= matrix[k, j] * own
-            j = before[j, BEFORE]
-        out[k] -= total + matrix[k, k] * own
+            total += matrix[k][j] * x[j]
+            out[j] -= matrix[k][j] * own
+            j = before[j][BEFORE]
+        out[k] -= total + matrix[k][k] * own
 
 
 def reduce(ints: Ints, work: Work) -> float:
     """Lower triangle of the mass matrix of the motions that keep the loops closed, its free part factored.
     Returns −1 when a free motion has no mass."""
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     before, order, matrix, rows = ints[COLUMNS], ints[MODE][ORDER], work[MASS], work[ROWS]
     motions, half, small = work[MOTIONS], work[HALF], work[REDUCED]
     rest = n - rank
     for i in range(n):
         for c in range(rest):
-            motions[order[i], c] = -rows[i, rank + c] if i < rank else 0.0
-            half[i, c] = 0.0
+            motions[order[i]][c] = -rows[i][rank + c] if i < rank else 0.0
+            half[i][c] = 0.0
     for c in range(rest):
-        motions[order[rank + c], c] = 1.0
+        motions[order[rank + c]][c] = 1.0
     for k in range(n):
         j = k
         while j >= 0:
-            value = matrix[k, j]
+            value = matrix[k][j]
             for c in range(rest):
-                half[k, c] += value * motions[j, c]
+                half[k][c] += value * motions[j][c]
             if j != k:
                 for c in range(rest):
-                    half[j, c] += value * motions[k, c]
-            j = before[j, BEFORE]
+                    half[j][c] += value * motions[k][c]
+            j = before[j][BEFORE]
     for i in range(rest):
         for c in range(i + 1):
-            small[i, c] = half[order[rank + i], c]
+            small[i][c] = half[order[rank + i]][c]
         for d in range(rank):
-            value = rows[d, rank + i]
+            value = rows[d][rank + i]
             if value != 0.0:
                 for c in range(i + 1):
-                    small[i, c] -= value * half[order[d], c]
+                    small[i][c] -= value * half[order[d]][c]
     return 0.0 if cholesky(small, rest - led) else -1.0
 
 
@@ -88,7 +88,7 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
     Returns how far the loops are from a singular pose (smallest pivot over the largest), 0 in one, −1 when
     a free motion has no mass; writes how good the pivots still are to work[VECTORS][KEPT].
     """
-    gather(ints, nums, work, ints[COUNTS][0, RANK])
+    gather(ints, nums, work, ints[COUNTS][0][RANK])
     margin = eliminate(ints, nums, work)
     if margin != 0.0 and reduce(ints, work) < 0.0:
         return -1.0
@@ -98,35 +98,35 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
 def settle(ints: Ints, work: Work) -> None:
     """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (by independent rows) and led rates in [ACC], by what
     `factor` left. [NEED] is the effort that led rates take."""
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     before, order, matrix = ints[COLUMNS], ints[MODE][ORDER], work[MASS]
     rows, small, vectors = work[ROWS], work[REDUCED], work[VECTORS]
     back_substitute(rows, ints[MODE], vectors, rank)
     free = n - rank - led
     for d in range(rank):
-        total = vectors[GAP, d]
+        total = vectors[GAP][d]
         for k in range(rank + free, n):
-            total -= rows[d, k] * vectors[ACC, order[k]]
-        vectors[ACC, order[d]] = total
+            total -= rows[d][k] * vectors[ACC][order[k]]
+        vectors[ACC][order[d]] = total
     for k in range(rank, rank + free):
-        vectors[ACC, order[k]] = 0.0
+        vectors[ACC][order[k]] = 0.0
     for k in range(n):
-        vectors[TRIAL, k] = vectors[FORCE, k]
-        vectors[NEED, k] = 0.0
+        vectors[TRIAL][k] = vectors[FORCE][k]
+        vectors[NEED][k] = 0.0
     weigh(before, matrix, vectors[ACC], n, vectors[TRIAL])
     for i in range(rank, n):
-        total = vectors[TRIAL, order[i]]
+        total = vectors[TRIAL][order[i]]
         for d in range(rank):
-            total -= rows[d, i] * vectors[TRIAL, order[d]]
-        vectors[RIGHT, i - rank] = total
+            total -= rows[d][i] * vectors[TRIAL][order[d]]
+        vectors[RIGHT][i - rank] = total
     solve_cholesky(small, free, vectors[RIGHT])
     for i in range(free):
-        value = vectors[RIGHT, i]
-        vectors[ACC, order[rank + i]] = value
+        value = vectors[RIGHT][i]
+        vectors[ACC][order[rank + i]] = value
         for d in range(rank):
-            vectors[ACC, order[d]] -= rows[d, rank + i] * value
+            vectors[ACC][order[d]] -= rows[d][rank + i] * value
     for k in range(free, free + led):
-        total = -vectors[RIGHT, k]
+        total = -vectors[RIGHT][k]
         for j in range(free):
-            total += small[k, j] * vectors[RIGHT, j]
-        vectors[NEED, order[rank + k]] = total
+            total += small[k][j] * vectors[RIGHT][j]
+        vectors[NEED][order[rank + k]] = total
