@@ -26,7 +26,7 @@ from kinform.simulation.kernel.layout import (
 )
 from kinform.simulation.kernel.signals import law
 from kinform.simulation.kernel.types import Index, Row, Table
-from kinform.simulation.kernel.vectors import add, cross, dot, place, three, turned
+from kinform.simulation.kernel.vectors import add, cross, dot, place, six, three, turned
 
 __all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
 
@@ -106,17 +106,17 @@ def drive(
     return power
 
 
-def push(state: Table, i: int, x: float, y: float, z: float, f0: float, f1: float, f2: float) -> None:
-    """The force f on link i at the point (x, y, z) of the world."""
+def push(link: Row, x: float, y: float, z: float, f0: float, f1: float, f2: float) -> None:
+    """The force f on a link at the point (x, y, z) of the world."""
     n0, n1, n2 = cross(x, y, z, f0, f1, f2)
-    add(state, i, WRENCH, -n0, -n1, -n2)
-    add(state, i, WRENCH + 3, -f0, -f1, -f2)
+    add(link, WRENCH, -n0, -n1, -n2)
+    add(link, WRENCH + 3, -f0, -f1, -f2)
 
 
-def pace(state: Table, i: int, x: float, y: float, z: float, d0: float, d1: float, d2: float) -> float:
-    """Velocity of the point (x, y, z) of link i times d."""
-    v0, v1, v2 = cross(*three(state, i, TWIST), x, y, z)
-    l0, l1, l2 = three(state, i, TWIST + 3)
+def pace(link: Row, x: float, y: float, z: float, d0: float, d1: float, d2: float) -> float:
+    """Velocity of the point (x, y, z) of a link times d."""
+    w0, w1, w2, l0, l1, l2 = six(link, TWIST)
+    v0, v1, v2 = cross(w0, w1, w2, x, y, z)
     return dot(v0 + l0, v1 + l1, v2 + l2, d0, d1, d2)
 
 
@@ -124,16 +124,16 @@ def loads(table: Index, numbers: Table, state: Table) -> float:
     """Given forces and torques on links; the power that they put in."""
     power = 0.0
     for k in range(len(table)):
-        i = table[k][0]
+        link, load = state[table[k][0]], numbers[k]
         # Vectors that do not turn with the link are those of the ground, link 0.
-        frame = i if table[k][1] == 1 else 0
-        f0, f1, f2 = turned(state, frame, *three(numbers, k, 0))
-        n0, n1, n2 = turned(state, frame, *three(numbers, k, 3))
-        x, y, z = place(state, i, *three(numbers, k, 6))
-        push(state, i, x, y, z, f0, f1, f2)
-        power += pace(state, i, x, y, z, f0, f1, f2)
-        add(state, i, WRENCH, -n0, -n1, -n2)
-        w0, w1, w2 = three(state, i, TWIST)
+        frame = link if table[k][1] == 1 else state[0]
+        f0, f1, f2 = turned(frame, *three(load, 0))
+        n0, n1, n2 = turned(frame, *three(load, 3))
+        x, y, z = place(link, *three(load, 6))
+        push(link, x, y, z, f0, f1, f2)
+        power += pace(link, x, y, z, f0, f1, f2)
+        add(link, WRENCH, -n0, -n1, -n2)
+        w0, w1, w2 = three(link, TWIST)
         power += dot(w0, w1, w2, n0, n1, n2)
     return power
 
@@ -142,17 +142,17 @@ def between(table: Index, numbers: Table, state: Table) -> float:
     """Springs and dampers between points of two links; the power of their dampers."""
     power = 0.0
     for k in range(len(table)):
-        a, b = table[k][0], table[k][1]
-        x, y, z = place(state, a, *three(numbers, k, 0))
-        u, v, w = place(state, b, *three(numbers, k, 3))
+        a, b, spring = state[table[k][0]], state[table[k][1]], numbers[k]
+        x, y, z = place(a, *three(spring, 0))
+        u, v, w = place(b, *three(spring, 3))
         d0, d1, d2 = u - x, v - y, w - z
         length = math.sqrt(dot(d0, d1, d2, d0, d1, d2))
         if length == 0.0:
             continue
         d0, d1, d2 = d0 / length, d1 / length, d2 / length
-        speed = pace(state, b, u, v, w, d0, d1, d2) - pace(state, a, x, y, z, d0, d1, d2)
-        pull = numbers[k][6] * (length - numbers[k][8]) + numbers[k][7] * speed
-        power -= numbers[k][7] * speed * speed
-        push(state, a, x, y, z, pull * d0, pull * d1, pull * d2)
-        push(state, b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
+        speed = pace(b, u, v, w, d0, d1, d2) - pace(a, x, y, z, d0, d1, d2)
+        pull = spring[6] * (length - spring[8]) + spring[7] * speed
+        power -= spring[7] * speed * speed
+        push(a, x, y, z, pull * d0, pull * d1, pull * d2)
+        push(b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
     return power

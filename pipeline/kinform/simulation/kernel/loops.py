@@ -37,7 +37,7 @@ from kinform.simulation.kernel.layout import (
     VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
-from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
+from kinform.simulation.kernel.vectors import cross, dot, place, six, three, turned
 
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
@@ -45,15 +45,14 @@ SWAP = 1.5
 __all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 
-def line_of(
-    numbers: Table, state: Table, length: float, loop: int, axis: int, tip: int
-) -> tuple[float, float, float, float, float, float]:
-    """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop."""
-    e0, e1, e2 = turned(state, tip, *three(numbers, loop, 3 * (axis % 3)))
+def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:
+    """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop,
+    whose frame (row of nums[CLOSURES]) the tip carries."""
+    e0, e1, e2 = turned(tip, *three(frame, 3 * (axis % 3)))
     if axis < 3:
         return e0, e1, e2, 0.0, 0.0, 0.0
     e0, e1, e2 = e0 / length, e1 / length, e2 / length
-    x, y, z = place(state, tip, *three(numbers, loop, 9))
+    x, y, z = place(tip, *three(frame, 9))
     m0, m1, m2 = cross(x, y, z, e0, e1, e2)
     return m0, m1, m2, e0, e1, e2
 
@@ -64,11 +63,10 @@ def gained(closures: Index, numbers: Table, state: Table, length: float, row: in
     loop, axis = row // 6, row % 6
     if loop >= len(closures):
         return 0.0
-    m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop][0])
+    m0, m1, m2, f0, f1, f2 = line_of(numbers[loop], state[closures[loop][0]], length, axis)
     total = 0.0
     for side in range(2):
-        w0, w1, w2 = three(state, closures[loop][side], of)
-        l0, l1, l2 = three(state, closures[loop][side], of + 3)
+        w0, w1, w2, l0, l1, l2 = six(state[closures[loop][side]], of)
         total += (2.0 * side - 1.0) * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
     return total
 
@@ -83,18 +81,16 @@ def gap_of(
         for k in range(counts[0][POSITIONS]):
             total += gears[row - 6 * len(closures)][counts[0][RATES] + k] * y[k]
         return total
-    a, b = closures[loop][0], closures[loop][1]
-    e0, e1, e2 = turned(state, a, *three(numbers, loop, 3 * (axis % 3)))
+    a, b, frame = state[closures[loop][0]], state[closures[loop][1]], numbers[loop]
+    e0, e1, e2 = turned(a, *three(frame, 3 * (axis % 3)))
     if axis < 3:
         # Half the sum of cross products of the axes: the sine of the turn along its axis.
         for j in range(3):
-            c0, c1, c2 = cross(
-                state[a][j], state[a][3 + j], state[a][6 + j], state[b][j], state[b][3 + j], state[b][6 + j]
-            )
+            c0, c1, c2 = cross(a[j], a[3 + j], a[6 + j], b[j], b[3 + j], b[6 + j])
             total += 0.5 * dot(e0, e1, e2, c0, c1, c2)
         return total
-    x0, x1, x2 = place(state, a, *three(numbers, loop, 9))
-    z0, z1, z2 = place(state, b, *three(numbers, loop, 9))
+    x0, x1, x2 = place(a, *three(frame, 9))
+    z0, z1, z2 = place(b, *three(frame, 9))
     return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
 
 
@@ -120,13 +116,12 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
         for c in range(n):
             rows[r][c] = 0.0
         first, last = r, r
-        m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop][0])
+        m0, m1, m2, f0, f1, f2 = line_of(numbers[loop], state[closures[loop][0]], length, axis)
         # Both chains down to where they meet: what carries both moves neither relative to the other.
         one, other = links[closures[loop][0]][TIP], links[closures[loop][1]][TIP]
         while one != other:
             k = one if one > other else other
-            w0, w1, w2 = three(screws, k, 0)
-            l0, l1, l2 = three(screws, k, 3)
+            w0, w1, w2, l0, l1, l2 = six(screws[k], 0)
             power = dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2)
             if k == one:
                 one = before[k][BEFORE]
