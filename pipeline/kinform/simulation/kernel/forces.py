@@ -25,18 +25,17 @@ from kinform.simulation.kernel.layout import (
     WRENCH,
 )
 from kinform.simulation.kernel.signals import law
-from kinform.simulation.kernel.types import Index, Row, Table
+from kinform.simulation.kernel.types import Counts, Index, Row, Table
 from kinform.simulation.kernel.vectors import add, cross, dot, place, six, three, turned
 
 __all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
 
 
 def controlled(
-    actors: Index,
-    numbers: Table,
+    actor: Counts,
+    numbers: Row,
     values: Table,
     pieces: Table,
-    k: int,
     first: int,
     at: int,
     held: float,
@@ -45,12 +44,12 @@ def controlled(
     v: float,
     dy: Row,
 ) -> float:
-    """Output of the controller whose kp, ki, kd, limit begin in column `first` of actor k."""
-    target, rate, _ = law(values, pieces, actors[k][LAW], t)
-    wanted = numbers[k][first] * (target - q) + numbers[k][first + 2] * (rate - v)
-    limit = numbers[k][first + 3]
+    """Output of the controller whose kp, ki, kd, limit begin in column `first` of the actor."""
+    target, rate, _ = law(values, pieces, actor[LAW], t)
+    wanted = numbers[first] * (target - q) + numbers[first + 2] * (rate - v)
+    limit = numbers[first + 3]
     if at >= 0:
-        wanted += numbers[k][first + 1] * held
+        wanted += numbers[first + 1] * held
         # The integral rests while the output is at its limit and it would push further (anti-windup).
         stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
         dy[at] = 0.0 if stuck else target - q
@@ -76,31 +75,32 @@ def drive(
         force[FORCE][k] = 0.0
         force[GIVEN][k] = 0.0
     for k in range(len(actors)):
-        q, v = y[actors[k][AT_Q]], y[first + actors[k][AT_V]]
-        does, one, two = actors[k][DOES], actors[k][FIRST_STATE], actors[k][SECOND_STATE]
+        actor, number = actors[k], numbers[k]
+        q, v = y[actor[AT_Q]], y[first + actor[AT_V]]
+        does, one, two = actor[DOES], actor[FIRST_STATE], actor[SECOND_STATE]
         effort = 0.0
         if does == EFFORT:
-            effort, _, _ = law(values, pieces, actors[k][LAW], t)
+            effort, _, _ = law(values, pieces, actor[LAW], t)
         elif does == SPRING:
-            effort = numbers[k][0] * (numbers[k][1] - q)
+            effort = number[0] * (number[1] - q)
         elif does == DAMPER:
-            effort = -numbers[k][0] * v
+            effort = -number[0] * v
         elif does == SERVO:
-            effort = controlled(actors, numbers, values, pieces, k, 0, one, y[one], t, q, v, dy)
+            effort = controlled(actor, number, values, pieces, 0, one, y[one], t, q, v, dy)
         elif does >= MOTOR:
             if does == MOTOR:
-                voltage, _, _ = law(values, pieces, actors[k][LAW], t)
+                voltage, _, _ = law(values, pieces, actor[LAW], t)
             else:
-                voltage = controlled(actors, numbers, values, pieces, k, 4, two, y[two], t, q, v, dy)
-            constant = numbers[k][2] * numbers[k][3]
+                voltage = controlled(actor, number, values, pieces, 4, two, y[two], t, q, v, dy)
+            constant = number[2] * number[3]
             if one >= 0:
                 current = y[one]
-                dy[one] = (voltage - numbers[k][0] * current - constant * v) / numbers[k][1]
+                dy[one] = (voltage - number[0] * current - constant * v) / number[1]
             else:
-                current = (voltage - constant * v) / numbers[k][0]
+                current = (voltage - constant * v) / number[0]
             effort = constant * current
-        force[FORCE][actors[k][AT_V]] += effort
-        force[GIVEN][actors[k][AT_V]] += effort
+        force[FORCE][actor[AT_V]] += effort
+        force[GIVEN][actor[AT_V]] += effort
         if does != SPRING:
             power += effort * v
     return power

@@ -102,19 +102,20 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     """
     n, closures, length = ints[COUNTS][0][RATES], ints[CLOSURES], nums[CONSTANTS][0][LENGTH]
     rank = ints[COUNTS][0][RANK]
-    links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
+    links, before, gears = ints[LINKS], ints[COLUMNS], nums[GEARS]
+    chosen, places, lowest, highest = ints[MODE][CHOSEN], ints[MODE][PLACE], ints[MODE][LOWEST], ints[MODE][REACH]
     state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
     for r in range(count):
-        mode[LOWEST][r] = r
+        lowest[r] = r
     for r in range(count):
-        loop, axis = mode[CHOSEN][r] // 6, mode[CHOSEN][r] % 6
+        loop, axis, row = chosen[r] // 6, chosen[r] % 6, rows[r]
         if loop >= len(closures):
             for c in range(n):
-                rows[r][c] = gears[mode[CHOSEN][r] - 6 * len(closures)][mode[ORDER][c]]
-            mode[LOWEST][0], mode[REACH][r] = r, rank - 1
+                row[c] = gears[chosen[r] - 6 * len(closures)][ints[MODE][ORDER][c]]
+            lowest[0], highest[r] = r, rank - 1
             continue
         for c in range(n):
-            rows[r][c] = 0.0
+            row[c] = 0.0
         first, last = r, r
         m0, m1, m2, f0, f1, f2 = line_of(numbers[loop], state[closures[loop][0]], length, axis)
         # Both chains down to where they meet: what carries both moves neither relative to the other.
@@ -128,14 +129,14 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
                 power = -power
             else:
                 other = before[k][BEFORE]
-            c = mode[PLACE][k]
-            rows[r][c] = power
+            c = places[k]
+            row[c] = power
             if c < rank:
                 first = c if c < first else first
                 last = c if c > last else last
-        mode[REACH][r] = last
-        if mode[LOWEST][first] < r:
-            mode[LOWEST][first] = r
+        highest[r] = last
+        if lowest[first] < r:
+            lowest[first] = r
 
 
 def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
@@ -146,12 +147,13 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
     """
     n, rank, mode = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[MODE]
     rows, vectors, scale = work[ROWS], work[VECTORS], nums[SCALE]
+    lowest, highest = mode[LOWEST], mode[REACH]
     low, high, last = 1e300, 0.0, 0
     vectors[KEPT][0] = 1.0
     for k in range(rank):
         best = k
-        last = mode[LOWEST][k] if mode[LOWEST][k] > last else last
-        mode[LOWEST][k] = last
+        last = lowest[k] if lowest[k] > last else last
+        lowest[k] = last
         for i in range(k + 1, last + 1):
             if abs(rows[i][k]) > SWAP * abs(rows[best][k]):
                 best = i
@@ -161,44 +163,48 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
             for j in range(n):
                 rows[k][j], rows[best][j] = rows[best][j], rows[k][j]
             mode[CHOSEN][k], mode[CHOSEN][best] = mode[CHOSEN][best], mode[CHOSEN][k]
-            mode[REACH][k], mode[REACH][best] = mode[REACH][best], mode[REACH][k]
+            highest[k], highest[best] = highest[best], highest[k]
             vectors[GAP][k], vectors[GAP][best] = vectors[GAP][best], vectors[GAP][k]
-        pivot = rows[k][k]
+        upper = rows[k]
+        pivot = upper[k]
         size = abs(pivot) * scale[mode[ORDER][k]][0]
         low, high = min(low, size), max(high, size)
         vectors[KEPT][0] = min(vectors[KEPT][0], size / vectors[REFERENCE][k])
         if pivot == 0.0:
             return 0.0
         vectors[PIVOT][k] = 1.0 / pivot
-        reach = mode[REACH][k]
+        reach = highest[k]
         for i in range(k + 1, last + 1):
-            if rows[i][k] != 0.0:
-                factor = rows[i][k] * vectors[PIVOT][k]
-                rows[i][k] = factor
-                if mode[REACH][i] < reach:
-                    mode[REACH][i] = reach
+            row = rows[i]
+            if row[k] != 0.0:
+                factor = row[k] * vectors[PIVOT][k]
+                row[k] = factor
+                if highest[i] < reach:
+                    highest[i] = reach
                 for j in range(k + 1, reach + 1):
-                    rows[i][j] -= factor * rows[k][j]
+                    row[j] -= factor * upper[j]
                 for j in range(rank, n):
-                    rows[i][j] -= factor * rows[k][j]
+                    row[j] -= factor * upper[j]
     for k in range(rank - 1, -1, -1):
-        for i in range(k + 1, mode[REACH][k] + 1):
-            factor = rows[k][i]
+        upper = rows[k]
+        for i in range(k + 1, highest[k] + 1):
+            factor, row = upper[i], rows[i]
             if factor != 0.0:
                 for j in range(rank, n):
-                    rows[k][j] -= factor * rows[i][j]
+                    upper[j] -= factor * row[j]
         for j in range(rank, n):
-            rows[k][j] *= vectors[PIVOT][k]
+            upper[j] *= vectors[PIVOT][k]
     return low / high if rank > 0 else 1.0
 
 
 def back_substitute(rows: Table, mode: Index, vectors: Table, rank: int) -> None:
     """Turns work[VECTORS][GAP], by independent rows, into the dependent rates that make it up."""
+    gaps = vectors[GAP]
     for i in range(rank):
         for k in range(i + 1, mode[LOWEST][i] + 1):
-            vectors[GAP][k] -= rows[k][i] * vectors[GAP][i]
+            gaps[k] -= rows[k][i] * gaps[i]
     for k in range(rank - 1, -1, -1):
-        total = vectors[GAP][k]
+        total, row = gaps[k], rows[k]
         for i in range(k + 1, mode[REACH][k] + 1):
-            total -= rows[k][i] * vectors[GAP][i]
-        vectors[GAP][k] = total * vectors[PIVOT][k]
+            total -= row[i] * gaps[i]
+        gaps[k] = total * vectors[PIVOT][k]
