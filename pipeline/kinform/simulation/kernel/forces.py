@@ -26,7 +26,7 @@ from kinform.simulation.kernel.layout import (
 )
 from kinform.simulation.kernel.signals import law
 from kinform.simulation.kernel.types import Counts, Index, Row, Table
-from kinform.simulation.kernel.vectors import add, cross, dot, place, six, three, turned
+from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six, three
 
 __all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
 
@@ -127,9 +127,9 @@ def loads(table: Index, numbers: Table, state: Table) -> float:
         link, load = state[table[k][0]], numbers[k]
         # Vectors that do not turn with the link are those of the ground, link 0.
         frame = link if table[k][1] == 1 else state[0]
-        f0, f1, f2 = turned(frame, *three(load, 0))
-        n0, n1, n2 = turned(frame, *three(load, 3))
-        x, y, z = place(link, *three(load, 6))
+        f0, f1, f2 = along(frame, load, 0)
+        n0, n1, n2 = along(frame, load, 3)
+        x, y, z = place(link, load, 6)
         push(link, x, y, z, f0, f1, f2)
         power += pace(link, x, y, z, f0, f1, f2)
         add(link, WRENCH, -n0, -n1, -n2)
@@ -143,8 +143,8 @@ def between(table: Index, numbers: Table, state: Table) -> float:
     power = 0.0
     for k in range(len(table)):
         a, b, spring = state[table[k][0]], state[table[k][1]], numbers[k]
-        x, y, z = place(a, *three(spring, 0))
-        u, v, w = place(b, *three(spring, 3))
+        x, y, z = place(a, spring, 0)
+        u, v, w = place(b, spring, 3)
         d0, d1, d2 = u - x, v - y, w - z
         length = math.sqrt(dot(d0, d1, d2, d0, d1, d2))
         if length == 0.0:

@@ -37,7 +37,7 @@ from kinform.simulation.kernel.layout import (
     VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
-from kinform.simulation.kernel.vectors import cross, dot, place, six, three, turned
+from kinform.simulation.kernel.vectors import along, cross, dot, place, six
 
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
@@ -48,11 +48,11 @@ __all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_o
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:
     """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop,
     whose frame (row of nums[CLOSURES]) the tip carries."""
-    e0, e1, e2 = turned(tip, *three(frame, 3 * (axis % 3)))
+    e0, e1, e2 = along(tip, frame, 3 * (axis % 3))
     if axis < 3:
         return e0, e1, e2, 0.0, 0.0, 0.0
     e0, e1, e2 = e0 / length, e1 / length, e2 / length
-    x, y, z = place(tip, *three(frame, 9))
+    x, y, z = place(tip, frame, 9)
     m0, m1, m2 = cross(x, y, z, e0, e1, e2)
     return m0, m1, m2, e0, e1, e2
 
@@ -82,15 +82,15 @@ def gap_of(
             total += gears[row - 6 * len(closures)][counts[0][RATES] + k] * y[k]
         return total
     a, b, frame = state[closures[loop][0]], state[closures[loop][1]], numbers[loop]
-    e0, e1, e2 = turned(a, *three(frame, 3 * (axis % 3)))
+    e0, e1, e2 = along(a, frame, 3 * (axis % 3))
     if axis < 3:
         # Half the sum of cross products of the axes: the sine of the turn along its axis.
         for j in range(3):
             c0, c1, c2 = cross(a[j], a[3 + j], a[6 + j], b[j], b[3 + j], b[6 + j])
             total += 0.5 * dot(e0, e1, e2, c0, c1, c2)
         return total
-    x0, x1, x2 = place(a, *three(frame, 9))
-    z0, z1, z2 = place(b, *three(frame, 9))
+    x0, x1, x2 = place(a, frame, 9)
+    z0, z1, z2 = place(b, frame, 9)
     return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
 
 

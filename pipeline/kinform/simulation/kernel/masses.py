@@ -32,7 +32,7 @@ from kinform.simulation.kernel.layout import (
     WRENCH,
 )
 from kinform.simulation.kernel.types import Ints, Nums, Row, Table, Work
-from kinform.simulation.kernel.vectors import add, cross, dot, place, put, six, three, turned
+from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put, six, three
 
 __all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]
 
@@ -69,12 +69,12 @@ def inertias(ints: Ints, nums: Nums, work: Work) -> None:
         if links[i][HEAVY] == 0:
             continue
         m = numbers[WEIGHT]
-        c0, c1, c2 = place(link, *three(numbers, COM))
+        c0, c1, c2 = place(link, numbers, COM)
         link[INERT] = m
         put(link, INERT + 1, m * c0, m * c1, m * c2)
         heavy(link, m, c0, c1, c2)
         for j in range(TENSOR, TENSOR + 12, 4):
-            u0, u1, u2 = turned(link, numbers[j + 1], numbers[j + 2], numbers[j + 3])
+            u0, u1, u2 = along(link, numbers, j + 1)
             heavy(link, numbers[j], u0, u1, u2)
 
 

@@ -29,16 +29,16 @@ from kinform.simulation.kernel.layout import (
     Q,
 )
 from kinform.simulation.kernel.types import Ints, Nums, Row, Table, Work
-from kinform.simulation.kernel.vectors import cross, place, put, six, three, turned
+from kinform.simulation.kernel.vectors import along, cross, place, put, six, turned
 
 __all__ = ["place_ball", "place_links", "place_screw", "twist_links"]
 
 
 def place_screw(numbers: Row, parent: Row, link: Row, screw: Row, q: float) -> None:
     """Pose and screw of a link at the value q, from the pose of its parent."""
-    w0, w1, w2 = turned(parent, *three(numbers, AXIS))
-    x0, x1, x2 = place(parent, *three(numbers, POINT))
-    s0, s1, s2 = turned(parent, *three(numbers, SLIDE))
+    w0, w1, w2 = along(parent, numbers, AXIS)
+    x0, x1, x2 = place(parent, numbers, POINT)
+    s0, s1, s2 = along(parent, numbers, SLIDE)
     if not math.isfinite(q):
         q = math.nan  # of infinity the sine is an error outside of compiled code
     sine, versed = math.sin(q), 1.0 - math.cos(q)
@@ -66,19 +66,19 @@ def place_ball(
 ) -> None:
     """Pose and three screws, from number k, of a link at the quaternion (a, b, c, d)."""
     twice = 2.0 / (a * a + b * b + c * c + d * d)
-    x0, x1, x2 = place(parent, *three(numbers, POINT))
+    x0, x1, x2 = place(parent, numbers, POINT)
     turn = 1.0 if forward else -1.0
     for column in range(3):
         # Columns of the rotation: e + twice (a v × e + v × (v × e)), v the vector part.
         unit = (1.0 if column == 0 else 0.0, 1.0 if column == 1 else 0.0, 1.0 if column == 2 else 0.0)
         c0, c1, c2 = cross(b, c, d, *unit)
         e0, e1, e2 = cross(b, c, d, c0, c1, c2)
-        along = turn * a
+        real = turn * a
         link[column], link[3 + column], link[6 + column] = turned(
-            parent, unit[0] + twice * (along * c0 + e0), unit[1] + twice * (along * c1 + e1),
-            unit[2] + twice * (along * c2 + e2),
+            parent, unit[0] + twice * (real * c0 + e0), unit[1] + twice * (real * c1 + e1),
+            unit[2] + twice * (real * c2 + e2),
         )  # fmt: skip
-    r0, r1, r2 = turned(link, *three(numbers, POINT))
+    r0, r1, r2 = along(link, numbers, POINT)
     put(link, POS, x0 - r0, x1 - r1, x2 - r2)
     frame = parent if forward else link
     for j in range(3):

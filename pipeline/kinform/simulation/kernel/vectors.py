@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kinform.simulation.kernel.types import Row, Vector
 
-__all__ = ["add", "cross", "dot", "place", "put", "six", "three", "turned"]
+__all__ = ["add", "along", "cross", "dot", "place", "put", "six", "three", "turned"]
 
 
 def three(row: Row, j: int) -> Vector:
@@ -50,8 +50,19 @@ def turned(link: Row, x: float, y: float, z: float) -> Vector:
     )
 
 
-def place(link: Row, x: float, y: float, z: float) -> Vector:
-    """Where a point of a link is."""
+def along(link: Row, row: Row, j: int) -> Vector:
+    """The vector of a link in the columns from j of a row, in world axes."""
+    x, y, z = row[j], row[j + 1], row[j + 2]
+    return (
+        link[0] * x + link[1] * y + link[2] * z,
+        link[3] * x + link[4] * y + link[5] * z,
+        link[6] * x + link[7] * y + link[8] * z,
+    )
+
+
+def place(link: Row, row: Row, j: int) -> Vector:
+    """Where the point of a link is that is in the columns from j of a row."""
+    x, y, z = row[j], row[j + 1], row[j + 2]
     return (
         link[0] * x + link[1] * y + link[2] * z + link[9],
         link[3] * x + link[4] * y + link[5] * z + link[10],
