@@ -79,7 +79,10 @@ def main(arguments) -> None:
                     started(caches, "-c", COMPILE)
                 output = folder / f"{when}.h5"
                 clock, worked, told = started(caches, "-c", RUN, "run", str(manifest), "-o", str(output))
-                solver, numba, outputs = re.search(r"^solver (\S+) (\w+) (\d+)$", told, re.M).groups()
+                found = re.search(r"^solver (\S+) (\w+) (\d+)$", told, re.M)
+                if found is None:
+                    sys.exit(f"the solver was not called:\n{told}")
+                solver, numba, outputs = found.groups()
                 how = "compiled" if numba == "True" else "plain"
                 print(
                     f"  {when:16s} solver {float(solver):6.2f} s of processor ({how}, {outputs} outputs); "

@@ -117,9 +117,7 @@ class _Driver:
         if not self.engine.compiled and (Engine.loaded or self._long()):
             self._compile()
         left = run.settings.steps - int(tally[layout.STEPS])
-        tally[layout.BUDGET] = (
-            1 if self.contact.holding else min(left, LOOK if self.engine.compiled else SHOWN)
-        )
+        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else SHOWN)
         tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
         self.contact.remember()
         return self.engine.advance(run)
