@@ -32,7 +32,7 @@ Say = Callable[[str], None]
 PLAIN = 20_000
 """Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
 as loading them takes."""
-UNREADY = 6
+UNREADY = 10
 """Times more where they would have to be compiled first."""
 SHOWN = 60
 """Steps from which on the whole run can be told to be longer than that."""
