@@ -1,4 +1,5 @@
-# Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks.
+# Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks but for
+# the few tests that take minutes, which `make test-slow` runs.
 # Tests that need other programs (GHDL, rumoca, MuJoCo, Drake, …) skip unless `make validators` has installed them.
 PYTHON ?= python3
 VENV ?= .venv
@@ -7,8 +8,9 @@ BIN = $(VENV)/bin
 ALONE = eitri-hdl==0.1.0 yourdfpy==0.0.60
 DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
+WORKERS ?= 2
 
-.PHONY: demo test lint validators lock fixtures docs clean
+.PHONY: demo test test-slow lint validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -20,7 +22,10 @@ demo: $(VENV)/.installed
 	@$(BIN)/kinform show $(OUT)/seeker.h5 simulation
 
 test: lint
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+
+test-slow: $(VENV)/.developing
+	$(BIN)/python -m pytest -n $(WORKERS) -m slow
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

@@ -2,22 +2,45 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+# before numpy is imported: the threads of BLAS wait for each other in loops, on processors that other workers need
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
+from known import FIXTURES
+from once import common, once
+
+
+@pytest.fixture(scope="session", autouse=True)
+def bytecode_kept(tmp_path_factory):
+    """Where Python is to leave no bytecode beside the source, hundreds of processes would each compile all of kinform
+    again: for the length of the session they share a folder for it."""
+    with pytest.MonkeyPatch.context() as patch:
+        if os.environ.get("PYTHONDONTWRITEBYTECODE"):
+            patch.delenv("PYTHONDONTWRITEBYTECODE")
+            patch.setenv("PYTHONPYCACHEPREFIX", str(common(tmp_path_factory) / "bytecode"))
+        yield
 
 
 @pytest.fixture(scope="session")
-def derive_design():
+def derive_design(tmp_path_factory):
     """A manifest to a design with findings, each computed once a session."""
     from kinform import stages
 
     known = {}
 
+    def made(manifest: Path):
+        design = stages.joints(stages.contacts(stages.import_(manifest)))
+        return stages.check(stages.simulate(stages.mass(design)))
+
     def derive(manifest: Path):
         if manifest not in known:
-            design = stages.joints(stages.contacts(stages.import_(manifest)))
-            known[manifest] = stages.check(stages.simulate(stages.mass(design)))
+            shared = "PYTEST_XDIST_WORKER" in os.environ and manifest.is_relative_to(FIXTURES)
+            known[manifest] = (
+                once(common(tmp_path_factory), str(manifest), lambda: made(manifest)) if shared else made(manifest)
+            )
         return known[manifest]
 
     return derive

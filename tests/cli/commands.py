@@ -1,12 +1,27 @@
-"""The command as a user runs it: a process of its own, in a folder of its own."""
+"""The command as a user runs it, in a folder of its own: its environment, and a run without a process of its own."""
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import signal
 import subprocess
+from pathlib import Path
+from unittest import mock
+
+from kinform_cli.main import main
 
 Ran = subprocess.CompletedProcess[str]
+
+
+def ran_here(*arguments: object, cwd: Path, **extra: str) -> Ran:
+    """What `kinform ARGUMENTS` ends with and prints, in this process: a new one takes longer than most commands."""
+    words, out, errors = [str(argument) for argument in arguments], io.StringIO(), io.StringIO()
+    surroundings = mock.patch.dict(os.environ, environment(**extra), clear=True)
+    with surroundings, contextlib.chdir(cwd), contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
+        code = main(words)
+    return subprocess.CompletedProcess(["kinform", *words], code, out.getvalue(), errors.getvalue())
 
 
 def listening() -> None:

@@ -1,4 +1,4 @@
-"""The command as a user runs it: a process of its own, in a folder of its own."""
+"""The command as a user runs it, in a folder of its own."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from commands import Ran, environment
+from commands import Ran, environment, ran_here
 
 
 @pytest.fixture
 def kinform(tmp_path: Path) -> Callable[..., Ran]:
-    """Run `kinform ARGUMENTS` in tmp_path; stdout and stderr are pipes."""
+    """Run `kinform ARGUMENTS` in tmp_path, in a process of its own; stdout and stderr are pipes."""
 
     def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> Ran:
         return subprocess.run(
@@ -24,5 +24,15 @@ def kinform(tmp_path: Path) -> Callable[..., Ran]:
             text=True,
             timeout=120,
         )
+
+    return run
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Callable[..., Ran]:
+    """Run `kinform ARGUMENTS` in tmp_path, in this process: where nothing is asked of the process itself."""
+
+    def run(*arguments: object, cwd: Path = tmp_path, **extra: str) -> Ran:
+        return ran_here(*arguments, cwd=cwd, **extra)
 
     return run

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import sqlite3
@@ -20,14 +21,23 @@ DESIGNS = {
 }
 
 
-@pytest.fixture
-def designs(tmp_path, derive_design, monkeypatch):
-    """A folder of results files, one in a folder of its own, and the catalog beside it."""
-    (tmp_path / "designs/arms").mkdir(parents=True)
+@pytest.fixture(scope="module")
+def filed(tmp_path_factory, derive_design):
+    """A folder of results files, one in a folder of its own, and the catalog beside it, which nobody changes."""
+    folder = tmp_path_factory.mktemp("catalog")
+    (folder / "designs/arms").mkdir(parents=True)
     for name, manifest in DESIGNS.items():
-        results.write(derive_design(FIXTURES / manifest), tmp_path / "designs" / name)
+        results.write(derive_design(FIXTURES / manifest), folder / "designs" / name)
+    with contextlib.chdir(folder):
+        assert main(["catalog", "add", "designs", "-q"]) == 0
+    return folder
+
+
+@pytest.fixture
+def designs(filed, tmp_path, monkeypatch):
+    """A copy of that folder."""
+    shutil.copytree(filed, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
-    assert main(["catalog", "add", "designs", "-q"]) == 0
     return tmp_path / "designs"
 
 

@@ -6,7 +6,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import entry_points
-from pathlib import Path
 
 import pytest
 import typer
@@ -137,7 +136,7 @@ def test_completion_offers_commands_topics_and_choices(kinform: Callable[..., Ra
     assert offered("kinform check --fail-on ") == {"error", "warning", "note"}
 
 
-def test_help_reads_at_80_columns(tmp_path: Path, kinform: Callable[..., Ran]) -> None:
-    for command in COMMANDS:
-        ran = kinform(command, "--help", COLUMNS="80")
-        assert max(map(len, ran.stdout.splitlines())) <= 80, command
+def test_help_reads_at_80_columns(command: Callable[..., Ran]) -> None:
+    for name in COMMANDS:
+        lines = command(name, "--help", COLUMNS="80").stdout.splitlines()
+        assert 60 < max(map(len, lines)) <= 80, name

@@ -19,23 +19,23 @@ def results(derive_design, tmp_path):
     return path
 
 
-def test_mobility_says_what_moves_what_is_redundant_and_draws_it(kinform, results, tmp_path):
-    shown = kinform("show", results, "mobility", COLUMNS="200")
+def test_mobility_says_what_moves_what_is_redundant_and_draws_it(command, results, tmp_path):
+    shown = command("show", results, "mobility", COLUMNS="200")
     assert "crank_unit turns about z through (0, 0," in shown.stdout
     assert "loop base-crank_unit-coupler-rocker_unit is planar, normal to z: 3 rows too many" in shown.stdout
     drawn = tmp_path / "graph.svg"
-    ran = kinform("show", results, "mobility", "--graph", drawn)
+    ran = command("show", results, "mobility", "--graph", drawn)
     assert (ran.returncode, ran.stdout) == (0, "")
     assert ET.parse(drawn).getroot().tag.endswith("svg")
-    assert kinform("show", results, "joints", "--graph", tmp_path / "graph.dot").returncode == 0
+    assert command("show", results, "joints", "--graph", tmp_path / "graph.dot").returncode == 0
     assert (tmp_path / "graph.dot").read_text().startswith("graph ")
-    refused = kinform("show", results, "mobility", "--graph", tmp_path / "graph.png")
+    refused = command("show", results, "mobility", "--graph", tmp_path / "graph.png")
     assert refused.returncode == 2 and "neither in .svg nor in .dot" in refused.stderr
 
 
-def test_the_lead_of_a_screw_is_in_the_units_of_the_design(kinform, derive_design, tmp_path):
+def test_the_lead_of_a_screw_is_in_the_units_of_the_design(command, derive_design, tmp_path):
     path = tmp_path / "screw.h5"
     results_file.write(derive_design(FOUR_BAR.parents[2] / "pairs" / "screw_right" / "screw_right.toml"), path)
-    shown = kinform("show", path, "mobility", COLUMNS="200")
+    shown = command("show", path, "mobility", COLUMNS="200")
     assert " mm a turn" in shown.stdout
     assert " m a turn" not in shown.stdout

@@ -65,22 +65,22 @@ MESHES = {
 
 
 @pytest.mark.parametrize("case", MESHES)
-def test_a_broken_mesh_is_named_with_the_line_that_states_it(folder, kinform, case):
+def test_a_broken_mesh_is_named_with_the_line_that_states_it(folder, command, case):
     make, word = MESHES[case]
     manifest = broken_mesh(folder, "broken.stl", make(folder))
     line = line_of(folder, manifest, "broken.stl")
-    refused(kinform("run", manifest, "-o", "r.h5"), f"{manifest}:{line}", "broken.stl", word)
+    refused(command("run", manifest, "-o", "r.h5"), f"{manifest}:{line}", "broken.stl", word)
     assert not (folder / "r.h5").exists()
 
 
-def test_an_index_out_of_range_is_named_with_the_line_of_the_obj(folder, kinform):
+def test_an_index_out_of_range_is_named_with_the_line_of_the_obj(folder, command):
     manifest = broken_mesh(folder, "bad.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
-    refused(kinform("run", manifest, "-o", "r.h5"), "bad.obj:4", "3 vertices")
+    refused(command("run", manifest, "-o", "r.h5"), "bad.obj:4", "3 vertices")
 
 
-def test_a_part_without_thickness(folder, kinform):
+def test_a_part_without_thickness(folder, command):
     manifest = broken_mesh(folder, "flat.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
-    refused(kinform("run", manifest, "-o", "r.h5"), "zero thickness", "solid = false")
+    refused(command("run", manifest, "-o", "r.h5"), "zero thickness", "solid = false")
 
 
 def test_a_missing_mesh_and_a_near_name(folder, kinform):
@@ -89,62 +89,77 @@ def test_a_missing_mesh_and_a_near_name(folder, kinform):
     refused(kinform("run", manifest, "-o", "r.h5"), f"{manifest}:{line}", 'did you mean "shaft.stl"')
 
 
-def test_all_errors_of_a_manifest_come_at_once_with_their_lines(folder, kinform):
+def test_all_errors_of_a_manifest_come_at_once_with_their_lines(folder, command):
     (folder / "m.toml").write_text(
         'schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\ncolour = 1\n[[part]]\nname = "a"\nmesh = "no.stl"\n'
     )
-    refused(kinform("run", "m.toml", "-o", "r.h5"), "m.toml:2", "units", "m.toml:6", "colour", "m.toml:8", "m.toml:9")
+    refused(command("run", "m.toml", "-o", "r.h5"), "m.toml:2", "units", "m.toml:6", "colour", "m.toml:8", "m.toml:9")
 
 
-def test_a_cycle_of_sub_assemblies(folder, kinform):
+def test_a_cycle_of_sub_assemblies(folder, command):
     for name, other in (("one", "two"), ("two", "one")):
         (folder / f"{name}.toml").write_text(
             f'schema = 1\n[assembly]\nname = "{name}"\nunits = "mm"\n'
             f'[[part]]\nname = "p"\n[[subassembly]]\nname = "s"\nfile = "{other}.toml"\n'
         )
-    refused(kinform("run", "one.toml", "-o", "r.h5"), "two.toml:9", "one.toml → two.toml → one.toml")
+    refused(command("run", "one.toml", "-o", "r.h5"), "two.toml:9", "one.toml → two.toml → one.toml")
 
 
-def test_a_mesh_outside_the_folder_needs_permission(folder, kinform):
+def test_a_mesh_outside_the_folder_needs_permission(folder, command):
     inner = folder / "inner"
     inner.mkdir()
     shutil.copy(folder / NAME, inner / "m.toml")
     text = (inner / "m.toml").read_text().replace('"shaft.stl"', '"../shaft.stl"').replace("block.stl", "../block.stl")
     (inner / "m.toml").write_text(text)
-    refused(kinform("import", "inner/m.toml", "-o", "r.h5"), "outside", "--allow-outside")
-    assert kinform("import", "inner/m.toml", "-o", "r.h5", "--allow-outside").returncode == 0
+    refused(command("import", "inner/m.toml", "-o", "r.h5"), "outside", "--allow-outside")
+    assert command("import", "inner/m.toml", "-o", "r.h5", "--allow-outside").returncode == 0
 
 
-def test_what_is_no_results_file_is_neither_read_nor_overwritten(folder, kinform):
+def test_what_is_no_results_file_is_neither_read_nor_overwritten(folder, command):
     (folder / "text.h5").write_text("precious")
-    refused(kinform("show", "text.h5"), "text.h5", "not HDF5")
-    refused(kinform("run", NAME, "-o", "text.h5"), "not overwritten")
+    refused(command("show", "text.h5"), "text.h5", "not HDF5")
+    refused(command("run", NAME, "-o", "text.h5"), "not overwritten")
     assert (folder / "text.h5").read_text() == "precious"
     with h5py.File(folder / "newer.h5", "w") as file:
         file.attrs["schema"] = "kinform/results/9"
-    refused(kinform("show", "newer.h5"), "kinform/results/9", "kinform/results/2")
+    refused(command("show", "newer.h5"), "kinform/results/9", "kinform/results/2")
 
 
-def test_a_place_where_nothing_can_be_written(folder, kinform):
-    refused(kinform("run", NAME, "-o", "nowhere/r.h5"), "nowhere", "mkdir")
-    refused(kinform("run", NAME, "-o", "block.stl/r.h5"), "block.stl")
+def test_a_place_where_nothing_can_be_written(folder, command):
+    refused(command("run", NAME, "-o", "nowhere/r.h5"), "nowhere", "mkdir")
+    refused(command("run", NAME, "-o", "block.stl/r.h5"), "block.stl")
 
 
-def test_meshes_need_a_unit(folder, kinform):
-    refused(kinform("run", "shaft.stl", "block.stl"), "--units")
-    assert kinform("import", "shaft.stl", "block.stl", "--units", "mm", "-o", "r.h5").returncode == 0
+def test_meshes_need_a_unit(folder, command):
+    refused(command("run", "shaft.stl", "block.stl"), "--units")
+    assert command("import", "shaft.stl", "block.stl", "--units", "mm", "-o", "r.h5").returncode == 0
 
 
-def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, kinform):
-    assert kinform("import", NAME, "-o", "r.h5").returncode == 0
+INTERRUPTED = """
+import sys
+from pathlib import Path
+from kinform import stages
+from kinform_cli.main import entry
+found = stages.contacts
+def contacts(*given, **named):
+    Path("begun").touch()
+    return found(*given, **named)
+stages.contacts = contacts
+entry()
+"""
+
+
+def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, command):
+    assert command("import", NAME, "-o", "r.h5").returncode == 0
     old = (folder / "r.h5").read_bytes()
-    seeker = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
+    platform = FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml"
     running = subprocess.Popen(
-        [sys.executable, "-m", "kinform_cli", "run", str(seeker), "-o", "r.h5", "--jobs", "1"],
+        [sys.executable, "-c", INTERRUPTED, "run", str(platform), "-o", "r.h5", "--jobs", "1"],
         cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
     )  # fmt: skip
-    time.sleep(1.5)
-    assert running.poll() is None
+    while not (folder / "begun").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
     running.send_signal(signal.SIGINT)
     out, error = running.communicate(timeout=60)
     assert running.returncode == 2

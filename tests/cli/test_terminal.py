@@ -11,6 +11,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from fcntl import ioctl
+from functools import cache
 from termios import TIOCSWINSZ
 
 import numpy as np
@@ -28,17 +29,18 @@ from kinform_cli.views import assembly, mass, series
 SEEKER = FIXTURES / "seeker/5_complete/seeker.toml"
 
 
-@pytest.fixture
-def on_a_terminal(tmp_path, derive_design):
-    """Lines of `kinform show` of the complete seeker, on a terminal so many columns wide."""
-    path = tmp_path / "seeker.h5"
+@pytest.fixture(scope="module")
+def on_a_terminal(tmp_path_factory, derive_design):
+    """Lines of `kinform show` of the complete seeker, on a terminal so many columns wide; each is asked once."""
+    path = tmp_path_factory.mktemp("terminal") / "seeker.h5"
     results.write(derive_design(SEEKER), path)
 
-    def show(*arguments, columns=80, **extra):
+    @cache
+    def show(*arguments, columns=80):
         ours, theirs = pty.openpty()
         ioctl(theirs, TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
         command = [sys.executable, "-m", "kinform_cli", "show", str(path), *arguments]
-        env = environment(COLUMNS=str(columns), NO_COLOR="1", **extra)
+        env = environment(COLUMNS=str(columns), NO_COLOR="1")
         with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, env=env) as ran:
             os.close(theirs)
             text = b""

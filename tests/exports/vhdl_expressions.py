@@ -25,7 +25,9 @@ class Jet:
         if isinstance(x, Jet):
             return x
         x = np.asarray(x, dtype=float)
-        return Jet(np.stack([x, np.zeros_like(x), np.zeros_like(x)]))
+        d = np.zeros((3, *x.shape))
+        d[0] = x
+        return Jet(d)
 
     def __add__(self, other):
         other = Jet.of(other)
@@ -46,7 +48,7 @@ class Jet:
             b = b[:, None]
         else:
             assert a.ndim == 1, "a product of two vectors"
-        return Jet(np.stack([a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + 2 * a[1] * b[1] + a[0] * b[2]]))
+        return Jet(np.array([a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + 2 * a[1] * b[1] + a[0] * b[2]]))
 
     def __getitem__(self, k):
         return Jet(self.d[:, k])

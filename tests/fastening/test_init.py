@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 import tomllib
 
 import numpy as np
 import pytest
 import trimesh
-from commands import environment
+from commands import ran_here
 from fastened import CORNERS, drilled
 from solids import box
 
@@ -34,10 +32,7 @@ def written(folder):
 
 
 def kinform(folder, *arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "kinform_cli", *map(str, arguments)],
-        cwd=folder, env=environment(), capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
+    return ran_here(*arguments, cwd=folder)
 
 
 def uncommented(text):

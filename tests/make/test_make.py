@@ -52,23 +52,25 @@ def made(project):
 
 
 def test_whatever_changes_a_build_ends_with_the_bytes_of_one_from_nothing(project):
-    only, design = "DESIGNS=seeker_1dof", project.parent / "fixtures" / "seekers" / "seeker_1dof"
+    design = project.parent / "fixtures" / "pairs" / "planar_block"
+    shutil.copytree(ROOT / "fixtures" / "pairs" / "planar_block", design)
+    only = ("DESIGNS=block", "block=../fixtures/pairs/planar_block/planar_block.toml")
 
     def built():
-        ran = make(project, only, "all")
+        ran = make(project, *only, "all")
         assert ran.returncode == 0, ran.stderr
-        assert make(project, only, "-q", "all").returncode == 0
+        assert make(project, *only, "-q", "all").returncode == 0
         return made(project)
 
     first = built()
     # a stage that is missing
-    (project / "build" / "seeker_1dof.joints.h5").unlink()
+    (project / "build" / "block.joints.h5").unlink()
     assert built() == first
     # another time of a mesh, the same content
-    os.utime(design / "camera.stl")
+    os.utime(design / "block.stl")
     assert built() == first
     # the manifest
-    manifest = design / "seeker_1dof.toml"
+    manifest = design / "planar_block.toml"
     manifest.write_text(re.sub(r'material = "\w+"', 'material = "brass"', manifest.read_text(), count=1))
     assert (second := built()) != first
     # from nothing

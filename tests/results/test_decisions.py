@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known import FIXTURES
+from linkage import four_bar
 
 import kinform
 from kinform import results
@@ -21,7 +21,7 @@ from kinform.results._packed import pack, seal, unpack
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("built") / "four_bar"
-    shutil.copytree(FIXTURES / "mechanisms/four_bar", folder)
+    four_bar(folder)
     kinform.run(folder / "four_bar.toml", folder / "r.h5")
     return folder
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from known import FIXTURES
+from linkage import four_bar
 
 import kinform
 from kinform import results, stages
@@ -83,7 +83,7 @@ EDITS = {
 @pytest.fixture(scope="module")
 def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("first") / "four_bar"
-    shutil.copytree(FIXTURES / "mechanisms/four_bar", folder)
+    four_bar(folder)
     kinform.run(folder / "four_bar.toml", folder / "r.h5")
     return folder
 
@@ -245,9 +245,9 @@ def test_a_stage_names_the_command_that_it_misses(
 
 def test_the_bytes_do_not_depend_on_folder_process_threads_jobs_or_memory(first: Path, tmp_path: Path) -> None:
     folder = tmp_path / "elsewhere" / "deeper"
-    shutil.copytree(FIXTURES / "mechanisms/four_bar", folder)
+    four_bar(folder)
     code = "import kinform; kinform.run('deeper/four_bar.toml', 'r.h5', jobs=2)"
-    surroundings = {"PYTHONHASHSEED": "7", "OPENBLAS_NUM_THREADS": "1", "MALLOC_PERTURB_": "165", "TZ": "Asia/Tokyo"}
+    surroundings = {"PYTHONHASHSEED": "7", "OPENBLAS_NUM_THREADS": "2", "MALLOC_PERTURB_": "165", "TZ": "Asia/Tokyo"}
     subprocess.run([sys.executable, "-c", code], check=True, cwd=folder.parent, env=os.environ | surroundings)
     assert (folder.parent / "r.h5").read_bytes() == (first / "r.h5").read_bytes()
 

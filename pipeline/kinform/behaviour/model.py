@@ -243,5 +243,6 @@ def _vector(value: ArrayLike | None) -> Array | None:
 def _unit(value: ArrayLike | None) -> Array | None:
     """The direction with length 1; what has none stays as it is, and is refused where it is needed."""
     vector = _vector(value)
-    length = 0.0 if vector is None else float(np.linalg.norm(vector))
-    return vector / length if vector is not None and length > 0.0 else vector
+    with np.errstate(over="ignore"):
+        length = 0.0 if vector is None else float(np.linalg.norm(vector))
+    return vector / length if vector is not None and 0.0 < length < np.inf else vector

@@ -44,7 +44,9 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
     mechanism, system, length = dynamics.mechanism, dynamics.system, dynamics.mechanism.length
     bodies = [mechanism.bodies[k] for k in dynamics.body_index]
     wrench, points = found.on_second, found.points
-    sizes = np.concatenate([np.abs(wrench[..., :3]).max(axis=2) / length, np.abs(wrench[..., 3:]).max(axis=2)], axis=1)
+    with np.errstate(over="ignore"):  # of a run that overflows
+        couples = np.abs(wrench[..., :3]).max(axis=2) / length
+    sizes = np.concatenate([couples, np.abs(wrench[..., 3:]).max(axis=2)], axis=1)
     external = applied(dynamics, states)
     if found.gears is not None:
         external = external + found.gears.wrenches[:, dynamics.body_index]

@@ -44,7 +44,8 @@ def uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
 def _use(time: Array, joint: str, kind: str, effort: Array, rate: Array) -> DriveUse:
     power = effort * rate
     span = float(time[-1] - time[0])
-    mean = float(np.trapezoid(effort**2, time)) / span if span > 0.0 else float(effort[0] ** 2)
+    with np.errstate(over="ignore"):  # of a run that overflows
+        mean = float(np.trapezoid(effort**2, time)) / span if span > 0.0 else float(effort[0] ** 2)
     return DriveUse(
         joint, kind, float(np.abs(effort).max()), float(np.sqrt(mean)), float(power.max()),
         float(np.trapezoid(power, time)),

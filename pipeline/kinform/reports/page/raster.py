@@ -16,7 +16,7 @@ __all__ = ["AXES", "Buffers", "View", "rasterise", "view_of"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-PORTION = 3_000_000
+PORTION = 1 << 16
 """Pixels that are worked on at once."""
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
 
