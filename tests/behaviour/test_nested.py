@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from designs import difference
@@ -192,3 +195,12 @@ def test_what_acts_inside_a_sub_assembly_belongs_to_it():
     assert {name: home for name, home in found.items() if home} == {
         "a/one": "a", "a/b/two": "a/b", "inner": "a", "winding": "a", "supply": "a", "push": "a/b", "cord": "a",
     }  # fmt: skip
+
+
+def test_a_system_that_was_asked_survives_copies_and_pickles():
+    known = device()
+    met = known.bodies_at("wheel", "frame")
+    for again in (copy.deepcopy(known), pickle.loads(pickle.dumps(known))):
+        assert [body.name for body in again.bodies_at("wheel", "frame")] == [body.name for body in met]
+        assert {joint.name for joint in again.joints_at("wheel", "frame")} == {"flange"}
+        assert again.systems[0].bodies_at("stator", "frame")

@@ -239,11 +239,11 @@ class System(Component):
         return {port: node for node in self.nodes for port in node.ports}
 
     @cached_property
-    def _met(self) -> dict[int, tuple[list[Ground | RigidBody], list[JointComponent]]]:
-        """Bodies and joints at each node, by its identity: a node of thousands of ports is looked through once."""
-        out: dict[int, tuple[list[Ground | RigidBody], list[JointComponent]]] = {}
+    def _met(self) -> dict[tuple[str, str], tuple[list[Ground | RigidBody], list[JointComponent]]]:
+        """Bodies and joints at each node, by its first port: a node of thousands of ports is looked through once."""
+        out: dict[tuple[str, str], tuple[list[Ground | RigidBody], list[JointComponent]]] = {}
         for node in self.nodes:
-            bodies, joints = out.setdefault(id(node), ([], []))
+            bodies, joints = out.setdefault(node.ports[0], ([], []))
             for name, _ in node.ports:
                 component = self._by_name[name]
                 if isinstance(component, Ground | RigidBody):
@@ -254,11 +254,11 @@ class System(Component):
 
     def bodies_at(self, component: str, port: str) -> list[Ground | RigidBody]:
         """Bodies and ground at the node of a port; KeyError for unknown ports."""
-        return self._met[id(self.node(component, port))][0]
+        return self._met[self.node(component, port).ports[0]][0]
 
     def joints_at(self, component: str, port: str) -> list[JointComponent]:
         """Joints at the node of a port, one as often as it has ports there; KeyError for unknown ports."""
-        return self._met[id(self.node(component, port))][1]
+        return self._met[self.node(component, port).ports[0]][1]
 
     def component(self, name: str) -> Component:
         """The component of that name; KeyError otherwise."""

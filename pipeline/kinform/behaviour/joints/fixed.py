@@ -1,5 +1,10 @@
 """Fixed: no freedom; the two bodies move as one."""
 
-from kinform.behaviour.joints._base import JointKind
+from kinform.behaviour.joints._base import JointGeometry, JointKind
 
-FIXED = JointKind("fixed", (), 0, lambda geometry: (), ())
+
+def _chain(geometry: JointGeometry) -> tuple[()]:
+    return ()
+
+
+FIXED = JointKind("fixed", (), 0, _chain, ())
