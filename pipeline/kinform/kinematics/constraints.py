@@ -24,6 +24,8 @@ SECTORS = 16
 """Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept."""
 FEW = 12
 """Patches with no more samples than this keep them all."""
+ROUND = np.stack([np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)])
+"""(2, 16) directions whose ends are corners of a hull."""
 STRAIGHT = 1e-6
 """Corners of a hull that stand out less than this share of its size are on an edge."""
 
@@ -55,8 +57,6 @@ def extreme_samples(patch: Patch) -> NDArray[np.int64]:
 
 def hull(points: Array, axis: Array) -> NDArray[np.int64]:
     """Indices, ascending, of the corners of the convex hull of the points (n, 3) seen along the axis."""
-    from scipy.spatial import ConvexHull
-
     if len(points) <= 2:
         return np.arange(len(points), dtype=np.int64)
     u, v = perpendicular(axis)
@@ -69,7 +69,7 @@ def hull(points: Array, axis: Array) -> NDArray[np.int64]:
     if float(np.abs(flat @ right[1]).max()) < STRAIGHT * size:
         along = flat @ right[0]
         return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
-    corners = ConvexHull(flat).vertices.astype(np.int64)
+    corners = _around(flat)
     while len(corners) > 3:
         here, before, after = flat[corners], flat[np.roll(corners, 1)], flat[np.roll(corners, -1)]
         edge, arm = after - before, here - before
@@ -79,6 +79,33 @@ def hull(points: Array, axis: Array) -> NDArray[np.int64]:
             break
         corners = np.delete(corners, k)
     return np.sort(corners)
+
+
+def _around(flat: Array) -> NDArray[np.int64]:
+    """Indices of the corners of the convex hull of points (n, 2) that are not all in line, anticlockwise: the points in
+    the order of x, and of each chain those that turn left (A. M. Andrew, Inf. Proc. Letters 9, 1979)."""
+    ends = (flat @ ROUND).argmax(axis=0)
+    ends = ends[ends != np.roll(ends, 1)]
+    edge, arm = np.roll(flat[ends], -1, axis=0) - flat[ends], flat[:, None] - flat[ends]
+    inside = (edge[:, 0] * arm[..., 1] - edge[:, 1] * arm[..., 0] > 0.0).all(axis=1)
+    some = np.flatnonzero(~inside)
+    some = some[np.lexsort((some, flat[some, 1], flat[some, 0]))]
+    places = flat[some].tolist()
+
+    def chain(order: range) -> list[int]:
+        out: list[int] = []
+        for k in order:
+            x, y = places[k]
+            while len(out) > 1:
+                (ax, ay), (bx, by) = places[out[-2]], places[out[-1]]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
+                    break
+                out.pop()
+            out.append(k)
+        return out[:-1]
+
+    last = len(places) - 1
+    return some[chain(range(last + 1)) + chain(range(last, -1, -1))]
 
 
 def _rim(normals: Array) -> NDArray[np.int64]:
