@@ -199,12 +199,14 @@ def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simul
     """The run with its collisions and the ranges of joints, as far as there are meshes."""
     if not design.surfaces or all(part.mesh is None for part in view.parts):
         return run
-    from kinform import collisions
-
     if len(run.time) > 1:
+        from kinform import collisions
+
         met, untested = collisions.along(view, design.surfaces, design.contacts, kinematics, run)
         run = replace(run, collisions=met, uncollided=untested)
     if ranges:
+        from kinform import collisions
+
         run = replace(run, ranges=collisions.ranges(view, design.surfaces, design.contacts, kinematics))
     return run
 
