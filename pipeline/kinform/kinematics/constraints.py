@@ -144,34 +144,30 @@ def assemble(
     owner = {index: joint for joint in joints for index in joint.patches}
     used = [k for k, p in enumerate(patches) if column[p.parts[0]] != column[p.parts[1]] and len(p.points)]
     world = Frame.of(np.concatenate([patches[k].points for k in used])) if used else Frame(np.zeros(3), 1.0)
-    data, indices, provenance, samples = [], [], [], []
-    for k in used:
-        patch = patches[k]
-        chosen = known[k] if k in known else extreme_samples(patch)
-        own = rows(patch.points[chosen], patch.normals[chosen], world)
+    samples = [known[k] if k in known else extreme_samples(patches[k]) for k in used]
+    bounds = np.cumsum([0, *map(len, samples)])
+    none = np.zeros((0, 3))
+    own = rows(
+        np.concatenate([none, *(patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True))]),
+        np.concatenate([none, *(patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True))]),
+        world,
+    )
+    free = {joint.name: np.linalg.qr(scaled(joint.twists.T, world))[0] for joint in joints if joint.patches}
+    for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         if k in owner:
-            free, _ = np.linalg.qr(scaled(owner[k].twists.T, world))
-            own = own - (own @ free) @ free.T
-        first, second = column[patch.parts[0]], column[patch.parts[1]]
-        low = first < second
-        data.append(np.hstack([-own, own] if low else [own, -own]))
-        six = np.arange(6)
-        index = np.concatenate([6 * min(first, second) + six, 6 * max(first, second) + six])
-        indices.append(np.tile(index, (len(chosen), 1)))
-        provenance.append(np.full(len(chosen), k))
-        samples.append(chosen)
-    count = sum(len(s) for s in samples)
-
-    def joined(arrays: list[NDArray[np.int64]]) -> NDArray[np.int64]:
-        return np.concatenate(arrays).ravel().astype(np.int64) if arrays else np.zeros(0, np.int64)
-
+            basis, mine = free[owner[k].name], own[start:end]
+            own[start:end] = mine - (mine @ basis) @ basis.T
+    counts = np.diff(bounds)
+    ends = np.array([[column[part] for part in patches[k].parts] for k in used], dtype=np.int64).reshape(-1, 2)
+    sign = np.repeat(np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0), counts)[:, None]
+    index = 6 * np.sort(ends, axis=1)[:, :, None] + np.arange(6)
     return ConstraintMatrix(
         bodies=tuple(body.name for body in bodies),
-        data=np.concatenate(data).ravel() if data else np.zeros(0),
-        indices=joined(indices),
-        indptr=12 * np.arange(count + 1, dtype=np.int64),
-        patch=joined(provenance),
-        sample=joined(samples),
+        data=np.hstack([-sign * own, sign * own]).ravel(),
+        indices=np.repeat(index.reshape(-1, 12), counts, axis=0).ravel(),
+        indptr=12 * np.arange(bounds[-1] + 1, dtype=np.int64),
+        patch=np.repeat(np.array(used, dtype=np.int64), counts),
+        sample=np.concatenate([np.zeros(0, np.int64), *samples]),
         centre=world.centre,
         length=world.length,
     )

@@ -80,9 +80,16 @@ class ContactRows:
         self._parts = {body.name: frozenset(body.parts) for body in bodies}
         self._cones: dict[tuple[tuple[int, bool], ...], Cone | None] = {}
         self._held: frozenset[int] | None = None
-        self._blocks = matrix.data.reshape(-1, 12)
-        self._order = np.argsort(matrix.patch, kind="stable")
-        self._bounds = np.searchsorted(matrix.patch[self._order], np.arange(len(patches) + 1))
+        order = np.argsort(matrix.patch, kind="stable")
+        owner = matrix.patch[order]
+        self._bounds = np.searchsorted(owner, np.arange(len(patches) + 1)).tolist()
+        start = np.cumsum([0, *(len(patch.points) for patch in patches)])[:-1]
+        every = np.concatenate([np.zeros((0, 3)), *(patch.points for patch in patches)])
+        ahead = np.array([self._body[patch.parts[0]] < self._body[patch.parts[1]] for patch in patches], np.bool_)
+        blocks = matrix.data.reshape(-1, 12)[order]
+        rows = np.where(ahead[owner, None], blocks[:, 6:], blocks[:, :6])
+        self._points = every[start[owner] + matrix.sample[order]] if len(owner) else every[:0]
+        self._normals, self._moments = rows[:, 3:], rows[:, :3] * matrix.length
 
     def parts_of(self, body: BodyName) -> frozenset[PartName]:
         """The parts of a body."""
@@ -110,7 +117,10 @@ class ContactRows:
     def rows(self, k: int, frame: Frame, *, turned: bool) -> Array:
         """Rows (n, 6) of the extreme samples of one patch, against twists scaled in `frame`."""
         _, normals, moments = self.samples(k, turned=turned)
-        return np.hstack([(moments + cross(self._matrix.centre - frame.centre, normals)) / frame.length, normals])
+        out = np.empty((len(normals), 6))
+        out[:, :3] = (moments + cross(self._matrix.centre - frame.centre, normals)) / frame.length
+        out[:, 3:] = normals
+        return out
 
     def _two_way(self, k: int) -> bool:
         """Does this patch alone hold whatever it does not let slide?"""
@@ -128,13 +138,11 @@ class ContactRows:
 
     def samples(self, k: int, *, turned: bool) -> tuple[Array, Array, Array]:
         """Points, normals and moments (m) about the centre of J, of the extreme samples of one patch."""
-        patch, sign = self._patches[k], -1.0 if turned else 1.0
-        chosen = self._order[self._bounds[k] : self._bounds[k + 1]]
-        if len(chosen):
-            first, second = (self._body[part] for part in patch.parts)
-            block = self._blocks[chosen, 6:] if first < second else self._blocks[chosen, :6]
-            points = patch.points[self._matrix.sample[chosen]]
-            return points, sign * block[:, 3:], sign * block[:, :3] * self._matrix.length
+        sign = -1.0 if turned else 1.0
+        own = slice(self._bounds[k], self._bounds[k + 1])
+        if own.start < own.stop:
+            return self._points[own], sign * self._normals[own], sign * self._moments[own]
+        patch = self._patches[k]
         samples = extreme_samples(patch)
         points, normals = patch.points[samples], sign * patch.normals[samples]
         return points, normals, cross(points - self._matrix.centre, normals)
