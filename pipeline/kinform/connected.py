@@ -10,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["components"]
+__all__ = ["CODE_VERSION", "components"]
+
+CODE_VERSION: int = 1
 
 Ints = NDArray[np.int64]
 

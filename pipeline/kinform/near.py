@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Near"]
+__all__ = ["CODE_VERSION", "Near"]
+
+CODE_VERSION: int = 1
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
