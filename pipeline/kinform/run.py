@@ -62,7 +62,7 @@ def updated(
     ledger = Ledger.of(output)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
-    design = stages.joints(design, ledger=ledger)
+    design = stages.joints(design, jobs=jobs, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
     design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
     design = stages.check(design, ledger=ledger)
