@@ -105,6 +105,6 @@ class Lengths:
 
 def dumps(value: Any) -> str:
     """JSON text of a value; null for what is not a finite number."""
-    from kinform.reports.json_views import plain
+    from kinform.reports.values.plain import plain
 
     return json.dumps(plain(value), indent=1, allow_nan=False)

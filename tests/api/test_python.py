@@ -193,7 +193,7 @@ class TestSummary:
             outcome.summary("colour")
 
     def test_numbers_that_are_not_finite_are_null(self) -> None:
-        from kinform.reports.json_views import plain
+        from kinform.reports.values.plain import plain
 
         assert plain({"a": np.array([1.0, np.nan, -np.inf]), 1: (np.int64(2), -0.0, True)}) == {
             "a": [1.0, None, None], "1": [2, 0.0, True],

@@ -4,15 +4,36 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from portmodels import DOWN, Model, bricard, four_bars
+from known import FIXTURES
+from portmodels import DOWN, Model, bricard, four_bars, governor
 
-from kinform.behaviour import Constant, EffortDrive, SpringDamper
-from kinform.simulation import Course, SolverSettings, integrate, simulate_system
-from kinform.simulation.engine import Engine
+from kinform.behaviour import (
+    Constant,
+    Controller,
+    DcMotor,
+    EffortDrive,
+    EndStop,
+    Gear,
+    MotionDrive,
+    Sine,
+    SpringDamper,
+    Table,
+    VoltageController,
+    flat,
+)
+from kinform.model.function import SimulationRequest
+from kinform.simulation import Course, SolverSettings, integrate, simulate, simulate_system
+from kinform.simulation.actuation import Actuation
+from kinform.simulation.assemble import assemble
+from kinform.simulation.dynamics import Dynamics
+from kinform.simulation.engine import Engine, engine
+from kinform.simulation.kernel import layout
+from kinform.simulation.plain import plainly
 
 SHORT = """
 import sys
@@ -30,15 +51,111 @@ def test_a_short_run_does_not_import_numba():
     assert done.stdout.split() == ["done", "False"]
 
 
-@pytest.mark.parametrize("make", [bricard, lambda: four_bars(1)])
-def test_compiled_and_plain_functions_agree(make, monkeypatch):
+def chain():
+    """Led and free joints of several kinds in a row, a spring in space, and a loop through a ball."""
+    model = Model()
+    model.rod("a", (0, 0, 0), (1, 0, 0))
+    model.rod("b", (1, 0, 0), (2, 0.3, 0.1))
+    model.rod("c", (2, 0.3, 0.1), (3, 0, 0.4))
+    model.rod("d", (3, 0, 0.4), (3, 1, 0.9))
+    model.joint("ball", "base", "a", kind="spherical")
+    model.joint("slide", "a", "b", kind="prismatic", axis=(1, 0, 0), point=(1, 0, 0))
+    model.joint("led", "b", "c", point=(2, 0.3, 0.1))
+    model.joint("knee", "c", "d", axis=(0, 1, 0), point=(3, 0, 0.4))
+    model.joint("held", "base", "d", kind="spherical", point=(3, 1, 0.9))
+    model.on("led", MotionDrive("m", "m", Sine(0.0, 0.1, 2.0, 0.0)))
+    model.on("slide", EffortDrive("e", "e", Table(np.array([0.0, 0.15, 1.0]), np.array([2.0, -1.0, 0.5]))))
+    model.add(SpringDamper("s", "s", (0, 0.5, 0), (2, 0.3, 0.1), 30.0, 2.0, 0.5), a="body base", b="body b")
+    return model
+
+
+def geared():
+    """A weight that winds up a wheel through a gear and falls on an end stop; a motor with a controller besides."""
+    model = Model()
+    model.rod("arm", (0, 0, 0), (1, 0, 0))
+    model.body("wheel", 1.0, (0, 0, 0), (0.02, 0.02, 0.02))
+    model.body("fan", 0.2, (0, 0, 1), (0.01, 0.01, 0.01))
+    for name in ("arm", "wheel", "fan"):
+        model.joint(f"hinge {name}", "base", name)
+    model.add(Gear("gear", "gear", 3.0), a="shaft hinge arm", b="shaft hinge wheel")
+    model.on("hinge arm", EndStop("stop", "stop", lower=-0.5))
+    motor = DcMotor("motor", "motor", resistance=2.0, inductance=0.05, constant=0.04, gear=5.0)
+    model.on("hinge fan", motor, terminals="supply")
+    pid = VoltageController("pid", "pid", Sine(0.0, 0.6, 4.0, 0.3), Controller(kp=8.0, ki=3.0, kd=0.4, limit=6.0))
+    model.on("hinge fan", pid, terminals="supply")
+    return model
+
+
+MODELS = {
+    "Bricard": (bricard, SolverSettings(), 0.3),
+    "four-bars": (lambda: four_bars(2), SolverSettings(), 0.3),
+    "chain": (chain, SolverSettings(), 0.3),
+    "gears and end stop": (geared, SolverSettings(), 0.6),
+    "governor, implicit": (governor, SolverSettings(method="implicit"), 0.02),
+}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_compiled_and_plain_functions_give_the_same_bits(name, monkeypatch):
+    make, settings, duration = MODELS[name]
     runs = []
     for plain, loaded in ((10**9, False), (0, True)):
         monkeypatch.setattr(integrate, "PLAIN", plain)
         monkeypatch.setattr(Engine, "loaded", loaded)
-        runs.append(simulate_system(make().system(), Course(0.3, 0.1, DOWN)))
-    for name in ("p_WB", "joint_velocity", "F_B"):
-        np.testing.assert_allclose(getattr(runs[1], name), getattr(runs[0], name), atol=1e-11)
+        runs.append(simulate_system(make().system(), Course(duration, 0.02, DOWN), settings=settings))
+    assert runs[0].status == runs[1].status == "done"
+    for part in ("time", "p_WB", "q_WB", "joint_velocity", "joint_effort", "F_B", "energy", "residual"):
+        np.testing.assert_array_equal(getattr(runs[1], part), getattr(runs[0], part))
+    assert runs[0].assumptions == runs[1].assumptions
+
+
+@pytest.fixture
+def compilations(monkeypatch):
+    """How often the driver of runs asks for the compiled functions, which it does not get."""
+    asked = []
+
+    def made(*, compiled):
+        asked.extend([True] * compiled)
+        return engine(compiled=False)
+
+    monkeypatch.setattr(integrate, "engine", made)
+    monkeypatch.setattr(Engine, "loaded", False)
+    return asked
+
+
+@pytest.mark.parametrize("ready", [False, True])
+@pytest.mark.parametrize("drives", [False, True])
+def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations, derive_design, monkeypatch):
+    monkeypatch.setattr(integrate, "ready", lambda: ready)
+    found = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
+    function = found.assembly.function if drives else replace(found.assembly.function, drives=())
+    assembly = replace(found.assembly, simulation=SimulationRequest(duration=10.0, step=0.01), function=function)
+    run = simulate(assembly, found.kinematics, found.mass, level="dynamic")
+    assert (run.status, run.time[-1]) == ("done", 10.0)
+    assert not compilations
+
+
+def test_a_run_of_few_steps_and_many_outputs_is_compiled(compilations, monkeypatch):
+    monkeypatch.setattr(integrate, "ready", lambda: True)
+    monkeypatch.setattr(integrate, "PLAIN", 3000)
+    for step, wanted in ((0.01, False), (0.0002, True)):
+        assert simulate_system(hung().system(), Course(0.5, step, DOWN)).status == "done"
+        assert bool(compilations) == wanted
+
+
+def test_where_python_refuses_to_divide_by_zero_plain_functions_go_on_as_compiled_ones():
+    system = flat(hung().system())
+    mechanism, _ = assemble(system)
+    tables = Dynamics(mechanism, system, DOWN, Actuation(mechanism, system, with_mass=True), 0).tables
+    y = np.array([0.0, 2.0])
+
+    def unit(ints, nums, work, y):
+        work[layout.STATE][1][0] = 3.0
+        y[1] = y[1] / y[0]
+        return y[1]
+
+    assert plainly(unit, tables, y) == np.inf
+    assert (y[1], tables.work[layout.STATE][1, 0]) == (np.inf, 3.0)
 
 
 def test_an_impossible_run_ends_within_its_budget_and_says_when():

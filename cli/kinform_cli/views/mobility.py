@@ -9,8 +9,8 @@ from rich.console import RenderableType
 from kinform.kinematics import Motions
 from kinform.model.design import Design
 from kinform.model.kinematics import Coupling, Mobility
-from kinform.reports.json_views import mobility_counts
 from kinform.reports.motions import follower_rates, freedom_text
+from kinform.reports.values.kinematics import mobility_counts
 from kinform.words import rate
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.simulation import Simulation
-from kinform.reports.json_views import coordinates
+from kinform.reports.values.runs import coordinates
 from kinform_cli.sparks import levels, spark
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number

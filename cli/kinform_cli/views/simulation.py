@@ -9,7 +9,7 @@ from rich.text import Text
 
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
-from kinform.reports.json_views import coordinates
+from kinform.reports.values.runs import coordinates
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count, degrees, number
 from kinform_cli.views import series

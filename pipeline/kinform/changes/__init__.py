@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from kinform.changes.compare import Change, Comparison, compare
+from kinform.changes.change import Change
+from kinform.changes.compare import Comparison, compare
 from kinform.changes.lock import Lock, read_lock, with_lock, write_lock
 from kinform.changes.render import FORMATS, render
 from kinform.changes.snapshot import Snapshot, snapshot

@@ -14,7 +14,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from kinform.changes.compare import Change, Comparison, compare
+from kinform.changes.change import Change
+from kinform.changes.compare import Comparison, compare
 from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.tolerance import Tolerance
 from kinform.errors import InputError, Problem

@@ -6,7 +6,8 @@ import dataclasses
 import json
 from collections.abc import Callable
 
-from kinform.changes.compare import Change, Comparison
+from kinform.changes.change import Change
+from kinform.changes.compare import Comparison
 from kinform.reports.markdown import cell_code, code, escaped, table
 from kinform.reports.words import counted, one_line
 

@@ -148,7 +148,7 @@ def _end(end: RangeEnd, free: float) -> float | None:
 
 
 def _counts(design: Design) -> tuple[tuple[str, int | None], ...]:
-    from kinform.reports.json_views import mobility_counts
+    from kinform.reports.values.kinematics import mobility_counts
 
     assert design.kinematics is not None
     return tuple(mobility_counts(design.kinematics.mobility).items())

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
-from kinform.collisions.pairs import Shapes
+from kinform.collisions.shapes import Shapes
 from kinform.contacts.bvh import fcl_distance, fcl_pose
 
 __all__ = ["Wholes"]

@@ -15,10 +15,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.collisions.pairs import Shapes
 from kinform.collisions.path import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
+from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import drive_alone, guide, joint_twist
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics

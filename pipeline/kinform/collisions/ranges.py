@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from kinform.collisions.linkage import drive_loops
-from kinform.collisions.pairs import Shapes
+from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import drive_alone
 from kinform.kinematics.graph import UnionFind, blocks
 from kinform.model.assembly import Assembly

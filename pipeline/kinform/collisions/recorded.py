@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
-from kinform.collisions.pairs import PairTest, Shapes
+from kinform.collisions.pairs import PairTest
+from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import preserved
 from kinform.kinematics.motion import inverse
 from kinform.model.kinematics import Joint

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.inside import Inside
-from kinform.collisions.pairs import NONE, Crossing, PairTest, SurfacePair
+from kinform.collisions.mates import SurfacePair
+from kinform.collisions.pairs import NONE, Crossing, PairTest
 
 __all__ = ["First", "first_crossing"]
 

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
-from kinform.collisions.pairs import PRESERVED, PairTest, Shapes
+from kinform.collisions.pairs import PRESERVED, PairTest
 from kinform.collisions.scan import first_crossing
+from kinform.collisions.shapes import Shapes
 from kinform.collisions.sweeps import Profile, meeting
 from kinform.kinematics.displacements import displacement
 from kinform.kinematics.screws import cross

@@ -285,7 +285,7 @@ def _span(design: Design, name: str, surface: int, axis: Array) -> tuple[float, 
 
 def slips(design: Design) -> tuple[Slip, ...]:
     """First time at which each joint with a slide has left the last of the patches along which it slides."""
-    from kinform.collisions.pairs import Shapes
+    from kinform.collisions.shapes import Shapes
     from kinform.collisions.single import guide
 
     run, kinematics, contacts = design.simulation, design.kinematics, design.contacts

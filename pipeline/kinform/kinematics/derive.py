@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,35 +12,32 @@ from numpy.typing import NDArray
 from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
 from kinform.kinematics.couplings import couplings
-from kinform.kinematics.evidence import Evidence, gather
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
 from kinform.kinematics.finite import finite_mobility
 from kinform.kinematics.higher import agree
-from kinform.kinematics.idle import idle_freedoms
-from kinform.kinematics.joints import stated_joint
 from kinform.kinematics.mobility import Closure, body_twists, close
 from kinform.kinematics.motions import named_freedoms
+from kinform.kinematics.pairs import Pairs, decide_all
 from kinform.kinematics.proportions import proportioned
-from kinform.kinematics.questions import Answer, Answers, Question, answered, ask, bare_patches, named
+from kinform.kinematics.questions import Answers, bare_patches
 from kinform.kinematics.redundancy import redundancies_of_loops
 from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
 from kinform.kinematics.separations import links_between, separations
 from kinform.kinematics.sites import redundancy_within
 from kinform.kinematics.snapping import snap, uncertainties
+from kinform.kinematics.spinning import idle_turns, touching_balls
 from kinform.kinematics.stated import coupled_mobility, coupling_rows, restricted
-from kinform.model.assembly import Assembly, Assumption
+from kinform.kinematics.statements import intended_joint, pair_between, stated_joints
+from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
-from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Kinematics, Misfit, Mobility, Separation
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
-from kinform.model.tolerances import Tolerances
 
-__all__ = ["derive", "evidence_between", "functional", "mobility_within"]
+__all__ = ["derive", "functional", "mobility_within"]
 
 Array = NDArray[np.float64]
-Pair = tuple[BodyName, BodyName]
 
 Beside = Callable[[Callable[[], Any], Callable[[], Any]], tuple[Any, Any]]
 """Gives what two computations give."""
@@ -69,13 +64,13 @@ def derive(
     """
     merger, extents = Merger(assembly), Extents(assembly)
     patches = bare_patches(contacts.patches)
-    pairs = _Pairs(assembly, contacts, patches, extents, answers)
-    decided = _decide_all(pairs, merger)
+    pairs = Pairs(assembly, contacts, patches, extents, answers)
+    decided = decide_all(pairs, merger)
     if fasten(assembly, contacts, merger):
-        decided = _decide_all(pairs, merger)
+        decided = decide_all(pairs, merger)
     bodies = merger.bodies()
     of_part = {part: body.name for body in bodies for part in body.parts}
-    stated = _stated(assembly, of_part)
+    stated = stated_joints(assembly, of_part)
     joints: list[Joint] = []
     strict: dict[JointName, Array] = {}
     misaligned: list[tuple[str, float, float]] = []
@@ -95,7 +90,8 @@ def derive(
     closed = agree(bodies, snapped, patches, extents.assembly, assembly.tolerances.alignment)
     return _finish(
         assembly, bodies, closed, patches, misfit, strict, tuple(misaligned), extents.assembly,
-        _clusters(assembly, contacts), _balls(assembly, surfaces, contacts.patches), pairs.extremes, answers, beside,
+        _clusters(assembly, contacts), touching_balls(assembly, surfaces, contacts.patches), pairs.extremes, answers,
+        beside,
     )  # fmt: skip
 
 
@@ -110,9 +106,9 @@ def functional(assembly: Assembly) -> Kinematics:
     of_part = {part: body.name for body in bodies for part in body.parts}
     stated = {}
     for joint in assembly.function.joints:
-        pair = _pair(assembly, of_part, joint.between)
+        pair = pair_between(assembly, of_part, joint.between)
         if pair is not None:
-            stated[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
+            stated[pair] = intended_joint(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
     joints = tuple(stated[pair] for pair in sorted(stated))
     size = Extents(assembly).assembly
     found = _finish(assembly, bodies, joints, (), Misfit(), {}, (), size, bodies)
@@ -159,144 +155,11 @@ def mobility_within(kinematics: Kinematics, part_names: Sequence[str]) -> int:
     return count if finite is None else finite
 
 
-class _Pairs:
-    """Decides pairs of bodies by the patches between them."""
-
-    def __init__(
-        self,
-        assembly: Assembly,
-        contacts: Contacts,
-        patches: Sequence[Patch],
-        extents: Extents,
-        answers: Answers | None,
-    ):
-        self.assembly, self.patches = assembly, patches
-        self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
-        self.extremes: dict[int, NDArray[np.int64]] = {}
-        """Samples that bound the patches that were looked at."""
-
-    def decided(self, members: Sequence[tuple[int, Patch, bool]], bodies: Sequence[Body]) -> Answer:
-        """The joint between two bodies, of patches (index, patch, turned)."""
-        tolerances = self.assembly.tolerances
-        contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
-        question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
-        found = ask(self._answers, "pair", (question,), lambda: answered(question))
-        self.extremes |= {index: own for (index, _, _), own in zip(members, found.extremes, strict=True)}
-        return found
-
-
-def _decide_all(pairs: _Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]:
-    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
-    known: dict[tuple[int, ...], Answer] = {}
-    stated = _stated_roots(pairs.assembly, merger)
-    while True:
-        bodies = merger.bodies()
-        of_name = {body.name: body for body in bodies}
-        of_part = {part: body.name for body in bodies for part in body.parts}
-        touching: dict[Pair, list[tuple[int, Patch, bool]]] = defaultdict(list)
-        for index, patch in enumerate(pairs.patches):
-            a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
-            if a != b:
-                touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        out: dict[Pair, tuple[Answer, Joint]] = {}
-        fused = False
-        for pair in sorted(touching):
-            members = touching[pair]
-            key = tuple(-1 - i if turned else i for i, _, turned in members)
-            if key not in known:
-                known[key] = pairs.decided(members, [of_name[n] for n in pair])
-            found = known[key].joint
-            if found is None:
-                continue
-            out[pair] = known[key], named(found, pair, [index for index, _, _ in members])
-            parts = members[0][1].parts
-            if frozenset(merger.root(p) for p in parts) in stated:
-                continue
-            if found.type == "fixed" and found.status == "determined":
-                merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
-                fused = True
-        if not fused:
-            return out
-
-
 def _clusters(assembly: Assembly, contacts: Contacts) -> tuple[Body, ...]:
     """The parts that something other than contact makes one: what could come apart, seen from contact alone."""
     merger = Merger(assembly)
     fasten(assembly, contacts, merger)
     return merger.bodies()
-
-
-def evidence_between(
-    members: Sequence[tuple[int, Patch, bool]],
-    bodies: Sequence[Body],
-    assembly: Assembly,
-    contacts: Contacts,
-    extents: Extents,
-) -> Evidence | None:
-    """Evidence of patches (index, patch, turned) between two bodies; None where none has an area."""
-    contact, size = _scales(members, bodies, assembly.tolerances, contacts.tolerance, extents)
-    return gather(members, assembly.tolerances, contact, size)
-
-
-def _scales(
-    members: Sequence[tuple[int, Patch, bool]],
-    bodies: Sequence[Body],
-    tolerances: Tolerances,
-    known: Mapping[tuple[PartName, PartName], float],
-    extents: Extents,
-) -> tuple[float, float]:
-    """The contact tolerance of a pair of bodies, and the diagonal of the smaller one (m)."""
-    contact = max(known.get(p.parts, tolerances.contact_cap) for _, p, _ in members)
-    return contact, min(extents.diagonal(body.parts) for body in bodies)
-
-
-def _stated_roots(assembly: Assembly, merger: Merger) -> set[frozenset[int]]:
-    """Pairs of bodies for which an assumption states another joint than fixed: never fused."""
-    out = set()
-    for assumption in assembly.assumptions:
-        if assumption.type not in (None, "fixed"):
-            out.add(frozenset(merger.root(assembly.parts_of(n)[0]) for n in assumption.between))
-    return out
-
-
-def _pair(assembly: Assembly, of_part: Mapping[PartName, BodyName], between: tuple[str, str]) -> Pair | None:
-    a, b = (of_part[assembly.parts_of(name)[0]] for name in between)
-    return None if a == b else ((a, b) if a < b else (b, a))
-
-
-def _stated(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> dict[Pair, Joint]:
-    """Joints that assumptions state, and joints of stick bodies that the function states."""
-    out: dict[Pair, Joint] = {}
-    formless = set(of_part.values()) - {of_part[part.name] for part in assembly.parts if part.mesh is not None}
-    for joint in assembly.function.joints:
-        pair = _pair(assembly, of_part, joint.between)
-        if pair is not None and formless.intersection(pair):
-            out[pair] = _intended(pair, joint, of_part[assembly.parts_of(joint.between[0])[0]])
-    for assumption in assembly.assumptions:
-        pair = _pair(assembly, of_part, assumption.between)
-        if pair is not None and assumption.type is not None and not assumption.ignore:
-            out[pair] = _assumed(pair, assumption)
-    return out
-
-
-def _intended(pair: Pair, joint: IntendedJoint, first: BodyName) -> Joint:
-    """The joint as stated; `first` is the body on the designer's first side. A universal joint's first
-    axis is fixed in its first body, so turning the bodies round exchanges its axes."""
-    axis, axis2 = joint.axis, joint.axis2
-    if joint.type == "universal" and first != pair[0]:
-        axis, axis2 = axis2, axis
-    return stated_joint(
-        pair, joint.type, axis, joint.point, axis2, joint.pitch,
-        evidence="function", reason=f"intended joint {joint.name}: one side has no geometry",
-    )  # fmt: skip
-
-
-def _assumed(pair: Pair, assumption: Assumption) -> Joint:
-    assert assumption.type is not None
-    return stated_joint(
-        pair, assumption.type, assumption.axis, assumption.point, None, assumption.pitch,
-        evidence="assumption", reason=f"assumed: {assumption.reason}",
-    )  # fmt: skip
 
 
 def _finish(
@@ -349,7 +212,7 @@ def _mobility(
     closure = close(len(bodies), edges, spaces, ground, size, doubts)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = close(len(bodies), edges, hard, ground, size, doubts).mobility if strict else closure.mobility
-    turns = _idle(assembly, bodies, joints, patches, size, balls, answers)
+    turns = idle_turns(assembly, bodies, joints, patches, size, balls, answers)
     idle = {name: len(own) for name, own in turns.items()}
     count = closure.mobility
     tied = couplings(assembly, bodies, joints, patches, closure)
@@ -409,59 +272,3 @@ def _freedoms(closure: Closure, edges: Sequence[tuple[int, int]], spaces: Sequen
     twists = body_twists(closure, edges, spaces)
     basis, _ = np.linalg.qr(twists.reshape(count, -1).T)
     return basis.T.reshape(count, nodes, 6)
-
-
-def _idle(
-    assembly: Assembly,
-    bodies: tuple[Body, ...],
-    joints: tuple[Joint, ...],
-    patches: tuple[Patch, ...],
-    size: float,
-    balls: Mapping[tuple[int, PartName], Array],
-    answers: Answers | None,
-) -> dict[BodyName, Array]:
-    """Idle turns (k, 6) of each body."""
-    of_part = {part: body.name for body in bodies for part in body.parts}
-    intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
-    for wanted in assembly.function.joints:
-        pair = _pair(assembly, of_part, wanted.between)
-        if pair is not None:
-            intended[pair].append(wanted)
-    around: dict[BodyName, list[Joint]] = defaultdict(list)
-    for joint in joints:
-        for name in joint.bodies:
-            around[name].append(joint)
-    out: dict[BodyName, Array] = {}
-    for body in bodies:
-        mine = around[body.name]
-        indices = [k for j in mine for k in j.patches]
-        carried = [patches[k] for k in indices]
-        if any(not j.patches for j in mine):
-            continue
-        own = {}
-        if len(mine) > 1:
-            # a ball between others rolls; what lies on one other body only is there to move on it
-            own = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
-        named = [w for j in mine for w in intended[j.bodies]]
-        given = (body.ground, mine, carried, named, size, own)
-        find = partial(idle_freedoms, body, mine, carried, named, size, own)
-        out[body.name] = ask(answers, "idle", given, find)
-    return out
-
-
-def _balls(
-    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], patches: Sequence[Patch]
-) -> dict[tuple[int, PartName], Array]:
-    """Centres (3,) of the spheres that touch at points or along lines, by patch and part."""
-    parts = {part.name: part for part in assembly.parts}
-    out = {}
-    for k, patch in enumerate(patches):
-        if patch.kind not in ("point", "line"):
-            continue
-        for name, number in zip(patch.parts, patch.surfaces, strict=True):
-            mesh, X_WP = parts[name].mesh, parts[name].X_WP
-            known = None if mesh is None or number < 0 else surfaces.get(mesh.digest)
-            surface = None if known is None else known.surfaces[number]
-            if surface is not None and surface.kind == "sphere":
-                out[k, name] = X_WP[:3, :3] @ surface.point + X_WP[:3, 3]
-    return out

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.decide import decide
-from kinform.kinematics.derive import evidence_between
 from kinform.kinematics.evidence import Evidence
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.freedoms import fits
 from kinform.kinematics.hypotheses import describe, motions
+from kinform.kinematics.pairs import evidence_between
 from kinform.model.contacts import Patch
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint

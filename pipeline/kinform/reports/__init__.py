@@ -13,7 +13,7 @@ from kinform.model.design import Design
 from kinform.model.findings import CheckReport
 
 if TYPE_CHECKING:
-    from kinform.reports.json_views import joint_evidence, joint_json, summary, summary_json
+    from kinform.reports.values.topics import joint_evidence, joint_json, summary, summary_json
 
 __all__ = ["FORMATS", "joint_evidence", "joint_json", "render", "summary", "summary_json"]
 
@@ -45,4 +45,4 @@ def render(
 def __getattr__(name: str) -> Any:
     if name not in _VIEWS:
         raise AttributeError(f"module 'kinform.reports' has no attribute {name!r}")
-    return getattr(importlib.import_module("kinform.reports.json_views"), name)
+    return getattr(importlib.import_module("kinform.reports.values.topics"), name)

@@ -9,7 +9,9 @@ from kinform.behaviour.components import RigidBody, System
 from kinform.simulation.actuation import Actuation
 from kinform.simulation.closure import factor
 from kinform.simulation.kernel import choice, equations, layout, masses, motion
+from kinform.simulation.kernel.types import Ints, Nums, Row, Work
 from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.plain import plainly
 from kinform.simulation.states import States
 from kinform.simulation.tables import Tables, tabulate
 
@@ -36,24 +38,19 @@ class Dynamics:
 
     def place(self, q: Array, v: Array) -> None:
         """Bring the kernel's links to these positions and rates, and choose which rows to keep there."""
-        tables = self.tables
-        motion.place_links(tables.ints, tables.nums, tables.work, tables.pack(q, v))
-        if self.rank:
-            choice.choose(tables.ints, tables.nums, tables.work)
+        plainly(_place, self.tables, self.tables.pack(q, v), self.rank)
 
     def project(self, t: float, q: Array, v: Array, closed: float) -> tuple[Array, Array]:
         """Positions and rates nearest, by the mass matrix, on closed loops; prescribed joints on their laws."""
         tables = self.tables
         y = tables.pack(q, v)
-        equations.project(tables.ints, tables.nums, tables.work, t, y, closed, False)
+        plainly(equations.project, tables, t, y, closed, False)
         return tables.unpack(y)
 
     def mass_matrix(self, q: Array) -> Array:
         """(n, n) at positions (nq,)."""
         tables = self.tables
-        motion.place_links(tables.ints, tables.nums, tables.work, tables.pack(q, np.zeros(self.mechanism.rates)))
-        masses.inertias(tables.ints, tables.nums, tables.work)
-        masses.mass_matrix(tables.ints, tables.work, False)
+        plainly(_weigh, tables, tables.pack(q, np.zeros(self.mechanism.rates)))
         lower = np.tril(tables.work[layout.MASS])
         full = lower + np.tril(lower, -1).T
         inverse = np.argsort(tables.v_order)
@@ -85,3 +82,17 @@ class Dynamics:
         kinetic = 0.5 * (turning + (speed**2).sum(axis=2) @ self.mass)
         height = -((com - self.com) @ self.gravity) @ self.mass
         return kinetic, height + self.actuation.stored(q, states.poses)
+
+
+def _place(ints: Ints, nums: Nums, work: Work, y: Row, rank: int) -> None:
+    """Poses of the links at y, and the rows of the loops that are kept there."""
+    motion.place_links(ints, nums, work, y)
+    if rank:
+        choice.choose(ints, nums, work)
+
+
+def _weigh(ints: Ints, nums: Nums, work: Work, y: Row) -> None:
+    """The mass matrix at y."""
+    motion.place_links(ints, nums, work, y)
+    masses.inertias(ints, nums, work)
+    masses.mass_matrix(ints, work, False)

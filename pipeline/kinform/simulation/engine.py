@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from kinform.simulation.kernel import equations, explicit, layout
 from kinform.simulation.kernel.addresses import address, addresses
+from kinform.simulation.plain import plainly
 
 if TYPE_CHECKING:
     from kinform.simulation.run import Run
@@ -31,7 +31,8 @@ class Engine:
 
     def advance(self, run: Run) -> int:
         """Integrate; see `kernel.explicit.advance`."""
-        return int(self._call("advance", run, run.y, run.clock, run.tally, run.outputs))
+        outputs = run.outputs if self.compiled else run.rows
+        return int(self._call("advance", run, run.y, run.clock, run.tally, outputs))
 
     def derivative(self, run: Run, t: float, y: Array, dy: Array) -> float:
         """See `kernel.equations.derivative`."""
@@ -51,22 +52,12 @@ class Engine:
         tables = run.dynamics.tables
         unit = getattr(self._units, name)
         if not self.compiled:
-            with _Silence():
-                return unit(tables.ints, tables.nums, tables.work, *arguments)
+            return plainly(unit, tables, *arguments)
         held = [addresses(a) if isinstance(a, tuple) else a for a in arguments]
         return unit(
             *(address(list_) for list_ in tables.addresses),
             *(address(a) if isinstance(a, np.ndarray) else a for a in held),
         )
-
-
-class _Silence(warnings.catch_warnings):
-    """numpy warns of overflow in numbers that compiled code lets pass; the kernel looks for both itself."""
-
-    def __enter__(self) -> Any:
-        out = super().__enter__()
-        warnings.simplefilter("ignore", RuntimeWarning)
-        return out
 
 
 class _Plain:

@@ -1,8 +1,8 @@
 """Motion under forces, through time: from one end stop, knot of a law or change of method to the next.
 
 The kernel integrates with DOP853 and closes loops after each step. Where it finds the model stiff the
-implicit method takes over. Runs of few steps are made by the kernel's functions as they are: importing
-and compiling them would take longer.
+implicit method takes over. Short runs are made by the kernel's functions as they are, which give the same
+to the last bit: importing and compiling them would take longer.
 """
 
 from __future__ import annotations
@@ -29,9 +29,10 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Say = Callable[[str], None]
 
-PLAIN = 400
-"""Steps times links that are made without the compiled functions: half a second, as long as loading them."""
-UNREADY = 8
+PLAIN = 20_000
+"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
+as loading them takes."""
+UNREADY = 10
 """Times more where they would have to be compiled first."""
 SHOWN = 60
 """Steps from which on the whole run can be told to be longer than that."""
@@ -83,6 +84,7 @@ class _Driver:
         self.mark = (0, float(run.times[0]))
         share = PLAIN if ready() else PLAIN * UNREADY
         self.plain = max(1, share // len(run.dynamics.mechanism.parent))
+        """Evaluations."""
         if run.dynamics.mechanism.rates * run.dynamics.rank > LARGE:
             self._compile()
 
@@ -115,18 +117,17 @@ class _Driver:
         if not self.engine.compiled and (Engine.loaded or self._long()):
             self._compile()
         left = run.settings.steps - int(tally[layout.STEPS])
-        tally[layout.BUDGET] = (
-            1 if self.contact.holding else min(left, LOOK if self.engine.compiled else min(SHOWN, self.plain))
-        )
+        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else SHOWN)
         tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
         self.contact.remember()
         return self.engine.advance(run)
 
     def _long(self) -> bool:
-        """Whether the run takes so many steps that compiling pays, by those so far."""
-        run, steps = self.run, int(self.run.tally[layout.STEPS])
+        """Whether the run takes so many evaluations, of steps and of outputs, that compiling pays, by those so far."""
+        run, tally = self.run, self.run.tally
+        made = int(tally[layout.SLOPES] + tally[layout.NEXT])
         done = (run.clock[layout.NOW] - run.times[0]) / (run.times[-1] - run.times[0])
-        return steps >= self.plain or (steps >= SHOWN and steps > 1.5 * self.plain * done)
+        return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > 1.5 * self.plain * done)
 
     def _stiff(self) -> bool:
         """Whether to go on implicitly; looked at now and then."""

@@ -28,6 +28,8 @@ class Run:
         n = dynamics.mechanism.rates
         self.out = np.zeros((len(times), len(self.y) + 3 * n))
         self.outputs = (self.times[None], self.out)
+        self.rows = ([self.times.tolist()], self.out)
+        """The same for functions that are not compiled."""
         self.clock, self.tally = np.zeros(layout.CLOCK), np.zeros(8, dtype=np.int64)
         self.clock[layout.NOW] = times[0]
         self.clock[layout.RTOL], self.clock[layout.ATOL] = settings.rtol, settings.atol

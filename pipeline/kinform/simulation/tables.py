@@ -41,6 +41,11 @@ class Tables:
         """Where compiled functions find the tables, which stay where they are."""
         return addresses(self.ints), addresses(self.nums), addresses(self.work)
 
+    @cached_property
+    def constants(self) -> list[list[list[float]]]:
+        """The tables of `nums` after the first, which nothing changes, as lists of rows."""
+        return [table.tolist() for table in self.nums[1:]]
+
     @property
     def size(self) -> int:
         """Length of the kernel's state."""

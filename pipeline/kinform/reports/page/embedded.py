@@ -12,7 +12,6 @@ from kinform import words
 from kinform.form.units import metres_per
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.reports.json_views import plain
 from kinform.reports.page.colours import FITS, OVERLAP
 from kinform.reports.page.focus import Focus
 from kinform.reports.page.meshes import Shape
@@ -20,6 +19,7 @@ from kinform.reports.page.movements import Movement
 from kinform.reports.page.packing import Blob, quantised
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.words import joint_sentence, patch_words
+from kinform.reports.values.plain import plain
 
 __all__ = ["packed"]
 

@@ -17,8 +17,8 @@ from kinform.form.units import metres_per
 from kinform.function import resolve
 from kinform.model.design import Design
 from kinform.model.simulation import Simulation
-from kinform.reports.json_views import coordinates
 from kinform.reports.page.subjects import wanted_names
+from kinform.reports.values.runs import coordinates
 
 __all__ = ["Plot", "Series", "drawn", "plots"]
 

@@ -33,13 +33,15 @@ __all__ = ["choose"]
 def choose(ints: Ints, nums: Nums, work: Work) -> None:
     """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the
     mode and its pivots."""
-    n, rank = int(ints[COUNTS][0, RATES]), int(ints[COUNTS][0, RANK])
+    n, rank = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK]
     count = 6 * len(ints[CLOSURES]) + len(nums[GEARS])
-    led, closing, scale = ints[COLUMNS][:, SIGNAL] >= 0, nums[SCALE][:, 1] > 0.0, nums[SCALE][:, 0]
-    ints[MODE][CHOSEN, :count] = range(count)
-    ints[MODE][[ORDER, PLACE], :n] = range(n)
+    mode, scale = ints[MODE], np.array(nums[SCALE])
+    led, closing = np.array(ints[COLUMNS])[:, SIGNAL] >= 0, scale[:, 1] > 0.0
+    mode[CHOSEN][:count] = range(count)
+    mode[ORDER][:n] = range(n)
+    mode[PLACE][:n] = range(n)
     gather(ints, nums, work, count)
-    rows = work[ROWS][:count] * scale
+    rows = np.array(work[ROWS])[:count] * scale[:, 0]
     left = np.ones(count, dtype=bool)
     chosen: list[int] = []
     dependent: list[int] = []
@@ -50,13 +52,15 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
         preferred = np.where(closing, size, -1.0)
         best = preferred if preferred.max() > 0.3 else size
         row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
-        work[VECTORS][REFERENCE, len(chosen)] = max(float(best[row, column]), 1e-300)
+        work[VECTORS][REFERENCE][len(chosen)] = max(float(best[row, column]), 1e-300)
         left[row] = False
         chosen.append(row)
         dependent.append(column)
         others = left & (rows[:, column] != 0.0)
         rows[others] -= np.outer(rows[others, column] / rows[row, column], rows[row])
     free = [k for k in range(n) if not led[k] and k not in dependent]
-    ints[MODE][CHOSEN, :rank] = chosen
-    ints[MODE][ORDER, :n] = dependent + free + np.flatnonzero(led).tolist()
-    ints[MODE][PLACE, :n] = np.argsort(ints[MODE][ORDER, :n])
+    order = dependent + free + np.flatnonzero(led).tolist()
+    mode[CHOSEN][:rank] = chosen
+    mode[ORDER][:n] = order
+    for place, column in enumerate(order):
+        mode[PLACE][column] = place

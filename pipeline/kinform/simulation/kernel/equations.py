@@ -61,10 +61,10 @@ __all__ = ["derivative", "impose", "move", "pace_of", "project", "torn"]
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
     """Puts led joints where their laws have them."""
     for i in range(1, len(links)):
-        k = links[i, 3]
-        if links[i, KIND] == SCREW and columns[k, SIGNAL] >= 0:
-            value, rate, _ = law(values, pieces, columns[k, SIGNAL], t)
-            y[links[i, Q]], y[first + k] = value, rate
+        k = links[i][3]
+        if links[i][KIND] == SCREW and columns[k][SIGNAL] >= 0:
+            value, rate, _ = law(values, pieces, columns[k][SIGNAL], t)
+            y[links[i][Q]], y[first + k] = value, rate
 
 
 def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) -> float:
@@ -76,8 +76,8 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
     counts, links, columns, closures, mode = ints[COUNTS], ints[LINKS], ints[COLUMNS], ints[CLOSURES], ints[MODE]
     constants, values, pieces = nums[CONSTANTS], nums[SIGNALS], nums[PIECES]
     state, matrix, vectors = work[STATE], work[MASS], work[VECTORS]
-    n, rank, led, first = counts[0, RATES], counts[0, RANK], counts[0, LED], counts[0, POSITIONS]
-    t = min(t, constants[0, LAST])
+    n, rank, led, first = counts[0][RATES], counts[0][RANK], counts[0][LED], counts[0][POSITIONS]
+    t = min(t, constants[0][LAST])
     if led > 0:
         impose(links, columns, values, pieces, t, y, first)
     place_links(ints, nums, work, y)
@@ -93,24 +93,24 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         if not cholesky(matrix, n):
             return -1.0
         for k in range(n):
-            vectors[ACC, k], vectors[NEED, k] = vectors[FORCE, k], 0.0
+            vectors[ACC][k], vectors[NEED][k] = vectors[FORCE][k], 0.0
         solve_cholesky(matrix, n, vectors[ACC])
     else:
         margin = factor(ints, nums, work)
         if margin <= 0.0:
             return margin
         for r in range(rank):
-            vectors[GAP, r] = -gained(closures, nums[CLOSURES], state, constants[0, LENGTH], mode[CHOSEN, r], GAIN)
+            vectors[GAP][r] = -gained(closures, nums[CLOSURES], state, constants[0][LENGTH], mode[CHOSEN][r], GAIN)
         for k in range(n):
-            if columns[k, SIGNAL] >= 0:
-                _, _, vectors[ACC, k] = law(values, pieces, columns[k, SIGNAL], t)
+            if columns[k][SIGNAL] >= 0:
+                _, _, vectors[ACC][k] = law(values, pieces, columns[k][SIGNAL], t)
         settle(ints, work)
         for k in range(n):
-            if columns[k, SIGNAL] >= 0:
-                power += vectors[NEED, k] * y[first + k]
+            if columns[k][SIGNAL] >= 0:
+                power += vectors[NEED][k] * y[first + k]
     for i in range(1, len(links)):
-        at, k = links[i, Q], first + links[i, 3]
-        if links[i, KIND] == SCREW:
+        at, k = links[i][Q], first + links[i][3]
+        if links[i][KIND] == SCREW:
             dy[at] = y[k]
         else:
             w, a, b, c = y[at], y[at + 1], y[at + 2], y[at + 3]
@@ -119,19 +119,19 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
             dy[at + 2] = 0.5 * (y[k + 1] * w + y[k + 2] * a - y[k] * c)
             dy[at + 3] = 0.5 * (y[k + 2] * w + y[k] * b - y[k + 1] * a)
     for k in range(n):
-        dy[first + k] = vectors[ACC, k]
-    dy[first + n + counts[0, STATES]] = power
+        dy[first + k] = vectors[ACC][k]
+    dy[first + n + counts[0][STATES]] = power
     return margin
 
 
 def move(links: Index, vectors: Table, y: Row) -> None:
     """Adds work[VECTORS][ACC], a displacement, to the positions in y."""
     for i in range(1, len(links)):
-        at, k = links[i, Q], links[i, 3]
-        if links[i, KIND] == SCREW:
-            y[at] += vectors[ACC, k]
+        at, k = links[i][Q], links[i][3]
+        if links[i][KIND] == SCREW:
+            y[at] += vectors[ACC][k]
             continue
-        d0, d1, d2 = vectors[ACC, k], vectors[ACC, k + 1], vectors[ACC, k + 2]
+        d0, d1, d2 = vectors[ACC][k], vectors[ACC][k + 1], vectors[ACC][k + 2]
         w, a, b, c = y[at], y[at + 1], y[at + 2], y[at + 3]
         y[at] = w - 0.5 * (d0 * a + d1 * b + d2 * c)
         y[at + 1] = a + 0.5 * (d0 * w + d1 * c - d2 * b)
@@ -141,19 +141,19 @@ def move(links: Index, vectors: Table, y: Row) -> None:
 
 def pace_of(ints: Ints, nums: Nums, state: Table, y: Row, row: int) -> float:
     """How fast row `row` of the loops opens at the rates in y, which the links' twists have."""
-    total = gained(ints[CLOSURES], nums[CLOSURES], state, nums[CONSTANTS][0, LENGTH], row, TWIST)
+    total = gained(ints[CLOSURES], nums[CLOSURES], state, nums[CONSTANTS][0][LENGTH], row, TWIST)
     gear = row - 6 * len(ints[CLOSURES])
     if gear >= 0:
-        for k in range(ints[COUNTS][0, RATES]):
-            total += nums[GEARS][gear, k] * y[ints[COUNTS][0, POSITIONS] + k]
+        for k in range(ints[COUNTS][0][RATES]):
+            total += nums[GEARS][gear][k] * y[ints[COUNTS][0][POSITIONS] + k]
     return total
 
 
 def torn(ints: Ints, nums: Nums, work: Work, y: Row) -> float:
     """The greatest gap of the loops or of their rates in y, where `derivative` was just called."""
-    state, length, most = work[STATE], nums[CONSTANTS][0, LENGTH], 0.0
-    for r in range(ints[COUNTS][0, RANK]):
-        row = ints[MODE][CHOSEN, r]
+    state, length, most = work[STATE], nums[CONSTANTS][0][LENGTH], 0.0
+    for r in range(ints[COUNTS][0][RANK]):
+        row = ints[MODE][CHOSEN][r]
         gap = gap_of(ints[COUNTS], ints[CLOSURES], nums[CLOSURES], nums[GEARS], state, y, length, row)
         most = max(most, abs(gap), abs(pace_of(ints, nums, state, y, row)))
     return most
@@ -168,29 +168,29 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     work[VECTORS][KEPT].
     """
     counts, links, closures, mode = ints[COUNTS], ints[LINKS], ints[CLOSURES], ints[MODE]
-    state, vectors, length = work[STATE], work[VECTORS], nums[CONSTANTS][0, LENGTH]
-    n, rank, first = counts[0, RATES], counts[0, RANK], counts[0, POSITIONS]
-    if counts[0, LED] > 0:
-        impose(links, ints[COLUMNS], nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0, LAST]), y, first)
+    state, vectors, length = work[STATE], work[VECTORS], nums[CONSTANTS][0][LENGTH]
+    n, rank, first = counts[0][RATES], counts[0][RANK], counts[0][POSITIONS]
+    if counts[0][LED] > 0:
+        impose(links, ints[COLUMNS], nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0][LAST]), y, first)
     for i in range(1, len(links)):
-        if links[i, WIDTH] == 3:
-            at = links[i, Q]
+        if links[i][WIDTH] == 3:
+            at = links[i][Q]
             a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
             norm = math.sqrt(a * a + b * b + c * c + d * d)
             for j in range(4):
                 y[at + j] /= norm
-    vectors[KEPT, 0] = 1.0
+    vectors[KEPT][0] = 1.0
     if rank == 0:
         return 0.0
     for k in range(n):
-        vectors[FORCE, k] = 0.0
+        vectors[FORCE][k] = 0.0
     before, size = 1e300, 1e300
     for count in range(10):
         place_links(ints, nums, work, y)
         size = 0.0
         for r in range(rank):
-            vectors[GAP, r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[CHOSEN, r])
-            size = max(size, abs(vectors[GAP, r]))
+            vectors[GAP][r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[CHOSEN][r])
+            size = max(size, abs(vectors[GAP][r]))
         stale = count > 0 and size > SLOW * before if factored else before > 1e-9
         if stale:
             inertias(ints, nums, work)
@@ -202,7 +202,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
             break
         before = size
         for k in range(n):
-            vectors[ACC, k] = 0.0
+            vectors[ACC][k] = 0.0
         settle(ints, work)
         move(links, vectors, y)
     if not factored:
@@ -214,10 +214,10 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     for _ in range(2 if factored else 1):
         twist_links(ints, work, y)
         for r in range(rank):
-            vectors[GAP, r] = -pace_of(ints, nums, state, y, mode[CHOSEN, r])
+            vectors[GAP][r] = -pace_of(ints, nums, state, y, mode[CHOSEN][r])
         for k in range(n):
-            vectors[ACC, k] = 0.0
+            vectors[ACC][k] = 0.0
         settle(ints, work)
         for k in range(n):
-            y[first + k] += vectors[ACC, k]
+            y[first + k] += vectors[ACC][k]
     return size

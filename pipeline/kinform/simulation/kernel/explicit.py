@@ -72,15 +72,15 @@ __all__ = ["advance", "sample", "stop_reached"]
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
     """Writes an output: the state with loops closed, accelerations, efforts given and needed."""
-    n, size, vectors = ints[COUNTS][0, RATES], ints[COUNTS][0, SIZE], work[VECTORS]
+    n, size, vectors = ints[COUNTS][0][RATES], ints[COUNTS][0][SIZE], work[VECTORS]
     project(ints, nums, work, t, y, clock[CLOSED], False)
     derivative(ints, nums, work, t, y, work[STAGES][TRIED + 2])
     for i in range(size):
         out[i] = y[i]
     for k in range(n):
-        out[size + k] = vectors[ACC, k]
-        out[size + n + k] = vectors[GIVEN, k]
-        out[size + 2 * n + k] = vectors[NEED, k]
+        out[size + k] = vectors[ACC][k]
+        out[size + n + k] = vectors[GIVEN][k]
+        out[size + 2 * n + k] = vectors[NEED][k]
 
 
 def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[int, float]:
@@ -88,15 +88,15 @@ def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[
     stops, limits = ints[STOPS], nums[STOPS]
     found, end = -1, x
     for k in range(len(stops)):
-        if stops[k, 3] != 0:
+        if stops[k][3] != 0:
             continue
-        at, sense = stops[k, 0], float(stops[k, 2])
-        if not sense * (interpolate(work, y, at, end) - limits[k, 0]) > 1e-12:
+        at, sense = stops[k][0], float(stops[k][2])
+        if not sense * (interpolate(work, y, at, end) - limits[k][0]) > 1e-12:
             continue
         low, high = 0.0, end
         for _ in range(60):
             middle = 0.5 * (low + high)
-            if sense * (interpolate(work, y, at, middle) - limits[k, 0]) > 0.0:
+            if sense * (interpolate(work, y, at, middle) - limits[k][0]) > 0.0:
                 high = middle
             else:
                 low = middle
@@ -107,7 +107,7 @@ def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[
 def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts, outputs: Nums) -> int:
     """Integrates y from clock[NOW] towards clock[END], filling outputs; says why it came back."""
     slopes, times, out = work[STAGES], outputs[TIMES][0], outputs[OUT]
-    rank, size = ints[COUNTS][0, RANK], ints[COUNTS][0, SIZE]
+    rank, size = ints[COUNTS][0][RANK], ints[COUNTS][0][SIZE]
     if tally[FRESH] == 1:
         clock[MARGINS] = slope(ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
         if clock[MARGINS] < 0.0:
@@ -147,7 +147,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         if clock[END] - later < 1e-13 * max(1.0, abs(later)):
             later = clock[END]
         gap = project(ints, nums, work, later, slopes[NEW], clock[CLOSED], False)
-        kept = work[VECTORS][KEPT, 0]
+        kept = work[VECTORS][KEPT][0]
         if rank > 0 and not 0.0 <= gap < clock[OPEN]:
             clock[STEP] = 0.25 * h
             if h < 1e-9:
@@ -158,7 +158,7 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         if margin < 0.0:
             return MASSLESS
         for i in range(size):
-            change, way = slopes[12, i] - slopes[11, i], slopes[NEW, i] - slopes[TRIED, i]
+            change, way = slopes[12][i] - slopes[11][i], slopes[NEW][i] - slopes[TRIED][i]
             rough += change * change
             moved += way * way
         # What rounding leaves near a singular pose is no decay.
@@ -176,20 +176,20 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
                 t = times[tally[NEXT]]
                 x = min(1.0, (t - clock[NOW]) / h)
                 for i in range(size):
-                    slopes[TRIED, i] = interpolate(work, y, i, x)
+                    slopes[TRIED][i] = interpolate(work, y, i, x)
                 sample(ints, nums, work, clock, t, slopes[TRIED], out[tally[NEXT]])
                 tally[NEXT] += 1
             if hit >= 0:
                 for i in range(size):
-                    slopes[TRIED, i] = interpolate(work, y, i, share)
+                    slopes[TRIED][i] = interpolate(work, y, i, share)
                 for i in range(size):
-                    y[i] = slopes[TRIED, i]
+                    y[i] = slopes[TRIED][i]
                 clock[NOW] = reached
                 tally[HIT], tally[FRESH] = hit, 1
                 return STOPPED
         for i in range(size):
-            y[i] = slopes[NEW, i]
-            slopes[0, i] = slopes[12, i]
+            y[i] = slopes[NEW][i]
+            slopes[0][i] = slopes[12][i]
         clock[MARGINS] = margin
         clock[NOW] = later
         clock[STEP] = h * (min(growth, 0.9 * error**-0.125) if error > 0.0 else growth)

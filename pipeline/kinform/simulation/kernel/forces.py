@@ -25,18 +25,17 @@ from kinform.simulation.kernel.layout import (
     WRENCH,
 )
 from kinform.simulation.kernel.signals import law
-from kinform.simulation.kernel.types import Index, Row, Table
-from kinform.simulation.kernel.vectors import add, cross, dot, place, three, turned
+from kinform.simulation.kernel.types import Counts, Index, Row, Table
+from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six, three
 
 __all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
 
 
 def controlled(
-    actors: Index,
-    numbers: Table,
+    actor: Counts,
+    numbers: Row,
     values: Table,
     pieces: Table,
-    k: int,
     first: int,
     at: int,
     held: float,
@@ -45,12 +44,12 @@ def controlled(
     v: float,
     dy: Row,
 ) -> float:
-    """Output of the controller whose kp, ki, kd, limit begin in column `first` of actor k."""
-    target, rate, _ = law(values, pieces, actors[k, LAW], t)
-    wanted = numbers[k, first] * (target - q) + numbers[k, first + 2] * (rate - v)
-    limit = numbers[k, first + 3]
+    """Output of the controller whose kp, ki, kd, limit begin in column `first` of the actor."""
+    target, rate, _ = law(values, pieces, actor[LAW], t)
+    wanted = numbers[first] * (target - q) + numbers[first + 2] * (rate - v)
+    limit = numbers[first + 3]
     if at >= 0:
-        wanted += numbers[k, first + 1] * held
+        wanted += numbers[first + 1] * held
         # The integral rests while the output is at its limit and it would push further (anti-windup).
         stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
         dy[at] = 0.0 if stuck else target - q
@@ -73,50 +72,51 @@ def drive(
     apart, which store."""
     power = 0.0
     for k in range(n):
-        force[FORCE, k] = 0.0
-        force[GIVEN, k] = 0.0
+        force[FORCE][k] = 0.0
+        force[GIVEN][k] = 0.0
     for k in range(len(actors)):
-        q, v = y[actors[k, AT_Q]], y[first + actors[k, AT_V]]
-        does, one, two = actors[k, DOES], actors[k, FIRST_STATE], actors[k, SECOND_STATE]
+        actor, number = actors[k], numbers[k]
+        q, v = y[actor[AT_Q]], y[first + actor[AT_V]]
+        does, one, two = actor[DOES], actor[FIRST_STATE], actor[SECOND_STATE]
         effort = 0.0
         if does == EFFORT:
-            effort, _, _ = law(values, pieces, actors[k, LAW], t)
+            effort, _, _ = law(values, pieces, actor[LAW], t)
         elif does == SPRING:
-            effort = numbers[k, 0] * (numbers[k, 1] - q)
+            effort = number[0] * (number[1] - q)
         elif does == DAMPER:
-            effort = -numbers[k, 0] * v
+            effort = -number[0] * v
         elif does == SERVO:
-            effort = controlled(actors, numbers, values, pieces, k, 0, one, y[one], t, q, v, dy)
+            effort = controlled(actor, number, values, pieces, 0, one, y[one], t, q, v, dy)
         elif does >= MOTOR:
             if does == MOTOR:
-                voltage, _, _ = law(values, pieces, actors[k, LAW], t)
+                voltage, _, _ = law(values, pieces, actor[LAW], t)
             else:
-                voltage = controlled(actors, numbers, values, pieces, k, 4, two, y[two], t, q, v, dy)
-            constant = numbers[k, 2] * numbers[k, 3]
+                voltage = controlled(actor, number, values, pieces, 4, two, y[two], t, q, v, dy)
+            constant = number[2] * number[3]
             if one >= 0:
                 current = y[one]
-                dy[one] = (voltage - numbers[k, 0] * current - constant * v) / numbers[k, 1]
+                dy[one] = (voltage - number[0] * current - constant * v) / number[1]
             else:
-                current = (voltage - constant * v) / numbers[k, 0]
+                current = (voltage - constant * v) / number[0]
             effort = constant * current
-        force[FORCE, actors[k, AT_V]] += effort
-        force[GIVEN, actors[k, AT_V]] += effort
+        force[FORCE][actor[AT_V]] += effort
+        force[GIVEN][actor[AT_V]] += effort
         if does != SPRING:
             power += effort * v
     return power
 
 
-def push(state: Table, i: int, x: float, y: float, z: float, f0: float, f1: float, f2: float) -> None:
-    """The force f on link i at the point (x, y, z) of the world."""
+def push(link: Row, x: float, y: float, z: float, f0: float, f1: float, f2: float) -> None:
+    """The force f on a link at the point (x, y, z) of the world."""
     n0, n1, n2 = cross(x, y, z, f0, f1, f2)
-    add(state, i, WRENCH, -n0, -n1, -n2)
-    add(state, i, WRENCH + 3, -f0, -f1, -f2)
+    add(link, WRENCH, -n0, -n1, -n2)
+    add(link, WRENCH + 3, -f0, -f1, -f2)
 
 
-def pace(state: Table, i: int, x: float, y: float, z: float, d0: float, d1: float, d2: float) -> float:
-    """Velocity of the point (x, y, z) of link i times d."""
-    v0, v1, v2 = cross(*three(state, i, TWIST), x, y, z)
-    l0, l1, l2 = three(state, i, TWIST + 3)
+def pace(link: Row, x: float, y: float, z: float, d0: float, d1: float, d2: float) -> float:
+    """Velocity of the point (x, y, z) of a link times d."""
+    w0, w1, w2, l0, l1, l2 = six(link, TWIST)
+    v0, v1, v2 = cross(w0, w1, w2, x, y, z)
     return dot(v0 + l0, v1 + l1, v2 + l2, d0, d1, d2)
 
 
@@ -124,16 +124,16 @@ def loads(table: Index, numbers: Table, state: Table) -> float:
     """Given forces and torques on links; the power that they put in."""
     power = 0.0
     for k in range(len(table)):
-        i = table[k, 0]
+        link, load = state[table[k][0]], numbers[k]
         # Vectors that do not turn with the link are those of the ground, link 0.
-        frame = i if table[k, 1] == 1 else 0
-        f0, f1, f2 = turned(state, frame, *three(numbers, k, 0))
-        n0, n1, n2 = turned(state, frame, *three(numbers, k, 3))
-        x, y, z = place(state, i, *three(numbers, k, 6))
-        push(state, i, x, y, z, f0, f1, f2)
-        power += pace(state, i, x, y, z, f0, f1, f2)
-        add(state, i, WRENCH, -n0, -n1, -n2)
-        w0, w1, w2 = three(state, i, TWIST)
+        frame = link if table[k][1] == 1 else state[0]
+        f0, f1, f2 = along(frame, load, 0)
+        n0, n1, n2 = along(frame, load, 3)
+        x, y, z = place(link, load, 6)
+        push(link, x, y, z, f0, f1, f2)
+        power += pace(link, x, y, z, f0, f1, f2)
+        add(link, WRENCH, -n0, -n1, -n2)
+        w0, w1, w2 = three(link, TWIST)
         power += dot(w0, w1, w2, n0, n1, n2)
     return power
 
@@ -142,17 +142,17 @@ def between(table: Index, numbers: Table, state: Table) -> float:
     """Springs and dampers between points of two links; the power of their dampers."""
     power = 0.0
     for k in range(len(table)):
-        a, b = table[k, 0], table[k, 1]
-        x, y, z = place(state, a, *three(numbers, k, 0))
-        u, v, w = place(state, b, *three(numbers, k, 3))
+        a, b, spring = state[table[k][0]], state[table[k][1]], numbers[k]
+        x, y, z = place(a, spring, 0)
+        u, v, w = place(b, spring, 3)
         d0, d1, d2 = u - x, v - y, w - z
         length = math.sqrt(dot(d0, d1, d2, d0, d1, d2))
         if length == 0.0:
             continue
         d0, d1, d2 = d0 / length, d1 / length, d2 / length
-        speed = pace(state, b, u, v, w, d0, d1, d2) - pace(state, a, x, y, z, d0, d1, d2)
-        pull = numbers[k, 6] * (length - numbers[k, 8]) + numbers[k, 7] * speed
-        power -= numbers[k, 7] * speed * speed
-        push(state, a, x, y, z, pull * d0, pull * d1, pull * d2)
-        push(state, b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
+        speed = pace(b, u, v, w, d0, d1, d2) - pace(a, x, y, z, d0, d1, d2)
+        pull = spring[6] * (length - spring[8]) + spring[7] * speed
+        power -= spring[7] * speed * speed
+        push(a, x, y, z, pull * d0, pull * d1, pull * d2)
+        push(b, u, v, w, -pull * d0, -pull * d1, -pull * d2)
     return power

@@ -1,8 +1,8 @@
 """Where the numbers of the kernel are: tables in three tuples, and the columns of each table.
 
 The kernel takes `ints` and `nums`, the constants of a mechanism, and `work`, scratch space, as tuples of
-two-dimensional arrays: few arguments of few types are what keeps compilation short. Rates are numbered
-in the order of the tree, so that what carries a rate has a lower number.
+two-dimensional tables, lists of rows where they are not compiled: few arguments of few types are what keeps
+compilation short. Rates are numbered in the order of the tree, so that what carries a rate has a lower number.
 
 State: y = (q, v, x, w): positions, rates, states of controllers and motors, work put in so far.
 """

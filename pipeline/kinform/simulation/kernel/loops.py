@@ -37,7 +37,7 @@ from kinform.simulation.kernel.layout import (
     VECTORS,
 )
 from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
-from kinform.simulation.kernel.vectors import cross, dot, place, three, turned
+from kinform.simulation.kernel.vectors import along, cross, dot, place, six
 
 SWAP = 1.5
 """Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
@@ -45,15 +45,14 @@ SWAP = 1.5
 __all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 
-def line_of(
-    numbers: Table, state: Table, length: float, loop: int, axis: int, tip: int
-) -> tuple[float, float, float, float, float, float]:
-    """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop."""
-    e0, e1, e2 = turned(state, tip, *three(numbers, loop, 3 * (axis % 3)))
+def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:
+    """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop,
+    whose frame (row of nums[CLOSURES]) the tip carries."""
+    e0, e1, e2 = along(tip, frame, 3 * (axis % 3))
     if axis < 3:
         return e0, e1, e2, 0.0, 0.0, 0.0
     e0, e1, e2 = e0 / length, e1 / length, e2 / length
-    x, y, z = place(state, tip, *three(numbers, loop, 9))
+    x, y, z = place(tip, frame, 9)
     m0, m1, m2 = cross(x, y, z, e0, e1, e2)
     return m0, m1, m2, e0, e1, e2
 
@@ -64,11 +63,10 @@ def gained(closures: Index, numbers: Table, state: Table, length: float, row: in
     loop, axis = row // 6, row % 6
     if loop >= len(closures):
         return 0.0
-    m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
+    m0, m1, m2, f0, f1, f2 = line_of(numbers[loop], state[closures[loop][0]], length, axis)
     total = 0.0
     for side in range(2):
-        w0, w1, w2 = three(state, closures[loop, side], of)
-        l0, l1, l2 = three(state, closures[loop, side], of + 3)
+        w0, w1, w2, l0, l1, l2 = six(state[closures[loop][side]], of)
         total += (2.0 * side - 1.0) * (dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2))
     return total
 
@@ -80,21 +78,19 @@ def gap_of(
     loop, axis = row // 6, row % 6
     total = 0.0
     if loop >= len(closures):
-        for k in range(counts[0, POSITIONS]):
-            total += gears[row - 6 * len(closures), counts[0, RATES] + k] * y[k]
+        for k in range(counts[0][POSITIONS]):
+            total += gears[row - 6 * len(closures)][counts[0][RATES] + k] * y[k]
         return total
-    a, b = closures[loop, 0], closures[loop, 1]
-    e0, e1, e2 = turned(state, a, *three(numbers, loop, 3 * (axis % 3)))
+    a, b, frame = state[closures[loop][0]], state[closures[loop][1]], numbers[loop]
+    e0, e1, e2 = along(a, frame, 3 * (axis % 3))
     if axis < 3:
         # Half the sum of cross products of the axes: the sine of the turn along its axis.
         for j in range(3):
-            c0, c1, c2 = cross(
-                state[a, j], state[a, 3 + j], state[a, 6 + j], state[b, j], state[b, 3 + j], state[b, 6 + j]
-            )
+            c0, c1, c2 = cross(a[j], a[3 + j], a[6 + j], b[j], b[3 + j], b[6 + j])
             total += 0.5 * dot(e0, e1, e2, c0, c1, c2)
         return total
-    x0, x1, x2 = place(state, a, *three(numbers, loop, 9))
-    z0, z1, z2 = place(state, b, *three(numbers, loop, 9))
+    x0, x1, x2 = place(a, frame, 9)
+    z0, z1, z2 = place(b, frame, 9)
     return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
 
 
@@ -104,43 +100,43 @@ def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
     Rows 6c to 6c + 5 are the turn and the displacement over the length of the target relative to the
     tip of loop c, along the axes of a frame that the tip carries; then come the gears.
     """
-    n, closures, length = ints[COUNTS][0, RATES], ints[CLOSURES], nums[CONSTANTS][0, LENGTH]
-    rank = ints[COUNTS][0, RANK]
-    links, before, mode, gears = ints[LINKS], ints[COLUMNS], ints[MODE], nums[GEARS]
+    n, closures, length = ints[COUNTS][0][RATES], ints[CLOSURES], nums[CONSTANTS][0][LENGTH]
+    rank = ints[COUNTS][0][RANK]
+    links, before, gears = ints[LINKS], ints[COLUMNS], nums[GEARS]
+    chosen, places, lowest, highest = ints[MODE][CHOSEN], ints[MODE][PLACE], ints[MODE][LOWEST], ints[MODE][REACH]
     state, screws, rows, numbers = work[STATE], work[SCREWS], work[ROWS], nums[CLOSURES]
     for r in range(count):
-        mode[LOWEST, r] = r
+        lowest[r] = r
     for r in range(count):
-        loop, axis = mode[CHOSEN, r] // 6, mode[CHOSEN, r] % 6
+        loop, axis, row = chosen[r] // 6, chosen[r] % 6, rows[r]
         if loop >= len(closures):
             for c in range(n):
-                rows[r, c] = gears[mode[CHOSEN, r] - 6 * len(closures), mode[ORDER, c]]
-            mode[LOWEST, 0], mode[REACH, r] = r, rank - 1
+                row[c] = gears[chosen[r] - 6 * len(closures)][ints[MODE][ORDER][c]]
+            lowest[0], highest[r] = r, rank - 1
             continue
         for c in range(n):
-            rows[r, c] = 0.0
+            row[c] = 0.0
         first, last = r, r
-        m0, m1, m2, f0, f1, f2 = line_of(numbers, state, length, loop, axis, closures[loop, 0])
+        m0, m1, m2, f0, f1, f2 = line_of(numbers[loop], state[closures[loop][0]], length, axis)
         # Both chains down to where they meet: what carries both moves neither relative to the other.
-        one, other = links[closures[loop, 0], TIP], links[closures[loop, 1], TIP]
+        one, other = links[closures[loop][0]][TIP], links[closures[loop][1]][TIP]
         while one != other:
             k = one if one > other else other
-            w0, w1, w2 = three(screws, k, 0)
-            l0, l1, l2 = three(screws, k, 3)
+            w0, w1, w2, l0, l1, l2 = six(screws[k], 0)
             power = dot(m0, m1, m2, w0, w1, w2) + dot(f0, f1, f2, l0, l1, l2)
             if k == one:
-                one = before[k, BEFORE]
+                one = before[k][BEFORE]
                 power = -power
             else:
-                other = before[k, BEFORE]
-            c = mode[PLACE, k]
-            rows[r, c] = power
+                other = before[k][BEFORE]
+            c = places[k]
+            row[c] = power
             if c < rank:
                 first = c if c < first else first
                 last = c if c > last else last
-        mode[REACH, r] = last
-        if mode[LOWEST, first] < r:
-            mode[LOWEST, first] = r
+        highest[r] = last
+        if lowest[first] < r:
+            lowest[first] = r
 
 
 def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
@@ -149,61 +145,66 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
 
     Returns the smallest pivot over the largest; [KEPT] gets the smallest over that of its choice.
     """
-    n, rank, mode = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[MODE]
+    n, rank, mode = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[MODE]
     rows, vectors, scale = work[ROWS], work[VECTORS], nums[SCALE]
+    lowest, highest = mode[LOWEST], mode[REACH]
     low, high, last = 1e300, 0.0, 0
-    vectors[KEPT, 0] = 1.0
+    vectors[KEPT][0] = 1.0
     for k in range(rank):
         best = k
-        last = mode[LOWEST, k] if mode[LOWEST, k] > last else last
-        mode[LOWEST, k] = last
+        last = lowest[k] if lowest[k] > last else last
+        lowest[k] = last
         for i in range(k + 1, last + 1):
-            if abs(rows[i, k]) > SWAP * abs(rows[best, k]):
+            if abs(rows[i][k]) > SWAP * abs(rows[best][k]):
                 best = i
         if best != k:
             # The same rows in an order that suits the pose, kept for the next: else a chain of loops
             # multiplies the roundings of each.
             for j in range(n):
-                rows[k, j], rows[best, j] = rows[best, j], rows[k, j]
-            mode[CHOSEN, k], mode[CHOSEN, best] = mode[CHOSEN, best], mode[CHOSEN, k]
-            mode[REACH, k], mode[REACH, best] = mode[REACH, best], mode[REACH, k]
-            vectors[GAP, k], vectors[GAP, best] = vectors[GAP, best], vectors[GAP, k]
-        pivot = rows[k, k]
-        size = abs(pivot) * scale[mode[ORDER, k], 0]
+                rows[k][j], rows[best][j] = rows[best][j], rows[k][j]
+            mode[CHOSEN][k], mode[CHOSEN][best] = mode[CHOSEN][best], mode[CHOSEN][k]
+            highest[k], highest[best] = highest[best], highest[k]
+            vectors[GAP][k], vectors[GAP][best] = vectors[GAP][best], vectors[GAP][k]
+        upper = rows[k]
+        pivot = upper[k]
+        size = abs(pivot) * scale[mode[ORDER][k]][0]
         low, high = min(low, size), max(high, size)
-        vectors[KEPT, 0] = min(vectors[KEPT, 0], size / vectors[REFERENCE, k])
+        vectors[KEPT][0] = min(vectors[KEPT][0], size / vectors[REFERENCE][k])
         if pivot == 0.0:
             return 0.0
-        vectors[PIVOT, k] = 1.0 / pivot
-        reach = mode[REACH, k]
+        vectors[PIVOT][k] = 1.0 / pivot
+        reach = highest[k]
         for i in range(k + 1, last + 1):
-            if rows[i, k] != 0.0:
-                factor = rows[i, k] * vectors[PIVOT, k]
-                rows[i, k] = factor
-                if mode[REACH, i] < reach:
-                    mode[REACH, i] = reach
+            row = rows[i]
+            if row[k] != 0.0:
+                factor = row[k] * vectors[PIVOT][k]
+                row[k] = factor
+                if highest[i] < reach:
+                    highest[i] = reach
                 for j in range(k + 1, reach + 1):
-                    rows[i, j] -= factor * rows[k, j]
+                    row[j] -= factor * upper[j]
                 for j in range(rank, n):
-                    rows[i, j] -= factor * rows[k, j]
+                    row[j] -= factor * upper[j]
     for k in range(rank - 1, -1, -1):
-        for i in range(k + 1, mode[REACH, k] + 1):
-            factor = rows[k, i]
+        upper = rows[k]
+        for i in range(k + 1, highest[k] + 1):
+            factor, row = upper[i], rows[i]
             if factor != 0.0:
                 for j in range(rank, n):
-                    rows[k, j] -= factor * rows[i, j]
+                    upper[j] -= factor * row[j]
         for j in range(rank, n):
-            rows[k, j] *= vectors[PIVOT, k]
+            upper[j] *= vectors[PIVOT][k]
     return low / high if rank > 0 else 1.0
 
 
 def back_substitute(rows: Table, mode: Index, vectors: Table, rank: int) -> None:
     """Turns work[VECTORS][GAP], by independent rows, into the dependent rates that make it up."""
+    gaps = vectors[GAP]
     for i in range(rank):
-        for k in range(i + 1, mode[LOWEST, i] + 1):
-            vectors[GAP, k] -= rows[k, i] * vectors[GAP, i]
+        for k in range(i + 1, mode[LOWEST][i] + 1):
+            gaps[k] -= rows[k][i] * gaps[i]
     for k in range(rank - 1, -1, -1):
-        total = vectors[GAP, k]
-        for i in range(k + 1, mode[REACH, k] + 1):
-            total -= rows[k, i] * vectors[GAP, i]
-        vectors[GAP, k] = total * vectors[PIVOT, k]
+        total, row = gaps[k], rows[k]
+        for i in range(k + 1, mode[REACH][k] + 1):
+            total -= row[i] * gaps[i]
+        gaps[k] = total * vectors[PIVOT][k]

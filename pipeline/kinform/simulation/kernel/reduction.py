@@ -39,46 +39,51 @@ __all__ = ["factor", "reduce", "settle", "weigh"]
 def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
     """Takes the mass matrix times x from `out`. The matrix has numbers where rates carry each other only."""
     for k in range(n):
-        total, own = 0.0, x[k]
-        j = before[k, BEFORE]
+        total, own, row = 0.0, x[k], matrix[k]
+        j = before[k][BEFORE]
         while j >= 0:
-            total += matrix[k, j] * x[j]
-            out[j] -= matrix[k, j] * own
-            j = before[j, BEFORE]
-        out[k] -= total + matrix[k, k] * own
+            total += row[j] * x[j]
+            out[j] -= row[j] * own
+            j = before[j][BEFORE]
+        out[k] -= total + row[k] * own
 
 
 def reduce(ints: Ints, work: Work) -> float:
     """Lower triangle of the mass matrix of the motions that keep the loops closed, its free part factored.
     Returns −1 when a free motion has no mass."""
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     before, order, matrix, rows = ints[COLUMNS], ints[MODE][ORDER], work[MASS], work[ROWS]
     motions, half, small = work[MOTIONS], work[HALF], work[REDUCED]
     rest = n - rank
     for i in range(n):
+        motion, product = motions[order[i]], half[i]
         for c in range(rest):
-            motions[order[i], c] = -rows[i, rank + c] if i < rank else 0.0
-            half[i, c] = 0.0
+            motion[c], product[c] = 0.0, 0.0
+    for d in range(rank):
+        motion, row = motions[order[d]], rows[d]
+        for c in range(rest):
+            motion[c] = -row[rank + c]
     for c in range(rest):
-        motions[order[rank + c], c] = 1.0
+        motions[order[rank + c]][c] = 1.0
     for k in range(n):
-        j = k
+        j, product, motion = k, half[k], motions[k]
         while j >= 0:
-            value = matrix[k, j]
+            value, other, over = matrix[k][j], motions[j], half[j]
             for c in range(rest):
-                half[k, c] += value * motions[j, c]
+                product[c] += value * other[c]
             if j != k:
                 for c in range(rest):
-                    half[j, c] += value * motions[k, c]
-            j = before[j, BEFORE]
+                    over[c] += value * motion[c]
+            j = before[j][BEFORE]
     for i in range(rest):
+        row, product = small[i], half[order[rank + i]]
         for c in range(i + 1):
-            small[i, c] = half[order[rank + i], c]
+            row[c] = product[c]
         for d in range(rank):
-            value = rows[d, rank + i]
+            value, product = rows[d][rank + i], half[order[d]]
             if value != 0.0:
                 for c in range(i + 1):
-                    small[i, c] -= value * half[order[d], c]
+                    row[c] -= value * product[c]
     return 0.0 if cholesky(small, rest - led) else -1.0
 
 
@@ -88,7 +93,7 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
     Returns how far the loops are from a singular pose (smallest pivot over the largest), 0 in one, −1 when
     a free motion has no mass; writes how good the pivots still are to work[VECTORS][KEPT].
     """
-    gather(ints, nums, work, ints[COUNTS][0, RANK])
+    gather(ints, nums, work, ints[COUNTS][0][RANK])
     margin = eliminate(ints, nums, work)
     if margin != 0.0 and reduce(ints, work) < 0.0:
         return -1.0
@@ -98,35 +103,37 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
 def settle(ints: Ints, work: Work) -> None:
     """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (by independent rows) and led rates in [ACC], by what
     `factor` left. [NEED] is the effort that led rates take."""
-    n, rank, led = ints[COUNTS][0, RATES], ints[COUNTS][0, RANK], ints[COUNTS][0, LED]
+    n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     before, order, matrix = ints[COLUMNS], ints[MODE][ORDER], work[MASS]
     rows, small, vectors = work[ROWS], work[REDUCED], work[VECTORS]
+    force, x, need = vectors[FORCE], vectors[ACC], vectors[NEED]
+    left, right = vectors[TRIAL], vectors[RIGHT]
     back_substitute(rows, ints[MODE], vectors, rank)
     free = n - rank - led
     for d in range(rank):
-        total = vectors[GAP, d]
+        total, row = vectors[GAP][d], rows[d]
         for k in range(rank + free, n):
-            total -= rows[d, k] * vectors[ACC, order[k]]
-        vectors[ACC, order[d]] = total
+            total -= row[k] * x[order[k]]
+        x[order[d]] = total
     for k in range(rank, rank + free):
-        vectors[ACC, order[k]] = 0.0
+        x[order[k]] = 0.0
     for k in range(n):
-        vectors[TRIAL, k] = vectors[FORCE, k]
-        vectors[NEED, k] = 0.0
-    weigh(before, matrix, vectors[ACC], n, vectors[TRIAL])
+        left[k] = force[k]
+        need[k] = 0.0
+    weigh(before, matrix, x, n, left)
     for i in range(rank, n):
-        total = vectors[TRIAL, order[i]]
+        total = left[order[i]]
         for d in range(rank):
-            total -= rows[d, i] * vectors[TRIAL, order[d]]
-        vectors[RIGHT, i - rank] = total
-    solve_cholesky(small, free, vectors[RIGHT])
+            total -= rows[d][i] * left[order[d]]
+        right[i - rank] = total
+    solve_cholesky(small, free, right)
     for i in range(free):
-        value = vectors[RIGHT, i]
-        vectors[ACC, order[rank + i]] = value
+        value = right[i]
+        x[order[rank + i]] = value
         for d in range(rank):
-            vectors[ACC, order[d]] -= rows[d, rank + i] * value
+            x[order[d]] -= rows[d][rank + i] * value
     for k in range(free, free + led):
-        total = -vectors[RIGHT, k]
+        total = -right[k]
         for j in range(free):
-            total += small[k, j] * vectors[RIGHT, j]
-        vectors[NEED, order[rank + k]] = total
+            total += small[k][j] * right[j]
+        need[order[rank + k]] = total

@@ -54,7 +54,7 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: floa
     tally[SLOPES] += 1
     margin = derivative(ints, nums, work, t, y, dy)
     clock[LEAST] = min(clock[LEAST], abs(margin))
-    if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0, RANK] > 0:
+    if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0][RANK] > 0:
         if margin < clock[MARGIN]:
             clock[MARGIN], clock[TIGHTEST] = margin, t
         # An error of accelerations grows with the inverse square of the margin.
@@ -71,33 +71,34 @@ def roundings(ints: Ints, nums: Nums, work: Work, tally: Counts, y: Row, t: floa
 
     Bodies of small inertia in mechanisms of much greater lose so many digits that tolerances cannot be kept.
     """
-    slopes, size = work[STAGES], ints[COUNTS][0, SIZE]
+    slopes, size = work[STAGES], ints[COUNTS][0][SIZE]
     tally[SLOPES] += 2
     for i in range(size):
-        slopes[TRIED, i] = y[i]
+        slopes[TRIED][i] = y[i]
     derivative(ints, nums, work, t, slopes[TRIED], slopes[ROUND])
     for i in range(size):
-        slopes[TRIED, i] = y[i] * (1.0 + (EPSILON if i % 3 != 1 else -EPSILON))
+        slopes[TRIED][i] = y[i] * (1.0 + (EPSILON if i % 3 != 1 else -EPSILON))
     if derivative(ints, nums, work, t, slopes[TRIED], slopes[NEW]) < 0.0:
         return
     for i in range(size):
-        slopes[ROUND, i] = abs(slopes[NEW, i] - slopes[ROUND, i])
+        slopes[ROUND][i] = abs(slopes[NEW][i] - slopes[ROUND][i])
 
 
 def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float, s: int) -> float:
     """Evaluation number s of the step h from y, from those before; its state stays in row TRIED."""
-    slopes, table = work[STAGES], nums[COEFFICIENTS]
-    for i in range(ints[COUNTS][0, SIZE]):
+    slopes, shares, tried = work[STAGES], nums[COEFFICIENTS][s], work[STAGES][TRIED]
+    for i in range(ints[COUNTS][0][SIZE]):
         total = 0.0
         for j in range(s):
-            total += table[s, j] * slopes[j, i]
-        slopes[TRIED, i] = y[i] + h * total
-    return slope(ints, nums, work, clock, tally, clock[NOW] + table[C_ROW, s] * h, slopes[TRIED], slopes[s])
+            total += shares[j] * slopes[j][i]
+        tried[i] = y[i] + h * total
+    return slope(ints, nums, work, clock, tally, clock[NOW] + nums[COEFFICIENTS][C_ROW][s] * h, tried, slopes[s])
 
 
 def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float) -> float:
     """Slopes of one step and the new state; its error over the tolerance."""
-    slopes, table, size = work[STAGES], nums[COEFFICIENTS], ints[COUNTS][0, SIZE]
+    slopes, new, size = work[STAGES], work[STAGES][NEW], ints[COUNTS][0][SIZE]
+    b_row, e3_row, e5_row = nums[COEFFICIENTS][B_ROW], nums[COEFFICIENTS][E3_ROW], nums[COEFFICIENTS][E5_ROW]
     clock[LEAST] = 1.0
     for s in range(1, 12):
         margin = stage(ints, nums, work, clock, tally, y, h, s)
@@ -109,12 +110,13 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
     for i in range(size):
         total, three, five = 0.0, 0.0, 0.0
         for j in range(12):
-            total += table[B_ROW, j] * slopes[j, i]
-            three += table[E3_ROW, j] * slopes[j, i]
-            five += table[E5_ROW, j] * slopes[j, i]
-        slopes[NEW, i] = y[i] + h * total
+            value = slopes[j][i]
+            total += b_row[j] * value
+            three += e3_row[j] * value
+            five += e5_row[j] * value
+        new[i] = y[i] + h * total
         # What rounding does to a slope no step can do better than.
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(slopes[NEW, i])) + h * ROUGH * slopes[ROUND, i]
+        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGH * slopes[ROUND][i]
         three, five = three / allowed, five / allowed
         third += three * three
         fifth += five * five
@@ -130,16 +132,16 @@ def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Ro
     slopes, table, dense = work[STAGES], nums[COEFFICIENTS], work[DENSE]
     for s in range(13, 16):
         stage(ints, nums, work, clock, tally, y, h, s)
-    for i in range(ints[COUNTS][0, SIZE]):
-        rise = slopes[NEW, i] - y[i]
-        dense[0, i] = rise
-        dense[1, i] = h * slopes[0, i] - rise
-        dense[2, i] = 2.0 * rise - h * (slopes[12, i] + slopes[0, i])
+    for i in range(ints[COUNTS][0][SIZE]):
+        rise = slopes[NEW][i] - y[i]
+        dense[0][i] = rise
+        dense[1][i] = h * slopes[0][i] - rise
+        dense[2][i] = 2.0 * rise - h * (slopes[12][i] + slopes[0][i])
         for r in range(4):
-            total = 0.0
+            total, shares = 0.0, table[D_ROW + r]
             for j in range(16):
-                total += table[D_ROW + r, j] * slopes[j, i]
-            dense[3 + r, i] = h * total
+                total += shares[j] * slopes[j][i]
+            dense[3 + r][i] = h * total
 
 
 def interpolate(work: Work, y: Row, i: int, x: float) -> float:
@@ -147,5 +149,5 @@ def interpolate(work: Work, y: Row, i: int, x: float) -> float:
     dense = work[DENSE]
     total = 0.0
     for r in range(6, -1, -1):
-        total = (total + dense[r, i]) * (x if r % 2 == 0 else 1.0 - x)
+        total = (total + dense[r][i]) * (x if r % 2 == 0 else 1.0 - x)
     return float(y[i] + total)

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from kinform.simulation.kernel.types import Table, Vector
+from kinform.simulation.kernel.types import Row, Vector
 
-__all__ = ["add", "cross", "dot", "place", "put", "three", "turned"]
-
-
-def three(table: Table, i: int, j: int) -> Vector:
-    """Three numbers of row i from column j."""
-    return table[i, j], table[i, j + 1], table[i, j + 2]
+__all__ = ["add", "along", "cross", "dot", "place", "put", "six", "three", "turned"]
 
 
-def put(table: Table, i: int, j: int, x: float, y: float, z: float) -> None:
-    """Writes three numbers to row i from column j."""
-    table[i, j] = x
-    table[i, j + 1] = y
-    table[i, j + 2] = z
+def three(row: Row, j: int) -> Vector:
+    """Three numbers of a row from column j."""
+    return row[j], row[j + 1], row[j + 2]
 
 
-def add(table: Table, i: int, j: int, x: float, y: float, z: float) -> None:
-    """Adds three numbers to row i from column j."""
-    table[i, j] += x
-    table[i, j + 1] += y
-    table[i, j + 2] += z
+def six(row: Row, j: int) -> tuple[float, float, float, float, float, float]:
+    """Six numbers of a row from column j."""
+    return row[j], row[j + 1], row[j + 2], row[j + 3], row[j + 4], row[j + 5]
+
+
+def put(row: Row, j: int, x: float, y: float, z: float) -> None:
+    """Writes three numbers to a row from column j."""
+    row[j] = x
+    row[j + 1] = y
+    row[j + 2] = z
+
+
+def add(row: Row, j: int, x: float, y: float, z: float) -> None:
+    """Adds three numbers to a row from column j."""
+    row[j] += x
+    row[j + 1] += y
+    row[j + 2] += z
 
 
 def cross(a: float, b: float, c: float, x: float, y: float, z: float) -> Vector:
@@ -36,19 +41,30 @@ def dot(a: float, b: float, c: float, x: float, y: float, z: float) -> float:
     return a * x + b * y + c * z
 
 
-def turned(state: Table, i: int, x: float, y: float, z: float) -> Vector:
-    """A vector of link i in world axes."""
+def turned(link: Row, x: float, y: float, z: float) -> Vector:
+    """A vector of a link, whose row of work[STATE] is given, in world axes."""
     return (
-        state[i, 0] * x + state[i, 1] * y + state[i, 2] * z,
-        state[i, 3] * x + state[i, 4] * y + state[i, 5] * z,
-        state[i, 6] * x + state[i, 7] * y + state[i, 8] * z,
+        link[0] * x + link[1] * y + link[2] * z,
+        link[3] * x + link[4] * y + link[5] * z,
+        link[6] * x + link[7] * y + link[8] * z,
     )
 
 
-def place(state: Table, i: int, x: float, y: float, z: float) -> Vector:
-    """Where a point of link i is."""
+def along(link: Row, row: Row, j: int) -> Vector:
+    """The vector of a link in the columns from j of a row, in world axes."""
+    x, y, z = row[j], row[j + 1], row[j + 2]
     return (
-        state[i, 0] * x + state[i, 1] * y + state[i, 2] * z + state[i, 9],
-        state[i, 3] * x + state[i, 4] * y + state[i, 5] * z + state[i, 10],
-        state[i, 6] * x + state[i, 7] * y + state[i, 8] * z + state[i, 11],
+        link[0] * x + link[1] * y + link[2] * z,
+        link[3] * x + link[4] * y + link[5] * z,
+        link[6] * x + link[7] * y + link[8] * z,
+    )
+
+
+def place(link: Row, row: Row, j: int) -> Vector:
+    """Where the point of a link is that is in the columns from j of a row."""
+    x, y, z = row[j], row[j + 1], row[j + 2]
+    return (
+        link[0] * x + link[1] * y + link[2] * z + link[9],
+        link[3] * x + link[4] * y + link[5] * z + link[10],
+        link[6] * x + link[7] * y + link[8] * z + link[11],
     )

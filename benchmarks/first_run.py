@@ -1,0 +1,100 @@
+"""Ten seconds of the seeker with two axes on a fresh machine, and later: `python benchmarks/first_run.py [SECONDS]`.
+
+Runs `kinform run` from the meshes as a user does, in processes of their own: first without any cache of bytecode or of
+compiled functions, then with those that the first run left, then once the compiled functions are in the cache, as after a
+longer run. Once with the drives of the fixture, once left to itself. Prints processor seconds of the solver, importing and
+compiling included, which a busy machine changes less than seconds of the clock; both of the whole command; and whether
+the results are the same bytes each time.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SEEKER = ROOT / "fixtures" / "seekers" / "seeker_2dof"
+
+RUN = """
+import sys, time
+from kinform.simulation import solve
+run = solve.run_dynamic
+def timed(*given):
+    start = time.process_time()
+    out = run(*given)
+    print("solver", time.process_time() - start, "numba" in sys.modules, len(out.time), file=sys.stderr)
+    return out
+solve.run_dynamic = timed
+from kinform_cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+COMPILE = "from kinform.simulation.engine import engine; engine(compiled=True)"
+
+
+def started(caches, *command):
+    """Python on the command with caches of its own: seconds by the clock, of all processors, and stderr."""
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
+    environment |= {"PYTHONPYCACHEPREFIX": str(caches / "bytecode"), "NUMBA_CACHE_DIR": str(caches / "numba")}
+    environment["PYTHONPATH"] = os.pathsep.join([str(ROOT / "pipeline"), str(ROOT / "cli")])
+    start, before = time.perf_counter(), os.times()
+    ran = subprocess.run(
+        [sys.executable, *command], capture_output=True, text=True, encoding="utf-8", check=False, env=environment
+    )
+    seconds, after = time.perf_counter() - start, os.times()
+    if ran.returncode not in (0, 1):
+        sys.exit(ran.stderr)
+    worked = after.children_user + after.children_system - before.children_user - before.children_system
+    return seconds, worked, ran.stderr
+
+
+def written(folder, seconds, driven):
+    """The seeker's manifest for so many seconds in a copy of its folder."""
+    shutil.copytree(SEEKER, folder)
+    manifest = folder / "seeker_2dof.toml"
+    text = manifest.read_text(encoding="utf-8")
+    if not driven:
+        text = re.sub(r"\[\[function\.drive\]\][^\[]*", "", text)
+    text, found = re.subn(r"(?m)^duration = .*$", f"duration = {seconds:g}", text)
+    if found != 1:
+        sys.exit(f"{manifest}: one line with the duration is expected")
+    manifest.write_text(text, encoding="utf-8")
+    return manifest
+
+
+def main(arguments) -> None:
+    seconds = float(arguments[0]) if arguments else 10.0
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in ("driven", "left to itself"):
+            folder = Path(scratch) / name
+            manifest, caches, kept = written(folder, seconds, name == "driven"), folder / "caches", []
+            print(f"{seconds:g} s of {SEEKER.name}, {name}")
+            for when in ("first run", "later", "compiled before"):
+                if when == "compiled before":
+                    started(caches, "-c", COMPILE)
+                output = folder / f"{when}.h5"
+                clock, worked, told = started(caches, "-c", RUN, "run", str(manifest), "-o", str(output))
+                found = re.search(r"^solver (\S+) (\w+) (\d+)$", told, re.M)
+                if found is None:
+                    sys.exit(f"the solver was not called:\n{told}")
+                solver, numba, outputs = found.groups()
+                how = "compiled" if numba == "True" else "plain"
+                print(
+                    f"  {when:16s} solver {float(solver):6.2f} s of processor ({how}, {outputs} outputs); "
+                    f"whole command {worked:6.2f} s of processors, {clock:6.2f} s by the clock",
+                    flush=True,
+                )
+                for line in told.splitlines():
+                    if "compiling" in line:
+                        print(f"    said: {line.strip()}")
+                kept.append(output.read_bytes())
+            print("  the same bytes" if len(set(kept)) == 1 else "  OTHER BYTES", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,140 @@
+"""Joints side by side: their types, axes and ranges."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+from kinform.changes.change import Change, Said, freedoms, quoted, signed
+from kinform.changes.matching import holder
+from kinform.changes.snapshot import Axis, JointState, Snapshot
+from kinform.changes.tolerance import Tolerance
+from kinform.words import angle, direction
+
+__all__ = ["joint_changes"]
+
+
+def joint_changes(
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Said, ranged: bool
+) -> Iterator[Change]:
+    """Joints that came, went or changed; ranges where `ranged`: known on both sides."""
+    into = {name: now.get(name) or holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
+    new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
+    found = set()
+    for joint in before.joints or ():
+        ends = [into.get(name) for name in joint.bodies]
+        pair = frozenset(str(end) for end in ends)
+        if pair in new and len(pair) == 2:
+            found.add(pair)
+            turned = tuple(str(end) for end in ends) != new[pair].bodies
+            yield from _joint(joint, new[pair], within, say)
+            if ranged and joint.type == new[pair].type:
+                yield from _range(joint, new[pair], turned, within, say)
+        elif len(pair) == 1 and ends[0] is not None:
+            yield Change(
+                "joint-type", (joint.name,), f"became fixed: both are {quoted(str(ends[0]))} now",
+                joint.type, "fixed", -float(joint.freedoms), "freedoms",
+            )  # fmt: skip
+        else:
+            yield Change("joint-gone", (joint.name,), f"is gone ({joint.type})", joint.type, None)
+    for pair, joint in sorted(new.items(), key=lambda item: item[1].name):
+        if pair not in found:
+            yield Change("joint-new", (joint.name,), f"is new ({joint.type}, {joint.status})", None, joint.type)
+
+
+def _joint(old: JointState, new: JointState, within: Tolerance, say: Said) -> Iterator[Change]:
+    subject = (new.name,)
+    if old.type != new.type:
+        less = new.freedoms - old.freedoms
+        told = "" if not less else f", {freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
+        yield Change(
+            "joint-type", subject, f"was {old.type}, is {new.type}{told}", old.type, new.type, float(less), "freedoms"
+        )
+        return
+    if old.freedoms != new.freedoms:
+        less = new.freedoms - old.freedoms
+        told = f"{freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
+        yield Change("joint-freedoms", subject, told, str(old.freedoms), str(new.freedoms), float(less), "freedoms")
+    if old.status != new.status:
+        yield Change("joint-status", subject, f"was {old.status}, is {new.status}", old.status, new.status)
+    yield from _axes(subject, "axis", old.axis, new.axis, within, say)
+    yield from _axes(subject, "second axis", old.axis2, new.axis2, within, say)
+    if old.centre is not None and new.centre is not None:
+        away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
+        if away > within.length:
+            yield Change(
+                "axis-moved", subject, f"centre moved by {say.length(away)}", say.place(old.centre),
+                say.place(new.centre), away, "m", new.centre,
+            )  # fmt: skip
+    if (old.pitch is None) != (new.pitch is None) or (
+        old.pitch is not None and new.pitch is not None and not within.lengths_agree(old.pitch, new.pitch)
+    ):
+        one, two = (None if pitch is None else say.length(pitch) for pitch in (old.pitch, new.pitch))
+        yield Change("pitch", subject, "has another pitch", one, two)
+
+
+def _axes(
+    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: Said
+) -> Iterator[Change]:
+    if old is None or new is None:
+        if old is not new:
+            told = f"{what} is {'known now' if old is None else 'no longer known'}"
+            yield Change("axis-known", subject, told, say.line(old), say.line(new))
+        return
+    one, two = np.array(old.direction), np.array(new.direction)
+    tilt = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
+    if tilt > within.angle:
+        yield Change(
+            "axis-tilted", subject, f"{what} tilted by {_deg(tilt)}", direction(one), direction(two), tilt, "rad"
+        )
+    if old.point is not None and new.point is not None:
+        # how far the new axis is from where the old one was located
+        arm = np.array(old.point) - np.array(new.point)
+        away = float(np.linalg.norm(arm - two * float(two @ arm)))
+        if away > within.length:
+            yield Change(
+                "axis-moved", subject, f"{what} moved by {say.length(away)}", say.place(old.point),
+                say.place(new.point), away, "m", new.point,
+            )  # fmt: skip
+
+
+def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, say: Said) -> Iterator[Change]:
+    """How far the joint goes. Its value is of the second body relative to the first, about the axis: exchanged bodies
+    turn the range round, and so does an axis that has come to point the other way."""
+    if old.axis is not None and new.axis is not None and np.dot(old.axis.direction, new.axis.direction) < 0.0:
+        turned = not turned
+    lower, upper = (new.lower, new.upper) if not turned else (_minus(new.upper), _minus(new.lower))
+    subject = (new.name,)
+    if old.range_status != new.range_status:
+        told = f"range was {old.range_status}, is {new.range_status}"
+        yield Change("range-status", subject, told, old.range_status, new.range_status)
+    shown, agree, unit = (say.length, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
+    for side, one, two in (("lower", old.lower, lower), ("upper", old.upper, upper)):
+        if one is None or two is None:
+            if one is not two and old.range_status == new.range_status:
+                told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+                yield Change("range", subject, told, _end(one, shown), _end(two, shown))
+        elif agree(one, two):
+            continue
+        elif math.isfinite(one) and math.isfinite(two):
+            told = f"{side} end of the range {signed(two - one, shown)}"
+            yield Change("range", subject, told, shown(one), shown(two), two - one, unit)
+        else:
+            told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+            yield Change("range", subject, told, _end(one, shown), _end(two, shown))
+
+
+def _end(value: float | None, say: Callable[[float], str]) -> str:
+    if value is None:
+        return "not known"
+    return "unbounded" if math.isinf(value) else say(value)
+
+
+def _minus(value: float | None) -> float | None:
+    return None if value is None else -value
+
+
+def _deg(radians: float) -> str:
+    return angle(radians, 4)

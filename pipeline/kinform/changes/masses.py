@@ -1,0 +1,66 @@
+"""Masses side by side: how heavy bodies are, where their centres lie, and how they resist turning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from kinform.changes.change import Change, Said, signed
+from kinform.changes.snapshot import BodyMass, Snapshot
+from kinform.changes.tolerance import Tolerance
+from kinform.words import number
+
+__all__ = ["mass_changes"]
+
+
+def mass_changes(
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Said
+) -> Iterator[Change]:
+    """Bodies whose mass, centre or inertia changed."""
+    new = {body.name: body for body in after.masses or ()}
+    for old in before.masses or ():
+        name = now.get(old.name, old.name)
+        if name in new:
+            yield from _mass(old, new[name], within, say)
+
+
+def _mass(old: BodyMass, new: BodyMass, within: Tolerance, say: Said) -> Iterator[Change]:
+    subject = (new.name,)
+    if (old.mass is None) != (new.mass is None):
+        told = "mass is no longer known" if new.mass is None else "mass is known now"
+        yield Change("mass", subject, told, _kg(old.mass), _kg(new.mass))
+    elif old.mass is not None and new.mass is not None and not within.masses_agree(old.mass, new.mass):
+        told = f"mass {signed(new.mass - old.mass, _grams)}"
+        yield Change("mass", subject, told, _kg(old.mass), _kg(new.mass), new.mass - old.mass, "kg")
+    if old.centre is not None and new.centre is not None:
+        away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
+        if away > within.length:
+            told = f"centre of mass moved by {say.length(away)}"
+            one, two = say.place(old.centre), say.place(new.centre)
+            yield Change("centre-of-mass", subject, told, one, two, away, "m", new.centre)
+    if old.moments is not None and new.moments is not None:
+        largest = max(max(map(abs, old.moments)), max(map(abs, new.moments)))
+        worst = max(abs(two - one) for one, two in zip(old.moments, new.moments, strict=True))
+        if worst > within.share * largest:
+            told = f"principal moments changed by up to {100.0 * worst / largest:.3g} %"
+            yield Change("inertia", subject, told, _moments(old.moments), _moments(new.moments), worst, "kg·m²")
+        elif old.tensor is not None and new.tensor is not None:
+            turned = max(abs(two - one) for one, two in zip(old.tensor, new.tensor, strict=True))
+            if turned > within.share * largest:
+                told = (
+                    f"axes of inertia turned: entries of the tensor changed by up to {100.0 * turned / largest:.3g} %"
+                )
+                yield Change("inertia-axes", subject, told, _moments(old.tensor), _moments(new.tensor), turned, "kg·m²")
+
+
+def _grams(kilograms: float) -> str:
+    return f"{number(1e3 * kilograms)} g"
+
+
+def _kg(kilograms: float | None) -> str | None:
+    return None if kilograms is None else f"{number(kilograms, 6)} kg"
+
+
+def _moments(moments: Iterable[float]) -> str:
+    return "(" + ", ".join(number(x) for x in moments) + ") kg·m²"

@@ -1,0 +1,156 @@
+"""Parts with what collisions ask of them: surfaces that a motion maps onto themselves, borders, models, spheres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
+from kinform.contacts.boxes import together
+from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
+from kinform.kinematics.screws import cross
+from kinform.model.assembly import Assembly, Mesh, Part
+from kinform.model.contacts import Contacts
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["Shapes"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+SPHERES = 96
+"""Spheres about the facets of a part."""
+SCRAPE = 1e-3
+"""Share of the smaller part's diagonal by which parts may overlap as they slide along each other: by rounding of their
+files and by what is left over where joints were fitted. In no unit, so that an assembly of any size answers the same."""
+
+
+@dataclass
+class Shapes:
+    """Meshes with what is asked of them, each worked out once."""
+
+    assembly: Assembly
+    surfaces: dict[str, MeshSurfaces]
+    contacts: Contacts | None
+    body_parts: dict[str, frozenset[str]] = field(default_factory=dict)
+    """Parts of each body that have a mesh."""
+    _own: dict[str, OwnMotions] = field(default_factory=dict)
+    _slippage: dict[tuple[str, bytes], Slippage] = field(default_factory=dict)
+    _borders: dict[str, list[set[int]]] = field(default_factory=dict)
+    _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
+    _store: MeshStore = field(default_factory=MeshStore)
+    _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    _patches: dict[tuple[str, str], list[int]] | None = None
+    _parts: dict[str, Part] = field(default_factory=dict)
+
+    def part(self, name: str) -> Part:
+        """The part of that name."""
+        if not self._parts:
+            self._parts = {part.name: part for part in self.assembly.parts}
+        return self._parts[name]
+
+    def mesh(self, name: str) -> Mesh:
+        """Its mesh."""
+        mesh = self.part(name).mesh
+        assert mesh is not None
+        return mesh
+
+    @cached_property
+    def size(self) -> float:
+        """m: diagonal of the assembly's box at the pose of the meshes; 1 without meshes."""
+        corners = []
+        for name in sorted(name for own in self.body_parts.values() for name in own):
+            X, index = self.part(name).X_WP, self.index(name)
+            bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
+            corners.append(np.where(bits, index.high, index.low) @ X[:3, :3].T + X[:3, 3])
+        return float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0))) if corners else 1.0
+
+    def surfaces_of(self, name: str) -> MeshSurfaces:
+        """Its surfaces."""
+        return self.surfaces[self.mesh(name).digest]
+
+    def allowed(self, first: str, second: str) -> Allowed:
+        """What surfaces of a pair may be off an exact invariance."""
+        size = min(self.mesh(first).diagonal, self.mesh(second).diagonal)
+        return Allowed(SCRAPE * size, 1.5 * self.assembly.tolerances.alignment)
+
+    def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
+        """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
+        key = (name, twists.tobytes())
+        if key not in self._slippage:
+            mesh = self.mesh(name)
+            if mesh.digest not in self._own:
+                self._own[mesh.digest] = OwnMotions(mesh, self.surfaces_of(name))
+            X = self.part(name).X_WP
+            omega = twists[:, :3] @ X[:3, :3]
+            moment = (twists[:, 3:] + cross(twists[:, :3], np.broadcast_to(X[:3, 3], omega.shape))) @ X[:3, :3]
+            self._slippage[key] = self._own[mesh.digest].slippage(np.hstack([omega, moment]))
+        return self._slippage[key].within(allowed)
+
+    def borders(self, name: str) -> list[set[int]]:
+        """For each surface of a part, the surfaces that share an edge with it, and itself."""
+        mesh, surfaces = self.mesh(name), self.surfaces_of(name)
+        if mesh.digest not in self._borders:
+            near: list[set[int]] = [{n} for n in range(len(surfaces.surfaces))]
+            edges = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+            labels = np.repeat(surfaces.labels, 3)
+            order = np.lexsort((edges[:, 1], edges[:, 0]))
+            edges, labels = edges[order], labels[order]
+            same = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1]))
+            for a, b in np.unique(np.stack([labels[same], labels[same + 1]], axis=1), axis=0).tolist():
+                near[a].add(b)
+                near[b].add(a)
+            self._borders[mesh.digest] = near
+        return self._borders[mesh.digest]
+
+    def overlapping(self, first: str, second: str) -> bool:
+        """Whether the solids of two parts overlap at the pose of the meshes, other than where they mate."""
+        found = self.contacts.interferences if self.contacts is not None else ()
+        return any(set(item.parts) == {first, second} and not item.mated for item in found)
+
+    def index(self, name: str) -> MeshIndex:
+        """Its facets, to be asked for insides and distances."""
+        return self._store.index(self.mesh(name))
+
+    def model(self, name: str, facets: Ints | None = None) -> fcl.BVHModel:
+        """FCL's model of some facets of a part (m, part frame)."""
+        mesh = self.mesh(name)
+        if facets is None or len(facets) == len(mesh.faces):
+            return self.index(name).bvh
+        key = (mesh.digest, facets.tobytes())
+        if key not in self._models:
+            self._models[key] = partial_model(mesh.vertices, mesh.faces[facets])
+        return self._models[key]
+
+    def spheres(self, name: str) -> tuple[Array, Array]:
+        """Middles (k, 3) and radii (k,) m of spheres that hold the facets of a part, part frame."""
+        mesh = self.mesh(name)
+        if mesh.digest not in self._spheres:
+            self._spheres[mesh.digest] = _spheres(mesh)
+        return self._spheres[mesh.digest]
+
+    def patches(self, first: str, second: str) -> list[int]:
+        """Indices of the patches between two parts, in either order."""
+        if self._patches is None:
+            self._patches = {}
+            for n, patch in enumerate(self.contacts.patches if self.contacts is not None else ()):
+                self._patches.setdefault(patch.parts, []).append(n)
+        return self._patches.get((min(first, second), max(first, second)), [])
+
+
+def _spheres(mesh: Mesh) -> tuple[Array, Array]:
+    """About facets that lie together."""
+    corners = mesh.vertices[mesh.faces]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    order = together(low, high)
+    starts = np.unique(np.linspace(0, len(order), SPHERES, endpoint=False).astype(int))
+    low, high = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
+    middle = 0.5 * (low + high)
+    rank = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(order))))
+    away = np.linalg.norm(corners[order] - middle[rank, None], axis=2).max(axis=1)
+    return middle, np.maximum.reduceat(away, starts)

@@ -1,0 +1,114 @@
+"""Joints, mobility and ways to come apart as JSON has them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from kinform.kinematics import Motions
+from kinform.model.design import Design
+from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
+from kinform.reports.motions import freedom_text, metres
+from kinform.reports.values.plain import fields
+
+__all__ = ["joint_values", "mobility_counts", "mobility_values", "one_joint", "ranged", "release"]
+
+
+def joint_values(design: Design) -> dict[str, Any]:
+    """Bodies and joints, and how they come apart."""
+    kinematics = design.ranged or _kinematics(design)
+    computed = ranged(design)
+    return {
+        "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
+        "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
+        "mobility": mobility_counts(kinematics.mobility),
+        "separations": [
+            fields(item, "bodies", "contacts") | {"releases": [release(way) for way in item.releases]}
+            for item in kinematics.separations
+        ],
+        "separations_reason": kinematics.separations_reason or None,
+    }
+
+
+def ranged(design: Design) -> set[str]:
+    """Names of the joints whose range has been computed."""
+    run = design.simulation
+    return set() if run is None or run.ranges is None else {item.joint for item in run.ranges}
+
+
+def one_joint(joint: Joint, computed: bool) -> dict[str, Any]:
+    """Its range is null as long as it has not been computed: one that was computed and is not known says so."""
+    of_blocker = ("parts", "patch", "area", "share", "place", "gap", "forbids")
+    limits = {"lower": joint.range_lower, "upper": joint.range_upper, "status": joint.range_status}
+    return {
+        **fields(joint, "name", "bodies", "type", "axis", "point"),
+        **({"axis2": joint.axis2} if joint.type == "universal" else {}),
+        **fields(joint, "pitch", "freedoms"),
+        **({"twists": joint.twists} if joint.type == "general" else {}),
+        **fields(joint, "evidence", "status", "reason", "motion"),
+        "range": limits if computed else None,
+        "patches": joint.patches,
+        "blocked_by": [fields(blocker, *of_blocker) for blocker in joint.blockers],
+        "singular_values": joint.singular_values,
+        **fields(joint, "held", "held_reason", "extremes"),
+        "releases": [release(way) for way in joint.releases],
+    }
+
+
+def release(way: Release) -> dict[str, Any]:
+    """A way to leave, as JSON has it."""
+    return fields(way, "kind", "direction", "point", "twist", "extreme", "words")
+
+
+def mobility_values(design: Design) -> dict[str, Any]:
+    """Counts, freedoms, redundancies and couplings."""
+    kinematics = _kinematics(design)
+    mobility = kinematics.mobility
+    return {
+        **mobility_counts(mobility),
+        **fields(mobility, "idle_bodies", "uncertain", "finite_reason", "infinitesimal", "singular"),
+        "certificates": [asdict(certificate) for certificate in mobility.certificates],
+        "bodies": [body.name for body in kinematics.bodies],
+        "gruebler": mobility.gruebler,
+        "freedoms": mobility.freedoms if len(mobility.freedoms) == mobility.instantaneous else None,
+        "named": _named(kinematics),
+        "redundancies": [
+            fields(one, "kind", "text", "rows", "joints", "patches", "directions", "wrenches")
+            for one in mobility.redundancies
+        ],
+        "misfit": asdict(kinematics.misfit),
+        "misaligned": [
+            {"joint": joint, "angle": angle, "offset": offset} for joint, angle, offset in kinematics.misaligned
+        ],
+        "couplings": [asdict(coupling) for coupling in kinematics.couplings],
+    }
+
+
+def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
+    """All counts by name."""
+    return {
+        "instantaneous": mobility.instantaneous,
+        "finite": mobility.finite,
+        "effective": mobility.effective,
+        "idle": mobility.idle,
+        "redundant": mobility.redundant,
+        "blocked_mobility": mobility.blocked,
+    }
+
+
+def _named(kinematics: Kinematics) -> list[dict[str, Any]]:
+    motions = Motions.of(kinematics)
+    return [
+        {
+            "text": freedom_text(freedom, metres),
+            **fields(freedom, "driver", "body", "kind", "axis", "point", "pitch", "idle", "looped"),
+            "moves": list(motions.twists(freedom)),
+            "drives": [{"joint": joint, "twist": twist, "rate": rate} for joint, twist, rate in freedom.drives],
+        }
+        for freedom in kinematics.mobility.named
+    ]
+
+
+def _kinematics(design: Design) -> Kinematics:
+    assert design.kinematics is not None
+    return design.kinematics

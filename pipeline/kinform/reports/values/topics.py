@@ -1,0 +1,99 @@
+"""What `kinform show --format json` prints: one object a topic, SI and radians, world axes.
+
+The object of `joints` is a contract that scripts rely on; in all of them a value that is not known, not
+finite, or not computed yet is null.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from kinform.errors import StageError
+from kinform.kinematics import insight
+from kinform.model.design import Design
+from kinform.reports import as_json
+from kinform.reports.values.form import assembly_values, contact_values, mass_values
+from kinform.reports.values.kinematics import joint_values, mobility_values, one_joint, ranged
+from kinform.reports.values.plain import fields, plain
+from kinform.reports.values.runs import behaviour_values, simulation_values
+
+__all__ = ["TOPICS", "joint_evidence", "joint_json", "summary", "summary_json"]
+
+
+def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
+    """The values of one topic, or of all of them, as JSON has them: dicts, lists, text, numbers, None.
+
+    Topics: assembly, contacts, joints, mobility, mass, behaviour, simulation, findings. Raises StageError when the
+    stage of the topic has not run, and ValueError for another topic.
+    """
+    if topic is None:
+        known = {name: summary(design, name) if _known(design, name) else None for name in TOPICS}
+        return {"schema": "kinform/design/1", **known}
+    if topic not in TOPICS:
+        raise ValueError(f"unknown topic {topic!r}: expected one of {', '.join(TOPICS)}")
+    if not _known(design, topic):
+        raise StageError(f"`kinform show {topic}`", TOPICS[topic][0])
+    head = {"schema": f"kinform/{topic}/1", "assembly": design.assembly.name, "units": design.assembly.units}
+    found: dict[str, Any] = plain(head | TOPICS[topic][2](design))
+    return found
+
+
+def summary_json(design: Design, topic: str | None = None) -> str:
+    """`summary` as JSON text, ending in a newline."""
+    return json.dumps(summary(design, topic), indent=1, allow_nan=False) + "\n"
+
+
+def joint_evidence(design: Design, name: str) -> dict[str, Any]:
+    """All the evidence of one joint. Raises StageError when joints are not known, KeyError for another name."""
+    if not _known(design, "joints"):
+        raise StageError("`kinform show joints`", TOPICS["joints"][0])
+    found = insight(design, name)
+    of_patch = ("parts", "surfaces", "kind", "one_sided", "area", "gap", "fit")
+    evidence: dict[str, Any] = plain(
+        {
+            "schema": "kinform/joint/1",
+            "assembly": design.assembly.name,
+            "units": design.assembly.units,
+            "joint": one_joint(found.joint, found.joint.name in ranged(design)),
+            "patches": [
+                fields(item, "index", "role", "share", "rows") | fields(item.patch, *of_patch) for item in found.patches
+            ],
+            **fields(found, "rows", "samples", "last_free", "first_held"),
+            "thresholds": fields(found, "free", "held"),
+            "alternatives": [
+                fields(item, "without", "frees", "type", "freedoms", "status", "axis") for item in found.alternatives
+            ],
+            **fields(found, "tried"),
+            "remark": found.remark or None,
+        }
+    )
+    return evidence
+
+
+def joint_json(design: Design, name: str) -> str:
+    """`joint_evidence` as JSON text, ending in a newline."""
+    return json.dumps(joint_evidence(design, name), indent=1, allow_nan=False) + "\n"
+
+
+def _findings(design: Design) -> dict[str, Any]:
+    assert design.report is not None
+    return as_json.document(design.report, design)
+
+
+def _known(design: Design, topic: str) -> bool:
+    return getattr(design, TOPICS[topic][1]) is not None
+
+
+TOPICS: dict[str, tuple[str, str, Callable[[Design], dict[str, Any]]]] = {
+    "assembly": ("import", "assembly", assembly_values),
+    "contacts": ("contacts", "contacts", contact_values),
+    "joints": ("joints", "kinematics", joint_values),
+    "mobility": ("joints", "kinematics", mobility_values),
+    "mass": ("mass", "mass", mass_values),
+    "behaviour": ("simulate", "behaviour", behaviour_values),
+    "simulation": ("simulate", "simulation", simulation_values),
+    "findings": ("check", "report", _findings),
+}
+"""By topic: the command that computes it, the field of Design that holds it, and its values."""
