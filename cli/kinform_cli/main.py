@@ -54,7 +54,7 @@ def entry() -> NoReturn:
         from kinform_cli import console
 
         # nearly all that is made stays until the end: looking for garbage often finds none
-        gc.set_threshold(100_000, 20, 20)
+        gc.set_threshold(500_000, 20, 20)
         console.tolerate_any_character()
         code = main(sys.argv[1:])
         console.give_up()

@@ -36,7 +36,7 @@ def try_plain(arguments: Sequence[str]) -> int | None:
         return show_run(outcome, format, fail_on, manifest.parent)
     from kinform_cli.running import execute
 
-    return execute([manifest], Path(given["--output"]), manifest=True, format=format, fail_on=fail_on)
+    return execute([manifest], Path(given["--output"]), manifest=True, format=format, fail_on=fail_on, changed=True)
 
 
 def _understood(arguments: Sequence[str]) -> tuple[Path, dict[str, str]] | None:

@@ -8,9 +8,10 @@ run will find.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from kinform._version import __version__
+from kinform.beside import beside
 from kinform.kinematics.questions import Answer
 from kinform.kinematics.releases import Leaving
 from kinform.ledger import Ledger
@@ -20,6 +21,9 @@ from kinform.results._digest import digest
 from kinform.results._packed import pack, seal, unpack
 
 __all__ = ["Known"]
+
+One = TypeVar("One")
+Two = TypeVar("Two")
 
 _CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, FiniteCertificate, Joint, Leaving, Release)}
 
@@ -48,3 +52,15 @@ class Known:
         text = pack(compute())
         self.decisions[key] = text, seal(key, text)
         return unpack(text, _CLASSES)
+
+    def beside(self, first: Callable[[], One], second: Callable[[], Two]) -> tuple[One, Two]:
+        """What two computations give that may both ask, at the same time."""
+        before = set(self.decisions)
+
+        def told() -> tuple[Two, dict[str, tuple[str, str]]]:
+            found = second()
+            return found, {key: kept for key, kept in self.decisions.items() if key not in before}
+
+        one, (two, decisions) = beside(first, told)
+        self.decisions |= decisions
+        return one, two

@@ -11,7 +11,7 @@ from kinform.errors import InputError, Problem
 from kinform.ledger import Ledger
 from kinform.model.design import Design
 
-__all__ = ["Progress", "run"]
+__all__ = ["Progress", "run", "updated"]
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the stage, its steps done, and its steps in all."""
@@ -42,10 +42,27 @@ def run(
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged
+    return updated(
+        manifest, output, jobs=jobs, progress=progress, allow_outside=allow_outside, units=units, say=say, ranges=ranges
+    )  # fmt: skip
+
+
+def updated(
+    manifest: str | Path | Sequence[str | Path],
+    output: str | Path | None = None,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    allow_outside: bool = False,
+    units: str | None = None,
+    say: Callable[[str], None] | None = None,
+    ranges: bool | None = None,
+) -> Outcome:
+    """As `run`, where it is known that something changed."""
     ledger = Ledger.of(output)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
-    design = stages.joints(design, ledger=ledger)
+    design = stages.joints(design, jobs=jobs, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
     design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
     design = stages.check(design, ledger=ledger)

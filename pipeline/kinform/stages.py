@@ -115,7 +115,7 @@ def contacts(
     return replace(start, contacts=found, fingerprints=_descended(marked, "contacts"))
 
 
-def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
+def joints(design: Design, *, jobs: int = 1, ledger: Ledger | None = None) -> Design:
     """Bodies, joints, constraint matrix and mobility. Raises StageError without contacts."""
     found = _needed(design.contacts, "kinform joints", "contacts")
     known: list[Known] = []
@@ -127,7 +127,8 @@ def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
         if all(part.mesh is None for part in view.parts):
             return kinematics.functional(view)
         known.append(Known(ledger))
-        return kinematics.derive(view, design.surfaces, found, known[-1])
+        beside = known[-1].beside if jobs > 1 else None
+        return kinematics.derive(view, design.surfaces, found, known[-1], beside)
 
     done = _advance("joints", design, derive, ledger)
     before = None if ledger is None or ledger.previous is None else ledger.previous.fingerprints
@@ -199,12 +200,14 @@ def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simul
     """The run with its collisions and the ranges of joints, as far as there are meshes."""
     if not design.surfaces or all(part.mesh is None for part in view.parts):
         return run
-    from kinform import collisions
-
     if len(run.time) > 1:
+        from kinform import collisions
+
         met, untested = collisions.along(view, design.surfaces, design.contacts, kinematics, run)
         run = replace(run, collisions=met, uncollided=untested)
     if ranges:
+        from kinform import collisions
+
         run = replace(run, ranges=collisions.ranges(view, design.surfaces, design.contacts, kinematics))
     return run
 

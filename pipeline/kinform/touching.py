@@ -7,10 +7,8 @@ parts are the same to the last bit.
 from __future__ import annotations
 
 import functools
-import multiprocessing
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from typing import TypeVar
 
@@ -160,7 +158,13 @@ def _mapped(
 
 
 def _results(function: Callable[[Item], Out], items: Sequence[Item], jobs: int) -> Iterator[Out]:
-    if jobs <= 1 or len(items) < 2 or "fork" not in multiprocessing.get_all_start_methods():
+    if jobs <= 1 or len(items) < 2:
+        yield from map(function, items)
+        return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    if "fork" not in multiprocessing.get_all_start_methods():
         yield from map(function, items)
         return
     context = multiprocessing.get_context("fork")

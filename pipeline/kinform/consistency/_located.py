@@ -46,12 +46,19 @@ def _joint(context: Context, subject: Sequence[str]) -> Joint | None:
 
 def _parts(context: Context, subject: Sequence[str]) -> list[Part]:
     """The parts that the subject names, and the first of each body or group that it names."""
-    by_name = {str(part.name): part for part in context.assembly.parts}
+    found = (_part(context, name) for name in subject)
+    return [part for part in found if part is not None]
+
+
+def _part(context: Context, name: str) -> Part | None:
+    """The part of that name, else the first of the body or group of that name."""
+    for part in context.assembly.parts:
+        if part.name == name:
+            return part
     kinematics = context.design.kinematics
-    first = {str(group.name): str(min(group.parts)) for group in context.assembly.groups}
-    first |= {str(body.name): str(min(body.parts)) for body in (kinematics.bodies if kinematics is not None else ())}
-    names = [name if name in by_name else first.get(name, "") for name in subject]
-    return [by_name[name] for name in names if name in by_name]
+    wholes = {str(group.name): group.parts for group in context.assembly.groups if group.name == name}
+    wholes |= {str(body.name): body.parts for body in kinematics.bodies if body.name == name} if kinematics else {}
+    return context.assembly.part(min(wholes[name])) if name in wholes else None
 
 
 def _middle(parts: Sequence[Part]) -> tuple[float, float, float] | None:
@@ -61,7 +68,8 @@ def _middle(parts: Sequence[Part]) -> tuple[float, float, float] | None:
     part = parts[0]
     at = np.zeros(3)
     if part.mesh is not None and len(part.mesh.vertices):
-        at = 0.5 * (part.mesh.vertices.min(axis=0) + part.mesh.vertices.max(axis=0))
+        low, high = part.mesh.bare.box
+        at = 0.5 * (low + high)
     x, y, z = (float(v) for v in part.X_WP[:3, :3] @ at + part.X_WP[:3, 3])
     return (x, y, z)
 

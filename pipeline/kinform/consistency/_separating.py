@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
 
 from kinform.consistency._shared import decidable, self_stresses
 from kinform.kinematics.carrying import missing, wrenches_at
@@ -103,6 +102,8 @@ def lifts(design: Design) -> tuple[tuple[Lift, ...], Sharing | None, tuple[str, 
 
 def _shared(design: Design, rows: ContactRows, known: list[Joint], loose: list[Joint], nothing: float) -> Sharing:
     """Whether the contacts of the loose joints can carry the run together, however the load is shared."""
+    from scipy.linalg import block_diag
+
     run, kinematics = design.simulation, design.kinematics
     assert run is not None and kinematics is not None
     names = tuple(joint.name for joint in loose)

@@ -9,18 +9,20 @@ given in the mesh's own frame: the BVH never has to be built again for another p
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import fcl
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
+from kinform.connected import components
 from kinform.contacts.boxes import FacetBoxes, FlatBoxes, facet_boxes
 from kinform.contacts.table import SurfaceTable
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 __all__ = [
     "Hits",
@@ -193,8 +195,7 @@ class MeshIndex:
         if self._shells is None:
             faces, count = self.mesh.faces, len(self.mesh.vertices)
             edges = np.concatenate([faces[:, :2], faces[:, 1:]])
-            links = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(count, count))
-            _, shell = connected_components(links, directed=False)
+            shell = components(edges[:, 0], edges[:, 1], count)
             self._shells = np.unique(shell[faces[:, 0]], return_index=True)[1]
         return self._shells
 
@@ -245,6 +246,8 @@ class MeshIndex:
 
 def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
     """Middles of balls that hold all facets, with their radius (m), by octaves of it."""
+    from scipy.spatial import cKDTree
+
     corners = mesh.vertices[mesh.faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     parts = np.clip(np.ceil(longest / max(_BALL * mesh.diagonal, 1e-300)), 1, _PARTS).astype(np.int64)

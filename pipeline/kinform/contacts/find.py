@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -56,6 +54,9 @@ def _computed(work: _Work, pairs: list[Pair], jobs: int) -> Iterator[PairContact
     if jobs <= 1 or len(pairs) < 2:
         yield from map(work.contacts, pairs)
         return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
     pool: Any
     if "fork" in multiprocessing.get_all_start_methods():
         context = multiprocessing.get_context("fork")

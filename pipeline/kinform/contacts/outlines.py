@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from kinform.connected import components
 from kinform.contacts.charts import perpendicular
 from kinform.contacts.placed import PlacedPart
 
@@ -209,8 +208,7 @@ def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
     place = np.zeros(count, dtype=np.int64)
     place[facets] = np.arange(len(facets))
     one, two = place[flats].T if len(flats) else (np.zeros(0, np.int64), np.zeros(0, np.int64))
-    links = coo_array((np.ones(len(one)), (one, two)), shape=(len(facets), len(facets)))
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+    return components(one, two, len(facets))
 
 
 def _merged(points: Array, grain: float) -> tuple[Ints, Array]:

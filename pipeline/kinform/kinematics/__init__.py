@@ -22,5 +22,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 11
+CODE_VERSION = 12
 """Bumped when the results of this stage change for the same input."""

@@ -16,7 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Opening", "extreme_rays", "held_for_certain", "opening", "reduced", "unit_rows", "within"]
+__all__ = [
+    "Opening",
+    "extreme_rays",
+    "grams",
+    "held_for_certain",
+    "opening",
+    "reduced",
+    "unit_rows",
+    "unit_rows_of",
+    "within",
+]
 
 Array = NDArray[np.float64]
 
@@ -26,6 +36,8 @@ HELD = 2e-3
 """Speeds above which they do; in between nobody knows."""
 EQUAL = 1e-6
 """A row counts as tight below this, and two rows as one."""
+MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
+"""Odd factors by which rows that are not equal hardly ever sum up to the same."""
 CERTAIN = 1e-6
 """Least λ over the greatest of a certificate."""
 STEPS = 25
@@ -49,17 +61,26 @@ class Opening:
 
 def unit_rows(rows: Array) -> Array:
     """The rows (n, 6) scaled to length 1, without those that say nothing and those that say the same twice."""
-    size = np.sqrt(np.add.reduce(rows * rows, axis=1))
+    return unit_rows_of(rows, np.zeros(len(rows), dtype=np.int64))[0]
+
+
+def unit_rows_of(rows: Array, group: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
+    size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
     long = size > 1e-3
-    rows = rows[long] / size[long, None]
+    rows, group = rows[long] / size[long, None], group[long]
     if len(rows) < 2:
-        return rows
-    keys, width = np.round(rows / EQUAL).astype(np.int64).tobytes(), 8 * rows.shape[1]
-    first: dict[bytes, int] = {}
-    for k in range(len(rows)):
-        first.setdefault(keys[k * width : (k + 1) * width], k)
-    kept: Array = rows[list(first.values())]
-    return kept
+        return rows, group
+    keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL)
+    order = (keys @ MIX[: keys.shape[1]]).argsort(kind="stable")
+    ordered = keys[order]
+    again = (ordered[1:] == ordered[:-1]).all(axis=1)
+    if not again.any():
+        return rows, group
+    kept = np.ones(len(rows), dtype=np.bool_)
+    kept[order[1:][again]] = False
+    return rows[kept], group[kept]
 
 
 def within(rows: Array, fixed: Array) -> Array:
@@ -87,7 +108,7 @@ def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
         return found
     rows = np.concatenate([pairs[k] for k in active])
     counts = np.array([len(pairs[k]) for k in active])
-    values, vectors = np.linalg.eigh(_grams(rows, np.ones(len(rows)), counts))
+    values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
     loose = values < FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     at = np.zeros((len(active), 6))
@@ -97,7 +118,7 @@ def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
         pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
         pull -= np.einsum("pij,pj->pi", still, pull)
-        system = _grams(rows, weight, counts)
+        system = grams(rows, weight, counts)
         scale = np.trace(system, axis1=1, axis2=2)[:, None, None]
         step = np.linalg.solve(system + scale * (still + 1e-15 * np.eye(6)), pull[:, :, None])[:, :, 0]
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
@@ -115,8 +136,8 @@ def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
     return found
 
 
-def _grams(rows: Array, weight: Array, counts: NDArray[np.int64]) -> Array:
-    """(pairs, 6, 6) Σ w r rᵀ."""
+def grams(rows: Array, weight: Array, counts: NDArray[np.int64]) -> Array:
+    """(pairs, 6, 6) Σ w r rᵀ of each pair's rows, one pair's after the other's and at least one of each."""
     start = np.concatenate([[0], np.cumsum(counts)[:-1]])
     products = weight[:, None, None] * rows[:, :, None] * rows[:, None, :]
     return np.asarray(np.add.reduceat(products, start, axis=0))

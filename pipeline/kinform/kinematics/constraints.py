@@ -24,6 +24,8 @@ SECTORS = 16
 """Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept."""
 FEW = 12
 """Patches with no more samples than this keep them all."""
+ROUND = np.stack([np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)])
+"""(2, 16) directions whose ends are corners of a hull."""
 STRAIGHT = 1e-6
 """Corners of a hull that stand out less than this share of its size are on an edge."""
 
@@ -55,8 +57,6 @@ def extreme_samples(patch: Patch) -> NDArray[np.int64]:
 
 def hull(points: Array, axis: Array) -> NDArray[np.int64]:
     """Indices, ascending, of the corners of the convex hull of the points (n, 3) seen along the axis."""
-    from scipy.spatial import ConvexHull
-
     if len(points) <= 2:
         return np.arange(len(points), dtype=np.int64)
     u, v = perpendicular(axis)
@@ -69,7 +69,7 @@ def hull(points: Array, axis: Array) -> NDArray[np.int64]:
     if float(np.abs(flat @ right[1]).max()) < STRAIGHT * size:
         along = flat @ right[0]
         return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
-    corners = ConvexHull(flat).vertices.astype(np.int64)
+    corners = _around(flat)
     while len(corners) > 3:
         here, before, after = flat[corners], flat[np.roll(corners, 1)], flat[np.roll(corners, -1)]
         edge, arm = after - before, here - before
@@ -79,6 +79,33 @@ def hull(points: Array, axis: Array) -> NDArray[np.int64]:
             break
         corners = np.delete(corners, k)
     return np.sort(corners)
+
+
+def _around(flat: Array) -> NDArray[np.int64]:
+    """Indices of the corners of the convex hull of points (n, 2) that are not all in line, anticlockwise: the points in
+    the order of x, and of each chain those that turn left (A. M. Andrew, Inf. Proc. Letters 9, 1979)."""
+    ends = (flat @ ROUND).argmax(axis=0)
+    ends = ends[ends != np.roll(ends, 1)]
+    edge, arm = np.roll(flat[ends], -1, axis=0) - flat[ends], flat[:, None] - flat[ends]
+    inside = (edge[:, 0] * arm[..., 1] - edge[:, 1] * arm[..., 0] > 0.0).all(axis=1)
+    some = np.flatnonzero(~inside)
+    some = some[np.lexsort((some, flat[some, 1], flat[some, 0]))]
+    places = flat[some].tolist()
+
+    def chain(order: range) -> list[int]:
+        out: list[int] = []
+        for k in order:
+            x, y = places[k]
+            while len(out) > 1:
+                (ax, ay), (bx, by) = places[out[-2]], places[out[-1]]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0:
+                    break
+                out.pop()
+            out.append(k)
+        return out[:-1]
+
+    last = len(places) - 1
+    return some[chain(range(last + 1)) + chain(range(last, -1, -1))]
 
 
 def _rim(normals: Array) -> NDArray[np.int64]:
@@ -117,34 +144,30 @@ def assemble(
     owner = {index: joint for joint in joints for index in joint.patches}
     used = [k for k, p in enumerate(patches) if column[p.parts[0]] != column[p.parts[1]] and len(p.points)]
     world = Frame.of(np.concatenate([patches[k].points for k in used])) if used else Frame(np.zeros(3), 1.0)
-    data, indices, provenance, samples = [], [], [], []
-    for k in used:
-        patch = patches[k]
-        chosen = known[k] if k in known else extreme_samples(patch)
-        own = rows(patch.points[chosen], patch.normals[chosen], world)
+    samples = [known[k] if k in known else extreme_samples(patches[k]) for k in used]
+    bounds = np.cumsum([0, *map(len, samples)])
+    none = np.zeros((0, 3))
+    own = rows(
+        np.concatenate([none, *(patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True))]),
+        np.concatenate([none, *(patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True))]),
+        world,
+    )
+    free = {joint.name: np.linalg.qr(scaled(joint.twists.T, world))[0] for joint in joints if joint.patches}
+    for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         if k in owner:
-            free, _ = np.linalg.qr(scaled(owner[k].twists.T, world))
-            own = own - (own @ free) @ free.T
-        first, second = column[patch.parts[0]], column[patch.parts[1]]
-        low = first < second
-        data.append(np.hstack([-own, own] if low else [own, -own]))
-        six = np.arange(6)
-        index = np.concatenate([6 * min(first, second) + six, 6 * max(first, second) + six])
-        indices.append(np.tile(index, (len(chosen), 1)))
-        provenance.append(np.full(len(chosen), k))
-        samples.append(chosen)
-    count = sum(len(s) for s in samples)
-
-    def joined(arrays: list[NDArray[np.int64]]) -> NDArray[np.int64]:
-        return np.concatenate(arrays).ravel().astype(np.int64) if arrays else np.zeros(0, np.int64)
-
+            basis, mine = free[owner[k].name], own[start:end]
+            own[start:end] = mine - (mine @ basis) @ basis.T
+    counts = np.diff(bounds)
+    ends = np.array([[column[part] for part in patches[k].parts] for k in used], dtype=np.int64).reshape(-1, 2)
+    sign = np.repeat(np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0), counts)[:, None]
+    index = 6 * np.sort(ends, axis=1)[:, :, None] + np.arange(6)
     return ConstraintMatrix(
         bodies=tuple(body.name for body in bodies),
-        data=np.concatenate(data).ravel() if data else np.zeros(0),
-        indices=joined(indices),
-        indptr=12 * np.arange(count + 1, dtype=np.int64),
-        patch=joined(provenance),
-        sample=joined(samples),
+        data=np.hstack([-sign * own, sign * own]).ravel(),
+        indices=np.repeat(index.reshape(-1, 12), counts, axis=0).ravel(),
+        indptr=12 * np.arange(bounds[-1] + 1, dtype=np.int64),
+        patch=np.repeat(np.array(used, dtype=np.int64), counts),
+        sample=np.concatenate([np.zeros(0, np.int64), *samples]),
         centre=world.centre,
         length=world.length,
     )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ from kinform.kinematics.stated import coupled_mobility, coupling_rows, restricte
 from kinform.kinematics.statements import intended_joint, pair_between, stated_joints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
-from kinform.model.kinematics import Body, Joint, Kinematics, Misfit, Mobility
+from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Kinematics, Misfit, Mobility, Separation
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -38,18 +39,28 @@ __all__ = ["derive", "functional", "mobility_within"]
 
 Array = NDArray[np.float64]
 
+Beside = Callable[[Callable[[], Any], Callable[[], Any]], tuple[Any, Any]]
+"""Gives what two computations give."""
+
+SEVERAL = 48
+"""Joints from which it pays to begin another process."""
 MOST_NUMBERS = 1_000_000
 """Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
 
 
 def derive(
-    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts, answers: Answers | None = None
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts,
+    answers: Answers | None = None,
+    beside: Beside | None = None,
 ) -> Kinematics:
     """Bodies, joints, J and mobility of an assembly whose contacts are known.
 
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function]. What is asked of
-    single pairs, and of all together, may be known to `answers`.
+    single pairs, and of all together, may be known to `answers`. What needs nothing of each other may be computed
+    `beside` each other.
     """
     merger, extents = Merger(assembly), Extents(assembly)
     patches = bare_patches(contacts.patches)
@@ -80,6 +91,7 @@ def derive(
     return _finish(
         assembly, bodies, closed, patches, misfit, strict, tuple(misaligned), extents.assembly,
         _clusters(assembly, contacts), touching_balls(assembly, surfaces, contacts.patches), pairs.extremes, answers,
+        beside,
     )  # fmt: skip
 
 
@@ -163,7 +175,35 @@ def _finish(
     balls: Mapping[tuple[int, PartName], Array] | None = None,
     extremes: Mapping[int, NDArray[np.int64]] | None = None,
     answers: Answers | None = None,
+    beside: Beside | None = None,
 ) -> Kinematics:
+    def moving() -> tuple[Mobility, tuple[Coupling, ...]]:
+        return _mobility(assembly, bodies, joints, patches, strict, size, balls or {}, answers)
+
+    def parting() -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str]:
+        return _parting(bodies, joints, patches, clusters, extremes, answers)
+
+    if beside is None or len(joints) < SEVERAL:
+        beside = _in_turn
+    (matrix, told, apart, reason), (mobility, tied) = beside(parting, moving)
+    return Kinematics(bodies, told, matrix, mobility, misfit, misaligned, apart, reason, tied)
+
+
+def _in_turn(first: Callable[[], Any], second: Callable[[], Any]) -> tuple[Any, Any]:
+    return first(), second()
+
+
+def _mobility(
+    assembly: Assembly,
+    bodies: tuple[Body, ...],
+    joints: tuple[Joint, ...],
+    patches: tuple[Patch, ...],
+    strict: Mapping[JointName, Array],
+    size: float,
+    balls: Mapping[tuple[int, PartName], Array],
+    answers: Answers | None,
+) -> tuple[Mobility, tuple[Coupling, ...]]:
+    """What the joints let move, and the ratios in which they are coupled."""
     index = {body.name: k for k, body in enumerate(bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
     ground = next(k for k, body in enumerate(bodies) if body.ground)
@@ -172,7 +212,7 @@ def _finish(
     closure = close(len(bodies), edges, spaces, ground, size, doubts)
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = close(len(bodies), edges, hard, ground, size, doubts).mobility if strict else closure.mobility
-    turns = idle_turns(assembly, bodies, joints, patches, size, balls or {}, answers)
+    turns = idle_turns(assembly, bodies, joints, patches, size, balls, answers)
     idle = {name: len(own) for name, own in turns.items()}
     count = closure.mobility
     tied = couplings(assembly, bodies, joints, patches, closure)
@@ -198,13 +238,25 @@ def _finish(
         named=named_freedoms(bodies, joints, closure, turns, places),
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, edges, closure, size)),
     )
+    return mobility, tied
+
+
+def _parting(
+    bodies: tuple[Body, ...],
+    joints: tuple[Joint, ...],
+    patches: tuple[Patch, ...],
+    clusters: tuple[Body, ...],
+    extremes: Mapping[int, NDArray[np.int64]] | None,
+    answers: Answers | None,
+) -> tuple[ConstraintMatrix, tuple[Joint, ...], tuple[Separation, ...], str]:
+    """J, the joints with how they come apart, what can leave, and why it is not known of the rest."""
     matrix = assemble(bodies, joints, patches, extremes)
     rows = ContactRows(matrix, bodies, patches)
     joints = with_releases(joints, pair_cones(rows, joints, patches), answers)
     links = links_between(clusters, bodies, joints, patches, rows)
     first = next(k for k, item in enumerate(clusters) if item.ground)
     apart, reason = separations([item.name for item in clusters], first, links, answers)
-    return Kinematics(bodies, joints, matrix, mobility, misfit, misaligned, apart, reason, tied)
+    return matrix, joints, apart, reason
 
 
 def _uncertain(joint: Joint, constant: Collection[str]) -> bool:

@@ -79,10 +79,10 @@ def close_block(
     """
     own = [spaces[k] for k in block]
     count = sum(len(s) for s in own)
-    frame = axes_frame(own, size)
-    if len(block) == 1:
+    if len(block) == 1:  # nothing closes, and nothing is compared in a frame
         free = tuple(Solution(c, np.array([c]), np.ones(1)) for c in range(count))
-        return Block(tuple(block), (), frame, free)
+        return Block(tuple(block), (), Frame(np.zeros(3), size), free)
+    frame = axes_frame(own, size)
     local = {n: i for i, n in enumerate(sorted({n for k in block for n in edges[k]}))}
     cycles = short_cycles(len(local), [(local[edges[k][0]], local[edges[k][1]]) for k in block])
     if count == 0:

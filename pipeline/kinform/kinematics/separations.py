@@ -72,7 +72,7 @@ def links_between(
         if a != b and used and len(patch.points):
             members[(a, b) if a < b else (b, a)].append((k, a > b))
     pairs = sorted(members)
-    cones = [rows.cone(members[pair]) for pair in pairs]
+    cones = rows.cones([members[pair] for pair in pairs])
     certain = iter(certainly_held([cone for cone in cones if cone is not None]))
     slides = {joint.name: tuple(way for way in joint.releases if way.kind == "slide") for joint in joints}
     out = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -70,6 +71,9 @@ def _body_properties(body: Body, parts: list[MassProperties]) -> MassProperties:
     missing = [part.name for part in parts if part.mass is None]
     if missing or not parts:
         return unknown(body.name, origin, "no mass of " + ", ".join(missing), volume)
+    if len(parts) == 1 and parts[0].mass is not None:
+        wrong = impossible(parts[0].mass, parts[0].inertia)
+        return unknown(body.name, origin, wrong, volume) if wrong else replace(parts[0], name=body.name)
     masses = np.array([part.mass for part in parts], dtype=np.float64)
     mass = math.fsum(masses)
     centres = np.array([part.centre_of_mass for part in parts])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.screws import canonical
+from kinform.kinematics.screws import canonical, cross
 
 __all__ = ["impossible", "principal"]
 
@@ -35,7 +35,7 @@ def principal(inertia: Array) -> tuple[Array, Array]:
                 axes[:, start:end] = _nearest_to_world(axes[:, start:end])
             start = end
     first, second = canonical(axes[:, 0]), canonical(axes[:, 1])
-    return moments, np.column_stack([first, second, np.cross(first, second)])
+    return moments, np.column_stack([first, second, cross(first, second)])
 
 
 def impossible(mass: float, inertia: Array) -> str:

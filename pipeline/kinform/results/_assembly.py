@@ -25,6 +25,7 @@ from kinform.model.checks import CheckSettings
 from kinform.model.tolerances import Tolerances
 from kinform.results import _checks, _function
 from kinform.results._table import (
+    FACETS,
     flag,
     integer,
     matrix,
@@ -89,7 +90,7 @@ def write(group: h5py.Group, assembly: Assembly) -> None:
     _write_poses(group, assembly)
     write_rows(group, "meshes", _MESHES, [vars(mesh) | vars(mesh.health) for mesh in meshes])
     write_ragged(group, "vertices", [mesh.vertices for mesh in meshes], "m", width=3)
-    write_ragged(group, "faces", [mesh.faces for mesh in meshes], "1", width=3, dtype="<i8")
+    write_ragged(group, "faces", [mesh.faces for mesh in meshes], "1", width=3, dtype=FACETS)
     write_rows(group, "groups", _GROUPS, map(_row, assembly.groups))
     write_rows(group, "assumptions", _ASSUMPTIONS, map(_row, assembly.assumptions))
     write_rows(group, "subassemblies", _SUBASSEMBLIES, map(_row, assembly.subassemblies))

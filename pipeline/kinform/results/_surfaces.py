@@ -8,6 +8,7 @@ import h5py
 
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.results._table import (
+    FACETS,
     integer,
     pair,
     read_ragged,
@@ -39,10 +40,10 @@ def write(group: h5py.Group, surfaces: Mapping[str, MeshSurfaces], fingerprints:
         _MESHES,
         [vars(mesh) | {"fingerprint": fingerprints.get(mesh.digest)} for mesh in meshes],
     )
-    write_ragged(group, "labels", [mesh.labels for mesh in meshes], "1", dtype="<i8")
+    write_ragged(group, "labels", [mesh.labels for mesh in meshes], "1", dtype=FACETS)
     rows = [vars(surface) | {"mesh": i} for i, mesh in enumerate(meshes) for surface in mesh.surfaces]
     write_rows(group, "surfaces", _SURFACES, rows)
-    write_ragged(group, "faces", [row["faces"] for row in rows], "1", dtype="<i8")
+    write_ragged(group, "faces", [row["faces"] for row in rows], "1", dtype=FACETS)
 
 
 def read(group: h5py.Group) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:

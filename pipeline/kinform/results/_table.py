@@ -27,6 +27,7 @@ from kinform.errors import ResultsError
 from kinform.model.assembly import freeze
 
 __all__ = [
+    "FACETS",
     "TEXT",
     "Column",
     "flag",
@@ -56,6 +57,8 @@ __all__ = [
 Record = TypeVar("Record")
 
 TEXT = h5py.string_dtype()
+FACETS = "<i4"
+"""Numbers of facets, vertices and surfaces of one mesh: most of a file, and fewer than two thousand millions."""
 _NOTHING = "␀"
 _MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
 (_MISSING,) = struct.unpack("<d", struct.pack("<Q", _MISSING_NUMBER))
@@ -313,14 +316,16 @@ def write_ragged(
     `width` is the number of columns of each, 0 for one-dimensional ones.
     """
     empty = np.zeros((0, width) if width else (0,), dtype=dtype)
-    parts = [np.asarray(array, dtype=dtype) if len(array) else empty for array in arrays]
-    write_array(group, name, np.concatenate([empty, *parts]), unit, dtype)
+    parts = [np.asarray(array) if len(array) else empty for array in arrays]
+    write_array(group, name, np.concatenate([empty, *parts], dtype=dtype, casting="same_kind"), unit, dtype)
     offset = np.cumsum([0, *(len(part) for part in parts)])
     write_array(group, f"{name}_offset", offset, "1", "<i8")
 
 
 def read_ragged(group: h5py.Group, name: str) -> list[NDArray[Any]]:
-    """The arrays that `write_ragged` wrote, read-only."""
+    """The arrays that `write_ragged` wrote, read-only; whole numbers have eight bytes, however they are kept."""
     data, offset = read_array(group, name), read_array(group, f"{name}_offset")
+    if data.dtype.kind == "i":
+        data = freeze(data.astype(np.int64, copy=False))
     bounds = offset.tolist()
     return [data[start:end] for start, end in zip(bounds[:-1], bounds[1:], strict=True)]

@@ -40,34 +40,18 @@ __all__ = [
 Inputs = Mapping[str, str]
 """Hash of each input, by its name in words."""
 
+_GATHERING = ("connected", "near")
+"""What tells which facets and vertices belong together."""
+_CONTACT = ("contacts", "fastening", *_GATHERING)
+_MOTION = ("simulation", "behaviour", "function", "kinematics", "collisions", "surfaces", *_CONTACT)
 _CODE = {
-    "assembly": ("form",),
-    "surfaces": ("surfaces",),
-    "contacts": ("contacts", "fastening"),
+    "assembly": ("form", *_GATHERING),
+    "surfaces": ("surfaces", *_GATHERING),
+    "contacts": _CONTACT,
     "joints": ("kinematics",),
     "mass": ("mass", "kinematics"),
-    "simulation": (
-        "simulation",
-        "behaviour",
-        "function",
-        "kinematics",
-        "collisions",
-        "contacts",
-        "fastening",
-        "surfaces",
-    ),
-    "findings": (
-        "consistency",
-        "words",
-        "function",
-        "kinematics",
-        "simulation",
-        "behaviour",
-        "collisions",
-        "contacts",
-        "fastening",
-        "surfaces",
-    ),
+    "simulation": _MOTION,
+    "findings": ("consistency", "words", *_MOTION),
 }
 """Packages and modules whose code decides the result of each stage."""
 

@@ -13,9 +13,7 @@ from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
 from kinform.simulation.mechanism import Mechanism
 
-__all__ = ["LEVELS", "Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
-
-LEVELS = ("functional", "kinematic", "dynamic")
+__all__ = ["Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
 
 
 @dataclass(frozen=True)

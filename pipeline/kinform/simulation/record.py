@@ -12,7 +12,7 @@ from kinform.simulation.mechanism import Mechanism
 from kinform.simulation.spatial import quaternions, rotation_vector
 from kinform.simulation.states import States, states_at
 
-__all__ = ["Record", "blank", "closure_rows", "publish", "spread"]
+__all__ = ["Record", "closure_rows", "publish", "spread"]
 
 Array = NDArray[np.float64]
 
@@ -40,31 +40,6 @@ class Record:
     stopped: str
     notes: tuple[str, ...] = ()
     """What is to be known of the run, in sentences."""
-
-
-def blank(status: str, reason: str, failures: tuple[tuple[str, str], ...] = ()) -> Simulation:
-    """A simulation in which nothing ran."""
-    none = np.zeros((0, 0))
-    return Simulation(
-        status=status,
-        reason=reason,
-        level="",
-        time=np.zeros(0),
-        body_names=(),
-        p_WB=np.zeros((0, 0, 3)),
-        q_WB=np.zeros((0, 0, 4)),
-        joint_names=(),
-        joint_types=(),
-        joint_offset=np.zeros(1, dtype=np.int64),
-        joint_position=none,
-        joint_velocity=none,
-        joint_effort=none,
-        energy=np.zeros((0, 3)),
-        residual=np.zeros(0),
-        rank=np.zeros(0, dtype=np.int64),
-        assumptions=(),
-        failures=failures,
-    )
 
 
 def publish(

@@ -22,8 +22,9 @@ from kinform.simulation.dynamics import Dynamics
 from kinform.simulation.integrate import run_dynamic
 from kinform.simulation.kinematic import resting, run_kinematic
 from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.modelled import blank
 from kinform.simulation.reactions import Reactions, reactions
-from kinform.simulation.record import Record, blank, publish, spread
+from kinform.simulation.record import Record, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
 

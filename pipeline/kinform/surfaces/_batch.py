@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 __all__ = [
     "Array",
     "Ints",
     "Mask",
     "Ragged",
-    "components",
     "counted",
     "distinct",
     "group_sum",
@@ -86,14 +83,6 @@ def group_sum(groups: Ints, values: Array, count: int) -> Array:
     for k in range(flat.shape[1]):
         out[:, k] = np.bincount(groups, flat[:, k], count)
     return out.reshape((count, *values.shape[1:]))
-
-
-def components(a: Ints, b: Ints, count: int) -> Ints:
-    """Number of the connected component of each of `count` nodes under the links a–b."""
-    if count == 0:
-        return np.zeros(0, np.int64)
-    graph = coo_matrix((np.ones(len(a), np.int8), (a, b)), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
 def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components, cross
+from kinform.connected import components
+from kinform.surfaces._batch import Array, Ints, Mask, cross
 
 __all__ = ["Fabric", "angles", "departures", "fabric", "normalised", "scatter"]
 

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components
+from kinform.connected import components
+from kinform.near import Near
+from kinform.surfaces._batch import Array, Ints, Mask
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.spread import conforms
@@ -23,8 +25,6 @@ SAMPLES = 24
 
 def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     """Renumbers planes (P,), -1 elsewhere, so that coplanar faces of one sense share a number."""
-    from scipy.spatial import cKDTree
-
     count = int(number.max()) + 1 if len(number) else 0
     if count < 2:
         return number
@@ -34,8 +34,7 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     normal, centre = np.zeros((count, 3)), np.zeros((count, 3))
     normal[number[member]], centre[number[member]] = work.normal[member], work.centre[member]
     offset = np.einsum("ij,ij->i", normal, centre)
-    tree = cKDTree(np.c_[normal, offset])
-    pairs = tree.query_pairs(5e-3, output_type="ndarray")
+    pairs = Near(np.c_[normal, offset], 5e-3).pairs
     if not len(pairs):
         return number
     larger = np.where(area[pairs[:, 0]] >= area[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
@@ -72,13 +71,11 @@ def coincident_regions(
     work: Patchwork, kind: Kind, polygons: list[Ints], params: Params, side: Ints, scale: Scale
 ) -> Ints:
     """Number of the region that each of these regions, all of one kind, becomes part of."""
-    from scipy.spatial import cKDTree
-
     count = len(polygons)
     batch = _batch(work, polygons)
     size = np.bincount(batch.region, work.area[batch.polygon], count)
     shape = np.c_[np.where(params[:, 7] == 0, params[:, 6], 0.0), params[:, 7], 4.0 * side]
-    pairs = cKDTree(shape).query_pairs(max(2e-3, 10 * scale.fit), output_type="ndarray")
+    pairs = Near(shape, max(2e-3, 10 * scale.fit)).pairs
     if not len(pairs):
         return np.arange(count)
     larger = np.where(size[pairs[:, 0]] >= size[pairs[:, 1]], pairs[:, 0], pairs[:, 1])

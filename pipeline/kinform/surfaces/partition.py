@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components, distinct, quantile
+from kinform.connected import components
+from kinform.surfaces._batch import Array, Ints, Mask, distinct, quantile
 from kinform.surfaces.cone import Cone
 from kinform.surfaces.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.cylinder import Cylinder

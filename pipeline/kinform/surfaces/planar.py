@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.connected import components
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import plane
-from kinform.surfaces._batch import Array, Ints, Mask, components, group_sum
+from kinform.surfaces._batch import Array, Ints, Mask, group_sum
 from kinform.surfaces.fabric import Fabric, angles, departures, normalised
 
 __all__ = ["Scale", "cluster", "moments"]

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, components, cross, group_sum
+from kinform.connected import components
+from kinform.surfaces._batch import Array, Ints, cross, group_sum
 from kinform.surfaces.describe import COVERAGE, Description, canonical
 from kinform.surfaces.topology import Patchwork, Scale
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, Ragged, components, distinct, ordered_quantile
+from kinform.connected import components
+from kinform.surfaces._batch import Array, Ints, Mask, Ragged, distinct, ordered_quantile
 from kinform.surfaces.kind import Batch, Kind, Params
 from kinform.surfaces.kind import widths as widths_of
 from kinform.surfaces.topology import Patchwork, Scale

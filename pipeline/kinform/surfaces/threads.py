@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.surfaces._batch import Array, Ints, Mask, components, cross
+from kinform.connected import components
+from kinform.surfaces._batch import Array, Ints, Mask, cross
 from kinform.surfaces.describe import COVERAGE, Description, canonical, freeform
 from kinform.surfaces.topology import Patchwork, Scale
 

@@ -105,6 +105,8 @@ def _duplicates(faces: Ints, count: int) -> int:
     pair = low * np.int64(count) + high
     order = np.argsort(pair, kind="stable")
     alike = np.flatnonzero(np.diff(pair[order]) == 0)
+    if not len(alike):
+        return 0
     some = np.unique(np.r_[order[alike], order[alike + 1]])
     return len(some) - len(np.unique(np.stack([pair[some], middle[some]], axis=1), axis=0))
 

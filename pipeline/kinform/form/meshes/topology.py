@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.connected import components
+
 __all__ = ["EdgeTable", "edges_of", "shells_of"]
 
 Array = NDArray[np.float64]
@@ -64,9 +66,6 @@ def edges_of(faces: Ints, vertices: int) -> EdgeTable:
 
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
     """(F,) number of the shell of each facet; shells are numbered by their first facet."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     if not len(faces):
         return np.zeros(0, dtype=np.int64)
     edges = edges or edges_of(faces, len(vertices))
@@ -75,12 +74,7 @@ def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> I
     if edges.overused:
         links.append(_radial_links(vertices, faces, edges) // 3)
     link = np.concatenate(links)
-    graph = coo_array((np.ones(len(link), dtype=np.int8), (link[:, 0], link[:, 1])), shape=(len(faces),) * 2)
-    _, label = connected_components(graph, directed=False)
-    _, first, place = np.unique(label, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), dtype=np.int64)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return rank[place.ravel()]
+    return components(link[:, 0], link[:, 1], len(faces))
 
 
 def _radial_links(vertices: Array, faces: Ints, edges: EdgeTable) -> Ints:

@@ -1,6 +1,6 @@
 """Welding: vertices that are one become one.
 
-Exact copies first (hash and sort), then vertices within the welding distance of each other (k-d tree).
+Exact copies first (hash and sort), then vertices within the welding distance of each other.
 A cluster gathers about its first vertex and reaches no further than the distance from it, so that a chain of
 close vertices never draws a small feature together.
 """
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError
+from kinform.near import Near
 
 __all__ = ["merge_close", "merge_exact", "used_only"]
 
@@ -94,22 +95,18 @@ def merge_close(vertices: Array, distance: float) -> tuple[Ints, Ints]:
 
 
 def _close_pairs(vertices: Array, distance: float) -> Ints:
-    from scipy.spatial import cKDTree
-
     some = _crowded(vertices, distance)
     if len(some) < 2:
         return np.zeros((0, 2), np.int64)
-    tree = cKDTree(vertices[some], compact_nodes=False, balanced_tree=False)
-    sample = vertices[some[:: max(1, len(some) // _SAMPLE)]]
-    crowd = tree.query_ball_point(sample, distance, return_length=True).mean()
+    near = Near(vertices[some], distance)
+    crowd = near.about(np.arange(0, len(some), max(1, len(some) // _SAMPLE))).mean()
     if crowd > _CROWD:
         raise MeshError([Fault(
             f"would collapse: within the welding distance ({distance:.3g} m) of a vertex lie {crowd:.0f} "
             "others on average",
             "state a smaller [tolerances] weld, and look for a stray vertex far from the part",
         )])  # fmt: skip
-    pairs: Ints = some[tree.query_pairs(distance, output_type="ndarray")]
-    return pairs
+    return some[near.pairs]
 
 
 def _crowded(vertices: Array, distance: float) -> Ints:

@@ -10,9 +10,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from kinform.connected import components
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
@@ -78,8 +77,7 @@ def _split(vertices: Array, faces: Ints, labels: Ints, loose: NDArray[np.bool_])
     first, second, ends, angle = _edges(vertices, faces)
     same = labels[first] == labels[second]
     smooth = same & (angle < CREASE)
-    joined = coo_array((np.ones(int(smooth.sum()), np.int8), (first[smooth], second[smooth])), (len(faces),) * 2)
-    _, region = connected_components(joined, directed=False)
+    region = components(first[smooth], second[smooth], len(faces))
     corner = faces.astype(np.int64) * np.int64(region.max() + 1 if len(region) else 1) + region[:, None]
     keys, index = np.unique(corner.ravel(), return_inverse=True)
     at = keys // np.int64(region.max() + 1 if len(region) else 1)

@@ -1,0 +1,63 @@
+"""What is simulated of an assembly: its port model, or nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.behaviour import Behaviour, build
+from kinform.model.assembly import Assembly
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassReport
+from kinform.model.simulation import Simulation
+
+__all__ = ["LEVELS", "blank", "geared", "modelled", "seen"]
+
+
+LEVELS = ("functional", "kinematic", "dynamic")
+
+
+def modelled(
+    assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *, level: str | None = None
+) -> Behaviour:
+    """The port model that `simulate` solves at that level, whatever is wrong with it."""
+    asked = level or (assembly.simulation.level if assembly.simulation else None)
+    return build(assembly, seen(assembly, kinematics, asked), mass, gears=geared(assembly, asked))
+
+
+def seen(assembly: Assembly, kinematics: Kinematics, asked: str | None) -> Kinematics:
+    """The joints that are simulated: those of geometry, or of the function where that is asked for."""
+    if asked != "functional":
+        return kinematics
+    from kinform.kinematics import functional
+
+    return functional(assembly)
+
+
+def geared(assembly: Assembly, asked: str | None) -> bool:
+    """Whether drives and couplings act through ideal gears: where joints are those of the function."""
+    return asked == "functional" or all(part.mesh is None for part in assembly.parts)
+
+
+def blank(status: str, reason: str, failures: tuple[tuple[str, str], ...] = ()) -> Simulation:
+    """A simulation in which nothing ran."""
+    none = np.zeros((0, 0))
+    return Simulation(
+        status=status,
+        reason=reason,
+        level="",
+        time=np.zeros(0),
+        body_names=(),
+        p_WB=np.zeros((0, 0, 3)),
+        q_WB=np.zeros((0, 0, 4)),
+        joint_names=(),
+        joint_types=(),
+        joint_offset=np.zeros(1, dtype=np.int64),
+        joint_position=none,
+        joint_velocity=none,
+        joint_effort=none,
+        energy=np.zeros((0, 3)),
+        residual=np.zeros(0),
+        rank=np.zeros(0, dtype=np.int64),
+        assumptions=(),
+        failures=failures,
+    )
