@@ -26,6 +26,7 @@ from kinform.simulation.reactions import Reactions, reactions
 from kinform.simulation.record import Record, blank, publish, spread
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.start import Start, Stated, begin
+from kinform.simulation.stops import beyond
 
 __all__ = ["Course", "refuse", "simulate_system", "solve"]
 
@@ -53,6 +54,16 @@ class Course:
     """(3,) m/s²."""
     level: str = "dynamic"
     """kinematic (or functional), dynamic."""
+
+    def __post_init__(self) -> None:
+        """ValueError for times and gravity that are none."""
+        object.__setattr__(self, "gravity", np.asarray(self.gravity, dtype=np.float64))
+        if not (np.isfinite(self.duration) and self.duration >= 0.0):
+            raise ValueError(f"the duration of a run is a finite time, not negative: {self.duration:g} s")
+        if not (np.isfinite(self.step) and self.step > 0.0):
+            raise ValueError(f"the step between output times is a finite positive time: {self.step:g} s")
+        if self.gravity.shape != (3,) or not np.all(np.isfinite(self.gravity)):
+            raise ValueError(f"gravity is three finite numbers, m/s²: {self.gravity.tolist()}")
 
 
 def simulate_system(
@@ -152,6 +163,9 @@ def solve(
             "or in none; start it in another pose"
         )
         return refuse("the mechanism cannot start", ((stuck, why),))
+    outside = beyond(actuation.stops, start.q)
+    if outside:
+        return refuse("the mechanism cannot start", outside)
     dynamics = Dynamics(mechanism, system, course.gravity, actuation, rank)
     weightless = dynamics.weightless(start.q)
     if weightless:

@@ -38,6 +38,7 @@ from kinform.simulation.kernel.layout import (
     PATIENCE,
     PAUSE,
     PAUSED,
+    POSITIONS,
     RANK,
     RATES,
     SIZE,
@@ -67,6 +68,11 @@ AGAIN = 20
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
+PARTS = 4
+"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
+PASSED = 1e-12
+"""Of a limit (rad or m) that is passed: less is rounding."""
+
 __all__ = ["advance", "sample", "stop_reached"]
 
 
@@ -84,16 +90,38 @@ def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out
 
 
 def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[int, float]:
-    """(stop that is passed first before the share x of the step, where); −1 and x when none is."""
-    stops, limits = ints[STOPS], nums[STOPS]
+    """(stop that is passed first before the share x of the step, where); −1 and x when none is.
+
+    A joint that passes its stop and is back before the step ends has passed it: where it turns is looked at too.
+    """
+    stops, limits, first = ints[STOPS], nums[STOPS], ints[COUNTS][0][POSITIONS]
     found, end = -1, x
     for k in range(len(stops)):
         if stops[k][3] != 0:
             continue
-        at, sense = stops[k][0], float(stops[k][2])
-        if not sense * (interpolate(work, y, at, end) - limits[k][0]) > 1e-12:
+        at, rate, sense = stops[k][0], first + stops[k][1], float(stops[k][2])
+        low, past, pace = 0.0, -1.0, sense * y[rate]
+        for part in range(1, PARTS + 1):
+            high = end * float(part) / float(PARTS)
+            later = sense * interpolate(work, y, rate, high)
+            if sense * (interpolate(work, y, at, high) - limits[k][0]) > PASSED:
+                past = high
+                break
+            if pace > 0.0 and later < 0.0:
+                out, back = low, high
+                for _ in range(40):
+                    middle = 0.5 * (out + back)
+                    if sense * interpolate(work, y, rate, middle) > 0.0:
+                        out = middle
+                    else:
+                        back = middle
+                if sense * (interpolate(work, y, at, out) - limits[k][0]) > PASSED:
+                    past = out
+                    break
+            low, pace = high, later
+        if past < 0.0:
             continue
-        low, high = 0.0, end
+        high = past
         for _ in range(60):
             middle = 0.5 * (low + high)
             if sense * (interpolate(work, y, at, middle) - limits[k][0]) > 0.0:
