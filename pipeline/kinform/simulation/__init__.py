@@ -11,4 +11,4 @@ from kinform.simulation.solve import Course, simulate_system
 
 __all__ = ["CODE_VERSION", "Course", "SolverSettings", "modelled", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 7
+CODE_VERSION: int = 8
