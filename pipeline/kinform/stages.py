@@ -16,6 +16,7 @@ from kinform.errors import StageError
 from kinform.ledger import Ledger
 from kinform.model.design import Design
 from kinform.model.fingerprints import Fingerprints
+from kinform.model.function import SimulationRequest
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
@@ -186,7 +187,13 @@ def simulate(
         run = simulation.simulate(
             view, kinematics, masses, level=level, progress=progress, say=say, behaviour=made[-1]
         )  # fmt: skip
-        return _collided(view, design, kinematics, run, wanted)
+
+        def finer(times: int) -> Simulation:
+            request = view.simulation or SimulationRequest()
+            closer = replace(view, simulation=replace(request, step=request.step / times))
+            return simulation.simulate(closer, kinematics, masses, level=level, say=say, behaviour=made[-1])
+
+        return _collided(view, design, kinematics, run, wanted, finer)
 
     asked = level if wanted == stated else f"{level}, ranges {wanted}"
     done = _advance("simulation", design, run, ledger, level, wanted, asked)
@@ -196,14 +203,21 @@ def simulate(
     return replace(done, behaviour=kept)
 
 
-def _collided(view: Assembly, design: Design, kinematics: Kinematics, run: Simulation, ranges: bool) -> Simulation:
+def _collided(
+    view: Assembly,
+    design: Design,
+    kinematics: Kinematics,
+    run: Simulation,
+    ranges: bool,
+    finer: Callable[[int], Simulation],
+) -> Simulation:
     """The run with its collisions and the ranges of joints, as far as there are meshes."""
     if not design.surfaces or all(part.mesh is None for part in view.parts):
         return run
     if len(run.time) > 1:
         from kinform import collisions
 
-        met, untested = collisions.along(view, design.surfaces, design.contacts, kinematics, run)
+        met, untested = collisions.along(view, design.surfaces, design.contacts, kinematics, run, finer=finer)
         run = replace(run, collisions=met, uncollided=untested)
     if ranges:
         from kinform import collisions

@@ -14,7 +14,7 @@ from solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, stages, surfaces
 from kinform.consistency import check
-from kinform.model.function import Law
+from kinform.model.function import Law, SimulationRequest
 
 
 def found(X=None, scale=1e-3, **solids):
@@ -151,6 +151,35 @@ def test_a_range_that_the_housing_cuts_short_and_a_run_into_it_are_findings(seek
 
 FREE = ["revolute_collars", "revolute_cone", "revolute_fork", "prismatic_spline", "prismatic_dovetail",
         "prismatic_hexagon", "prismatic_drawer", "screw_right"]  # fmt: skip
+
+
+@pytest.mark.parametrize(("frequency", "speed"), [(50.0, None), (None, 2 * pi / 0.02)])
+def test_what_happens_between_output_times_is_not_missed(seeker, frequency, speed):
+    """At each output time the yaw is where it began: after a whole oscillation, or a whole turn."""
+    function = seeker.assembly.function
+    sine = Law("sine", amplitude=60.0, frequency=frequency or 0.0)
+    law = sine if speed is None else Law("ramp", rate=degrees(speed))
+    drives = tuple(replace(d, law=law) for d in function.drives if d.joint == "yaw")
+    request = replace(seeker.assembly.simulation or SimulationRequest(), duration=0.04, step=0.02)
+    made = replace(seeker.assembly, function=replace(function, drives=drives), simulation=request)
+    design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+    assert abs(np.sin(design.simulation.joint_position[:, 0])).max() < 1e-9
+    met = design.simulation.collisions[0]
+    stop = REACH - pi / 2 - atan2(11, 50)
+    first = asin(stop / (pi / 3)) / (2 * pi * frequency) if speed is None else stop / speed
+    assert met.parts == ("housing", "pitch_motor/stator")
+    assert met.time == pytest.approx(first, rel=0.01)
+
+
+def test_a_motion_too_fast_for_its_output_times_leaves_collisions_unknown(seeker):
+    function = seeker.assembly.function
+    drives = tuple(replace(d, law=Law("ramp", rate=360.0 * 1e6)) for d in function.drives if d.joint == "yaw")
+    request = replace(seeker.assembly.simulation or SimulationRequest(), duration=0.04, step=0.02)
+    made = replace(seeker.assembly, function=replace(function, drives=drives), simulation=request)
+    design = stages.simulate(replace(seeker, assembly=made), level="kinematic")
+    assert not design.simulation.collisions
+    unknown = {item[:2]: item[2] for item in design.simulation.uncollided}
+    assert "state a step of the simulation" in unknown["housing", "pitch_motor/stator"]
 
 
 @pytest.mark.parametrize("name", FREE)

@@ -178,3 +178,19 @@ def test_a_motion_beyond_the_stated_range_is_told_in_the_designers_sense(axis, b
     if fires:
         assert "30°" in found[0].found
         assert "10°" in found[0].intended
+
+
+@pytest.mark.parametrize("phase", [0.0, 30.0, 90.0])
+def test_a_motion_of_whole_oscillations_between_output_times_leaves_its_range_unknown(phase):
+    """At every output time the disc is where it began; at 90° it is at rest there, too."""
+    made = wheel(
+        replace(sine(30.0, 0.5), phase=phase, offset=-30.0 * math.sin(math.radians(phase))), duration=8.0, step=2.0
+    )
+    assert float(np.ptp(made.simulation.joint_position)) < 1e-9
+    (own,) = made.assembly.function.joints
+    function = replace(made.assembly.function, joints=(replace(own, range=(-0.1, 0.1)),))
+    made = replace(made, assembly=replace(made.assembly, function=function))
+    report = check(made)
+    (ran,) = [rule for rule in report.rules if rule.code == "KF413"]
+    assert ran.outcome == "inconclusive"
+    assert "output times 2 s apart" in ran.reason

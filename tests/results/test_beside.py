@@ -47,16 +47,20 @@ def test_what_another_process_cannot_finish_is_computed_here() -> None:
 
 
 @pytest.mark.parametrize("which", [0, 1])
-def test_an_error_of_either_is_raised_and_leaves_no_process(which: int) -> None:
+def test_an_error_of_either_is_raised_and_leaves_no_process(which: int, monkeypatch) -> None:
     def fails() -> None:
         raise ValueError("no")
 
+    started = []
+    fork = os.fork
+    monkeypatch.setattr(os, "fork", lambda: started.append(fork()) or started[0])
     works = [fails, fails]
     works[1 - which] = lambda: None
     with pytest.raises(ValueError, match="no"):
         beside(*works)
+    (child,) = started
     with pytest.raises(ChildProcessError):
-        os.waitpid(-1, os.WNOHANG)
+        os.waitpid(child, os.WNOHANG)
 
 
 def test_joints_are_the_same_side_by_side_with_the_same_decisions(derive_design, monkeypatch) -> None:

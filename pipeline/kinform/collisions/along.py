@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from kinform.collisions.pairs import PairTest
 from kinform.collisions.ranges import shapes_of
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
+from kinform.collisions.shapes import Shapes
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import Collision
 from kinform.model.contacts import Contacts
@@ -27,6 +29,10 @@ Progress = Callable[[int, int], None]
 
 TIME = 1e-4
 """Share of the time between two outputs to which a first contact is found."""
+TURN, SLIDE = 0.2, 0.05
+"""rad, and share of the assembly's size, that a joint may move between outputs: then arcs are as good as straight."""
+MOST, ASKED = 50_000, 3
+"""Outputs up to which a run is asked for again, and how often: with more of them more of the motion is seen."""
 SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
 DEPTHS = 12
@@ -40,16 +46,20 @@ def along(
     kinematics: Kinematics,
     simulation: Simulation,
     progress: Progress | None = None,
+    *,
+    finer: Callable[[int], Simulation] | None = None,
 ) -> tuple[tuple[Collision, ...], tuple[tuple[str, str, str], ...]]:
     """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
 
     Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh
-    and overlap where they do.
-    Between output times bodies move evenly. Empty for runs without poses.
+    and overlap where they do; or the output times are too far apart to tell what happens between them.
+    Between output times bodies are taken to move evenly: where joints move far, the run is asked for again from `finer`,
+    with so many times as many outputs; without it the outputs are trusted. Empty for runs without poses.
     """
     if len(simulation.time) < 2 or not len(simulation.body_names):
         return (), ()
     shapes = shapes_of(assembly, surfaces, contacts, kinematics)
+    simulation, coarse = _followed(simulation, shapes.size, finer)
     names = list(simulation.body_names)
     nodes = _nodes(simulation)
     pairs = moving_pairs(shapes, names, kinematics.joints, nodes)
@@ -77,9 +87,62 @@ def along(
                 untested.append((first, second, "they overlap from the start, and again later"))
                 continue
             out.append(Collision(test.part_names, found.hit, place, depth))
+    if coarse:
+        untested += [(*pair, coarse) for pair in _apart(shapes, names, {c.parts for c in out})]
     if progress is not None:
         progress(len(pairs), len(pairs))
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
+
+
+def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simulation] | None) -> tuple[Simulation, str]:
+    """The run with outputs so near each other that bodies move evenly between them; or why it has not ("" when it has)."""
+    if finer is None:
+        return simulation, ""
+    times, wanted = 1, _parts_of_a_step(simulation, size)
+    for _ in range(ASKED):
+        if wanted == 1 or 2 * wanted * len(simulation.time) > MOST:
+            break
+        times *= 2 * wanted
+        again = finer(times)
+        if len(again.time) < 2:
+            break
+        simulation = again
+        wanted = _parts_of_a_step(simulation, size)
+    if wanted == 1:
+        return simulation, ""
+    return simulation, (
+        "joints move far between output times, so that what parts meet between them is not known: "
+        f"state a step of the simulation {wanted} times smaller"
+    )
+
+
+def _apart(shapes: Shapes, names: Sequence[str], met: Collection[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Pairs of parts of different bodies that are not known to meet."""
+    pairs = (
+        (min(one, other), max(one, other))
+        for first, second in combinations(names, 2)
+        for one, other in product(shapes.body_parts.get(first, ()), shapes.body_parts.get(second, ()))
+    )
+    return [pair for pair in pairs if pair not in met and pair[::-1] not in met]
+
+
+def _parts_of_a_step(simulation: Simulation, size: float) -> int:
+    """Into how many parts to cut the time between outputs, for joints to move evenly and not far in it; `size` in m.
+
+    Rates tell how far they go, and accelerations where they are at rest at the outputs only.
+    """
+    step = float(np.diff(simulation.time).max())
+    turns = {joint: kind != "prismatic" for joint, kind in enumerate(simulation.joint_types)}
+    owner = np.repeat(np.arange(len(simulation.joint_types)), np.diff(simulation.joint_offset))
+    reach = np.array([TURN if turns[int(joint)] else SLIDE * size for joint in owner])
+    if not len(reach):
+        return 1
+    rate, acceleration = (
+        np.abs(np.nan_to_num(values)).max(axis=0, initial=0.0) / reach
+        for values in (simulation.joint_velocity, simulation.joint_acceleration)
+    )
+    parts = max(float(rate.max()) * step, float(np.sqrt(0.5 * acceleration.max(initial=0.0))) * step)
+    return max(1, int(np.ceil(parts - 1e-6)))
 
 
 def _displacements(simulation: Simulation) -> Array:

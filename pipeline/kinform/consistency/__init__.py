@@ -35,4 +35,4 @@ __all__ = [
     "words",
 ]
 
-CODE_VERSION: int = 13
+CODE_VERSION: int = 14

@@ -18,7 +18,7 @@ from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 from kinform.words import number, telling
 
-__all__ = ["of_joint", "peak"]
+__all__ = ["coarse", "of_joint", "peak"]
 
 SINGLE = ("revolute", "prismatic", "screw")
 MANY = 0.2
@@ -57,7 +57,7 @@ def peak(
             )  # fmt: skip
     if not known.all():
         return undecided(f"{what} is not known at all times of the simulation", "See the notes of the simulation.")
-    if _coarse(simulation):
+    if coarse(simulation):
         step = number(float(np.diff(simulation.time).max())) if len(simulation.time) > 1 else "0"
         return undecided(
             f"{text}, but output times {step} s apart are too few to follow the motion", "Ask for a shorter `step` of the output.",
@@ -78,7 +78,7 @@ RESOLVED = 0.1
 within it from six output times a period."""
 
 
-def _coarse(simulation: Simulation) -> bool:
+def coarse(simulation: Simulation) -> bool:
     """Whether speeds and positions change between output times by other than speeds and accelerations there say, in many
     steps: single kinks and jumps of a law are no reason."""
     turns = [int(simulation.joint_offset[k]) for k, kind in enumerate(simulation.joint_types) if kind in SINGLE]
@@ -94,7 +94,9 @@ def _coarse(simulation: Simulation) -> bool:
     by_rates = 0.5 * h * (v[:-1] + v[1:]) + h**2 / 12.0 * (a[:-1] - a[1:])
     missed = np.abs(np.diff(v, axis=0) - 0.5 * h * (a[:-1] + a[1:])) > RESOLVED * fastest
     missed |= np.abs(np.diff(q, axis=0) - by_rates) > RESOLVED * h * fastest
-    return bool(((missed.mean(axis=0) > MANY) & (fastest > QUIET)).any())
+    # Turning points fall on the outputs where their time is that of an oscillation: all rates vanish, accelerations do not.
+    moving = np.maximum(fastest, (h * np.abs(a[1:])).max(axis=0, initial=0.0)) > QUIET
+    return bool(((missed.mean(axis=0) > MANY) & moving).any())
 
 
 def of_joint(

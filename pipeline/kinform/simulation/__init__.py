@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "Course", "SolverSettings", "modelled", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 7
+CODE_VERSION: int = 8
 
 _SOLVING = ("Course", "simulate_system")
 

@@ -23,6 +23,10 @@ __all__ = ["Balance", "imbalance"]
 Array = NDArray[np.float64]
 
 
+VANISHING = 1e-6
+"""Share of the greatest wrench of the run below which wrenches are no measure of errors."""
+
+
 @dataclass(frozen=True, eq=False)
 class Balance:
     """Errors of forces, and of torques over the length, as shares of the greatest wrench then."""
@@ -53,6 +57,8 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
     weights = np.abs(dynamics.mass * np.linalg.norm(dynamics.gravity)).max(initial=0.0)
     scale = np.maximum(sizes.max(axis=1, initial=0.0), weights)
     scale = np.maximum(scale, np.abs(external[..., 3:]).max(axis=(1, 2), initial=0.0))
+    # Where all wrenches pass zero at once, only rounding is left to be compared with rounding.
+    scale = np.maximum(scale, VANISHING * scale.max(initial=0.0))
     errors = np.zeros((len(effort), len(mechanism.bodies)))
     for k, (body, link) in enumerate(zip(bodies, dynamics.body_links, strict=True)):
         X, V, A = states.poses[:, link], states.twists[:, link], states.accelerations[:, link]

@@ -7,6 +7,7 @@ Ordinary Differential Equations II, sections IV.8 and VII.2).
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.simulation.engine import Engine
 from kinform.simulation.kernel import layout
+from kinform.simulation.kernel.explicit import PASSED
 from kinform.simulation.run import Run
 from kinform.simulation.stiffness import jacobian
 from kinform.simulation.stops import Contact
@@ -49,7 +51,7 @@ def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[
     start = float(run.clock[layout.NOW])
     solver: Any = Radau(
         rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
-        first_step=min(1e-6, end - start), jac=lambda t, y: jacobian(run, engine, t, y),
+        first_step=min(1e-6, end - start), max_step=contact.longest(), jac=lambda t, y: jacobian(run, engine, t, y),
     )  # fmt: skip
     while solver.status == "running":
         contact.remember()
@@ -67,14 +69,11 @@ def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[
         _sample(run, engine, dense, place)
         run.y[:] = dense(place) if hit >= 0 else solver.y
         run.clock[layout.NOW] = place
+        run.tally[layout.HIT] = hit
+        if contact.release_if_pulled(engine):
+            return ""
         if hit >= 0:
-            run.tally[layout.HIT] = hit
             return contact.strike(engine)
-        if contact.holding:
-            held = list(contact.holding)
-            contact.release_if_pulled(engine)
-            if contact.holding != held:
-                return ""
         if run.dynamics.rank:
             gap, kept = engine.project(run, place, run.y)
             if not 0.0 <= gap < settings.open:
@@ -94,15 +93,40 @@ def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
     tables, dense = run.dynamics.tables, solver.dense_output()
     found, end = -1, float(solver.t)
     for k, (at, _, sense, held) in enumerate(tables.ints[layout.STOPS]):
-        limit = tables.nums[layout.STOPS][k, 0]
-        if held or not sense * (solver.y[at] - limit) > 1e-12:
+        if held:
             continue
-        low, high = before, end
+        # The curve over the step is a cubic: where it turns, and its ends, are where it reaches farthest.
+        beyond = _Beyond(dense, int(at), int(sense), float(tables.nums[layout.STOPS][k, 0]))
+        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > PASSED), None)
+        if past is None:
+            continue
+        low, high = before, past
         for _ in range(60):
             middle = 0.5 * (low + high)
-            low, high = (low, middle) if sense * (dense(middle)[at] - limit) > 0.0 else (middle, high)
+            low, high = (low, middle) if beyond(middle) > 0.0 else (middle, high)
         found, end = k, high
     return found, end
+
+
+@dataclass(frozen=True)
+class _Beyond:
+    """How far a coordinate is beyond its limit over a step, by the dense output of the method."""
+
+    dense: Any
+    at: int
+    sense: int
+    limit: float
+
+    def __call__(self, t: float) -> float:
+        return float(self.sense * (self.dense(t)[self.at] - self.limit))
+
+    def turns(self, begin: float, end: float) -> list[float]:
+        """Times within (begin, end) at which the coordinate turns, ascending."""
+        share = np.linspace(0.0, 1.0, 4)
+        cubic = np.linalg.solve(np.vander(share), [self(begin + x * (end - begin)) for x in share])
+        roots = np.roots(np.polyder(cubic))
+        real = np.sort(roots[np.abs(roots.imag) < 1e-12].real)
+        return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 
 def _sample(run: Run, engine: Engine, dense: Any, until: float) -> None:

@@ -98,8 +98,8 @@ class _Driver:
         while True:
             status = self._advance()
             self._report()
-            if self.contact.holding and status in _GOING:
-                self.contact.release_if_pulled(self.engine)
+            if status in (*_GOING, layout.STOPPED) and self.contact.release_if_pulled(self.engine):
+                status = layout.SPENT
             if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
                 return ""
             if status == layout.STOPPED:
@@ -119,6 +119,7 @@ class _Driver:
         left = run.settings.steps - int(tally[layout.STEPS])
         tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else SHOWN)
         tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
+        run.clock[layout.STEP] = min(run.clock[layout.STEP], self.contact.longest())
         self.contact.remember()
         return self.engine.advance(run)
 

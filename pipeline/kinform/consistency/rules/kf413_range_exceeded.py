@@ -1,7 +1,8 @@
 """The simulated motion takes a joint beyond the range that the function states.
 
 Positions at the output times count; what lies between them is not looked at. Inconclusive where a joint with a stated
-range was not found as it is intended, directly between its two bodies.
+range was not found as it is intended, directly between its two bodies, and where the output times are too far apart to
+follow the motion.
 
 Why it matters: nothing says that the device may be there. The drive, the initial value or the range is wrong.
 
@@ -14,7 +15,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from kinform.consistency._context import Context
+from kinform.consistency._peaks import coarse
 from kinform.consistency._ranged import matched, shown
 from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.model.findings import Finding
@@ -49,6 +53,11 @@ def check(context: Context) -> Outcome:
             unknown.append(intended.name)
             continue
         findings += _beyond(context, run, intended, *match)
+    if coarse(run):
+        step = number(float(np.diff(run.time).max()))
+        return inconclusive(
+            f"output times {step} s apart are too few to follow the motion: state a smaller step", findings
+        )
     if unknown:
         return inconclusive(f"{quoted(unknown)}: no such joint was found directly between its bodies", findings)
     return decided(findings)

@@ -25,6 +25,7 @@ from kinform.simulation.kernel.layout import (
     KEEP,
     KEPT,
     LEAST,
+    MARGIN,
     MARGINS,
     MASSLESS,
     NEED,
@@ -38,6 +39,7 @@ from kinform.simulation.kernel.layout import (
     PATIENCE,
     PAUSE,
     PAUSED,
+    POSITIONS,
     RANK,
     RATES,
     SIZE,
@@ -50,6 +52,7 @@ from kinform.simulation.kernel.layout import (
     STOPPED,
     STOPS,
     STUCK,
+    TIGHTEST,
     TIMES,
     TRIED,
     VECTORS,
@@ -67,7 +70,16 @@ AGAIN = 20
 GROWTH = 2.5
 """Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
 
-__all__ = ["advance", "sample", "stop_reached"]
+PARTS = 4
+"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
+AROUND = 0.1
+"""Share of the step about the place where a singular pose is expected, within which it is."""
+NARROWED = 12
+"""Times that this is narrowed, to two thirds each."""
+PASSED = 1e-12
+"""Of a limit (rad or m) that is passed: less is rounding."""
+
+__all__ = ["advance", "look", "sample", "stop_reached"]
 
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
@@ -84,16 +96,38 @@ def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out
 
 
 def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[int, float]:
-    """(stop that is passed first before the share x of the step, where); −1 and x when none is."""
-    stops, limits = ints[STOPS], nums[STOPS]
+    """(stop that is passed first before the share x of the step, where); −1 and x when none is.
+
+    A joint that passes its stop and is back before the step ends has passed it: where it turns is looked at too.
+    """
+    stops, limits, first = ints[STOPS], nums[STOPS], ints[COUNTS][0][POSITIONS]
     found, end = -1, x
     for k in range(len(stops)):
         if stops[k][3] != 0:
             continue
-        at, sense = stops[k][0], float(stops[k][2])
-        if not sense * (interpolate(work, y, at, end) - limits[k][0]) > 1e-12:
+        at, rate, sense = stops[k][0], first + stops[k][1], float(stops[k][2])
+        low, past, pace = 0.0, -1.0, sense * y[rate]
+        for part in range(1, PARTS + 1):
+            high = end * float(part) / float(PARTS)
+            later = sense * interpolate(work, y, rate, high)
+            if sense * (interpolate(work, y, at, high) - limits[k][0]) > PASSED:
+                past = high
+                break
+            if pace > 0.0 and later < 0.0:
+                out, back = low, high
+                for _ in range(40):
+                    middle = 0.5 * (out + back)
+                    if sense * interpolate(work, y, rate, middle) > 0.0:
+                        out = middle
+                    else:
+                        back = middle
+                if sense * (interpolate(work, y, at, out) - limits[k][0]) > PASSED:
+                    past = out
+                    break
+            low, pace = high, later
+        if past < 0.0:
             continue
-        low, high = 0.0, end
+        high = past
         for _ in range(60):
             middle = 0.5 * (low + high)
             if sense * (interpolate(work, y, at, middle) - limits[k][0]) > 0.0:
@@ -102,6 +136,27 @@ def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[
                 low = middle
         found, end = k, high
     return found, end
+
+
+def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row, h: float) -> None:
+    """Finds the least margin where a singular pose is crossed in the step: its evaluations keep away from there."""
+    state, slopes = work[STAGES][TRIED], work[STAGES][TRIED + 2]
+    place = (clock[CROSSING] - clock[NOW]) / h
+    low, high = max(0.0, place - AROUND), min(1.0, place + AROUND)
+    first = 0.0
+    for k in range(2 * NARROWED):
+        x = low + (0.382 if k % 2 == 0 else 0.618) * (high - low)
+        for i in range(ints[COUNTS][0][SIZE]):
+            state[i] = interpolate(work, y, i, x)
+        margin = abs(derivative(ints, nums, work, clock[NOW] + x * h, state, slopes))
+        if margin < clock[MARGIN]:
+            clock[MARGIN], clock[TIGHTEST] = margin, clock[NOW] + x * h
+        if k % 2 == 0:
+            first = margin
+        elif first < margin:
+            high = x
+        else:
+            low = low + 0.382 * (high - low)
 
 
 def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts, outputs: Nums) -> int:
@@ -168,8 +223,11 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
         hit, share = -1, 1.0
         due = tally[NEXT] < len(out) and times[tally[NEXT]] <= later
-        if due or len(ints[STOPS]) > 0:
+        crossed = rank > 0 and clock[NOW] < clock[CROSSING] <= later
+        if due or crossed or len(ints[STOPS]) > 0:
             prepare(ints, nums, work, clock, tally, y, h)
+            if crossed:
+                look(ints, nums, work, clock, y, h)
             hit, share = stop_reached(ints, nums, work, y, 1.0)
             reached = later if hit < 0 else clock[NOW] + share * h
             while tally[NEXT] < len(out) and times[tally[NEXT]] <= reached:

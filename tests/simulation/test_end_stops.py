@@ -1,0 +1,122 @@
+"""End stops against closed forms of sliders under constant and periodic forces, and what runs into them and cannot."""
+
+import numpy as np
+import pytest
+
+from kinform.behaviour import Constant, Model, Sine
+from kinform.simulation import Course, SolverSettings, simulate_system
+
+NOTHING = (0.0, 0.0, 0.0)
+
+
+def sliders(masses, stops, efforts, axis=(1, 0, 0)):
+    """Bodies that slide on each other along one line: j0 on the ground, j1 on the first body, …"""
+    model = Model()
+    model.ground("frame")
+    before = "frame"
+    for k, (mass, limits, effort) in enumerate(zip(masses, stops, efforts, strict=True)):
+        model.body(f"b{k}", mass, NOTHING, (1e-3, 1e-3, 1e-3))
+        model.joint(f"j{k}", before, f"b{k}", "prismatic", axis=axis, point=NOTHING)
+        if limits is not None:
+            model.stop(f"s{k}", f"j{k}", *limits)
+        if effort is not None:
+            model.effort(f"e{k}", f"j{k}", effort)
+        before = f"b{k}"
+    return model.system("sliders")
+
+
+@pytest.mark.parametrize("method", ["explicit", "implicit"])
+@pytest.mark.parametrize("share", [0.5, 0.99, 0.9999])
+def test_a_stop_just_below_the_top_of_a_throw_is_met(method, share):
+    """The whole throw is one step: its end is below the stop again."""
+    speed, g = 5.0, 9.81
+    limit = share * speed**2 / (2 * g)
+    system = sliders([1.0], [(-10.0, limit)], [None], axis=(0, 0, 1))
+    run = simulate_system(
+        system, Course(1.0, 0.001), initial={"j0": (0.0, speed)}, settings=SolverSettings(method=method)
+    )
+    met = (speed - np.sqrt(speed**2 - 2 * g * limit)) / g
+    t = run.time
+    expected = np.where(t < met, speed * t - g * t**2 / 2, limit - g * np.maximum(t - met, 0.0) ** 2 / 2)
+    np.testing.assert_allclose(run.joint_position[:, 0], expected, atol=1e-7)
+
+
+def test_an_impact_on_one_stop_lifts_a_joint_off_another():
+    """A bead runs to the end of its track on a cart that is pressed on a wall: cart and bead go on with half its speed."""
+    system = sliders([1.0, 1.0], [(0.0, np.inf), (-1.0, 0.2)], [Constant(-0.5), None])
+    run = simulate_system(system, Course(3.0, 0.05, NOTHING), initial={"j0": (0.0, 0.0), "j1": (0.0, 1.0)})
+    t = np.maximum(run.time - 0.2, 0.0)
+    np.testing.assert_allclose(run.joint_position[:, 0], 0.5 * t - 0.125 * t**2, atol=1e-9)
+    np.testing.assert_allclose(run.joint_position[:, 1], np.minimum(run.time, 0.2), atol=1e-9)
+    assert not [note for note in run.assumptions if "energy" in note]
+
+
+def test_ever_smaller_leaps_between_two_stops_come_to_an_end():
+    """A bead between two stops of a cart, pressed by forces on its own stop and with the cart on that of the ground."""
+    masses, efforts = (1.96, 0.948), (0.5466, -0.9393)
+    system = sliders(masses, [(-0.2256, 0.3341), (-0.4567, 0.2885)], [Constant(f) for f in efforts])
+    run = simulate_system(system, Course(6.0, 0.5, NOTHING), initial={"j0": (0.0, 0.4139), "j1": (0.0, -0.2515)})
+    assert run.status == "done"
+    np.testing.assert_allclose(run.joint_position[-1], [0.3341, -0.4567], atol=1e-9)
+    np.testing.assert_allclose(run.joint_velocity[-1], 0.0, atol=1e-9)
+    # At rest the stops carry all that presses on them.
+    np.testing.assert_allclose(run.joint_effort[-1], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", ["explicit", "implicit"])
+def test_a_stop_lets_go_in_every_period_of_a_fast_law(method):
+    """A slider at rest on its stop allows any step; the law pulls it off for a moment seven times a second."""
+    speed, level, amplitude = 2 * np.pi * 7.0, -1.0, 1.5
+    model = Model()
+    model.ground("frame")
+    model.body("b", 2.0, NOTHING, (1e-3, 1e-3, 1e-3))
+    model.joint("j0", "frame", "b", "prismatic", axis=(1, 0, 0), point=NOTHING)
+    model.stop("s", "j0", 0.0, np.inf)
+    model.effort("e", "j0", Sine(level, amplitude, speed, 0.0))
+    system = model.system("slider")
+    run = simulate_system(
+        system, Course(1.0, 0.002, NOTHING), initial={"j0": (0.0, 0.0)}, settings=SolverSettings(method=method)
+    )
+    off = np.arcsin(-level / amplitude) / speed
+
+    def free(t):
+        """Position after it left at `off`, at rest."""
+        s = t - off
+        swing = amplitude / speed * (np.cos(speed * off) * s - (np.sin(speed * t) - np.sin(speed * off)) / speed)
+        return (level * s**2 / 2 + swing) / 2.0
+
+    phase = run.time % (1.0 / 7.0)
+    fine = np.linspace(off + 1e-4, 1.0 / 7.0 + off, 200_001)
+    back = fine[np.flatnonzero(free(fine) < 0.0)[0]]
+    assert back < 1.0 / 7.0
+    expected = np.where((phase > off) & (phase < back), free(np.maximum(phase, off)), 0.0)
+    np.testing.assert_allclose(run.joint_position[:, 0], expected, atol=1e-7)
+
+
+def test_a_start_beyond_a_stop_is_refused_by_the_name_of_the_joint():
+    run = simulate_system(sliders([1.0], [(0.1, 0.2)], [None]), Course(1.0, 0.1))
+    assert run.status == "refused"
+    assert [name for name, why in run.failures] == ["j0"]
+    assert "beyond its end stop at 0.1" in run.failures[0][1]
+
+
+def test_a_prescribed_motion_through_a_stop_ends_there_and_says_so():
+    model = Model()
+    model.ground("frame")
+    model.body("b", 1.0, NOTHING, (1e-3, 1e-3, 1e-3))
+    model.joint("j", "frame", "b", "prismatic", axis=(1, 0, 0), point=NOTHING)
+    model.stop("s", "j", -0.1, 0.1)
+    model.motion("m", "j", Sine(0.0, 0.3, 5.0, 0.0))
+    run = simulate_system(model.system("driven"), Course(1.0, 0.01))
+    assert run.status == "stopped"
+    assert run.time[-1] == pytest.approx(np.arcsin(1 / 3) / 5, abs=0.01)
+    assert "j reaches its end stop at 0.1" in run.reason
+
+
+@pytest.mark.parametrize(
+    ("duration", "step", "gravity"),
+    [(np.nan, 0.1, NOTHING), (-1.0, 0.1, NOTHING), (1.0, 0.0, NOTHING), (1.0, 0.1, (0, 0, np.nan))],
+)
+def test_a_course_of_impossible_numbers_is_refused(duration, step, gravity):
+    with pytest.raises(ValueError, match=r"duration|step|gravity"):
+        Course(duration, step, gravity)
