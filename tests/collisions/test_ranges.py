@@ -72,6 +72,26 @@ def test_what_only_scrapes_is_passed_and_the_stop_behind_it_is_where_it_is():
     assert item.upper.value == pytest.approx(0.015, abs=2e-6)
 
 
+@pytest.mark.parametrize("scale", [1e-3, 1.0])
+@pytest.mark.parametrize("thick", [1.0, 0.2, 0.05, 0.02])
+def test_a_fin_stops_at_a_wall_however_thin_it_is(thick, scale):
+    slider = box(-10, 10, -12, 12, -12, 12) - box(-20, 20, -4, 4, -4, 4) + box(-1, 1, -2, 20, 12, 20)
+    walls = [box(*sorted((side * 40, side * (40 - thick))), 10, 30, 14, 30) for side in (-1, 1)]
+    solids = {"rail": box(-100, 100, -4, 4, -4, 4), "back": walls[0], "front": walls[1], "slider": slider}
+    made = assembly(
+        *(part(name, solid, np.eye(4), scale) for name, solid in solids.items()),
+        ground="rail", groups=(("frame", ("back", "front", "rail")),),
+    )  # fmt: skip
+    made = replace(made, tolerances=replace(made.tolerances, contact=0.2 * scale))
+    known = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
+    touching = contacts.find(made, known)
+    derived = kinematics.derive(made, known, touching)
+    (item,) = collisions.ranges(made, known, touching, derived)
+    assert item.upper.value / scale == pytest.approx(39.0 - thick, abs=1e-3)
+    assert item.lower.value / scale == pytest.approx(thick - 39.0, abs=1e-3)
+    assert (item.lower.parts, item.upper.parts) == (("back", "slider"), ("front", "slider"))
+
+
 @pytest.mark.parametrize(
     ("stops", "expected"), [((-50, 50), (-0.040, 0.025)), ((-50, None), (-0.040, None)), ((None, None), (None, None))]
 )

@@ -7,4 +7,4 @@ from kinform.collisions.ranges import ranges
 
 __all__ = ["CODE_VERSION", "along", "ranges"]
 
-CODE_VERSION: int = 6
+CODE_VERSION: int = 7

@@ -7,7 +7,7 @@ points lie on a mating surface to within the errors of the pair, are no collisio
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from kinform.collisions.entering import Probes, probes
 from kinform.collisions.mates import Mates, SurfacePair
 from kinform.collisions.shapes import Shapes
 from kinform.contacts.bvh import fcl_distance, fcl_pose
+from kinform.kinematics.screws import perpendicular
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
 
@@ -35,6 +36,8 @@ SAMPLES = 32
 """Ends of crossing segments between which the depth is looked for."""
 GRID = 12
 """Points along the side of a facet that are asked whether they are inside the other part."""
+ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
+"""(8, 2) directions about a point in a plane."""
 MIDDLES = 64
 """Places between them that are asked whether they are inside both parts."""
 INSIDE = 40
@@ -142,19 +145,33 @@ class PairTest:
 
     def inside(self, D: Array, f: int, g: int, least: float) -> bool:
         """Whether points of one of two facets that count are deeper than `least` (m) inside the other part."""
-        X = self.pose(D)
-        grid = np.array([(a, b, GRID - a - b) for a in range(GRID + 1) for b in range(GRID + 1 - a)]) / GRID
-        own = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
-        far = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
-        for name, points in (
-            (self.names[1], (own - X[:3, 3]) @ X[:3, :3]),
-            (self.names[0], far @ X[:3, :3].T + X[:3, 3]),
-        ):
+        for name, points, _ in self._on(D, f, g):
             index = self._shapes.index(name)
             deep = points[index.whole().depths(points)[0] > least]
             if len(deep) and index.contains(deep).any():
                 return True
         return False
+
+    def faces(self, D: Array, f: int, g: int) -> bool:
+        """Whether one of two facets that count lies inside the other part with more of its plane round about than mates
+        may overlap: however thin the part is, it is not just scraped."""
+        for name, points, normal in self._on(D, f, g):
+            index = self._shapes.index(name)
+            within = points[index.contains(points)]
+            for e in ROUND @ np.stack(perpendicular(normal)):
+                within = within[index.contains(within + self.loose * e)] if len(within) else within
+            if len(within):
+                return True
+        return False
+
+    def _on(self, D: Array, f: int, g: int) -> Iterator[tuple[str, Array, Array]]:
+        """Points (n, 3) m on either of two facets, in the frame of the other part, whose name is first; and its normal."""
+        X = self.pose(D)
+        grid = np.array([(a, b, GRID - a - b) for a in range(GRID + 1) for b in range(GRID + 1 - a)]) / GRID
+        own = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        far = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
+        yield self.names[1], (own - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
+        yield self.names[0], far @ X[:3, :3].T + X[:3, 3], X[:3, :3] @ self._normals[1][g]
 
     @cached_property
     def probes(self) -> tuple[Probes, Probes]:

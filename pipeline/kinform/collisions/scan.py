@@ -36,6 +36,8 @@ OVERLAPPING = 5.0
 AHEAD = (0.0, 1.0, 2.0, 4.0)
 """Where points of a part are deep inside the other, facets are looked for that cross too deeply up to so much further, as
 multiples of what mates may be deep: facets may have met before."""
+SOON = (1.0, 0.2, 0.04)
+"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
 RISE = 0.02
 """Share of what may be overlap of mates or chord errors by which the depth has to grow."""
 
@@ -88,7 +90,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
             if right - left > fine:
                 stack.append(course.middle(left, right))
                 continue
-            if search.goes_in(left, end, resolution):
+            if search.goes_in(left, end, resolution, fine):
                 return search.flat(left, right)
         entered = search.entered(left, right, end, fine, resolution)
         if entered is not None:
@@ -160,19 +162,31 @@ class _Search:
         before, after = self.state(left), self.state(right)
         if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
-        nearest = before.nearest if before.distance > 0.0 else after.nearest
-        heights = [self.test.height(self.course.displacement(s), nearest) for s in (left, right)]
         least = 1e-9 * self.test.size
-        if before.distance <= 0.0 and abs(heights[0]) <= least:
-            return heights[1] < -least
-        return heights[0] > least >= heights[1]
+        if before.distance > least:
+            low, high = self._heights(left, right, before.nearest)
+            return low > least >= high
+        # in touch, nearly: which facets are opposite is as well told by what is near afterwards
+        heights = [self._heights(left, right, state.nearest) for state in (before, after) if state.distance > 0.0]
+        return any(low > least >= high or (abs(low) <= least and high < -least) for low, high in heights)
 
-    def goes_in(self, s: float, end: float, step: float) -> bool:
-        """Whether the faces that pass each other at s are inside the parts a step later."""
+    def _heights(self, left: float, right: float, nearest: tuple[int, int]) -> tuple[float, float]:
+        low, high = (self.test.height(self.course.displacement(s), nearest) for s in (left, right))
+        return low, high
+
+    def goes_in(self, s: float, end: float, step: float, fine: float) -> bool:
+        """Whether the faces that pass each other at s are inside the parts a step later; where parts are thin, sooner."""
         nearest = self.state(s).nearest
-        further = self.course.when(self.course.travel(s) + step, s, end)
-        way = self.course.travel(further) - self.course.travel(s)
-        return self.test.inside(self.course.displacement(further), *nearest, 0.4 * way)
+        begun = self.course.travel(s)
+        for share in SOON:
+            further = self.course.when(begun + share * step, s, end)
+            way = self.course.travel(further) - begun
+            if further - s < 4.0 * fine:
+                return False
+            D = self.course.displacement(further)
+            if self.test.faces(D, *nearest) if share < 1.0 else self.test.inside(D, *nearest, 0.4 * way):
+                return True
+        return False
 
     def entered(self, left: float, right: float, end: float, fine: float, resolution: float) -> First | None:
         """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to cross
