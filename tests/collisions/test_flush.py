@@ -102,3 +102,13 @@ def test_the_time_of_the_collision_is_when_the_ends_meet(seed, solids):
     assert place[0] == pytest.approx(0.030, abs=1e-5)
     assert abs(place[1]) < 0.009 and 0.0 < place[2] < 0.008
     assert collisions.along(made, known, touching, kin, moved(kin, [0, 0.017, -0.027, 0.0], X)) == ((), ())
+
+
+def test_what_is_passed_between_two_outputs_has_a_depth():
+    rail = box(-30, 120, -8, 8, -6, 0) + box(30, 34, -8, 8, -1, 10)
+    made, known, touching, kin = derived({"rail": rail, "block": box(-10, 10, -5, 5, 0, 8)}, ground="rail")
+    run = moved(kin, [0.0, 0.080], np.eye(4))
+    ((met,), _) = collisions.along(made, known, touching, kin, run)
+    assert met.time == pytest.approx(20 / 80, abs=1e-3)
+    # in the middle of the wall, 2 mm from its faces and the less deep in the block
+    assert 0.002 < met.depth < 0.012

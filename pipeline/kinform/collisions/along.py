@@ -35,6 +35,8 @@ MOST, ASKED = 50_000, 3
 """Outputs up to which a run is asked for again, and how often: with more of them more of the motion is seen."""
 SAME = 1.25
 """Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
+SOON = 17
+"""Times within an output step of the first contact at which the depth is measured too."""
 DEPTHS = 12
 """Output times after the first contact at which the depth is measured: so many spread over the rest, and about the worst."""
 
@@ -182,9 +184,10 @@ def _nodes(simulation: Simulation) -> Nodes:
 
 
 def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
-    """m: how deep two parts are in each other at the worst of some output times from the first contact on: soon after it,
-    spread over the run, and about the worst of these."""
-    after = time[time >= hit] if (time >= hit).any() else np.array([hit])
+    """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it, between
+    outputs too, at outputs spread over the run, and about the worst of these."""
+    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), SOON)
+    after = np.unique(np.concatenate([soon, time[time >= hit]]))
     last = len(after) - 1
     known: dict[int, float] = {}
 
