@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.behaviour import Ground, JointComponent, Node, RigidBody, System
+from kinform.behaviour import (
+    Constant,
+    EffortDrive,
+    Ground,
+    JointComponent,
+    MotionDrive,
+    Node,
+    RigidBody,
+    Sine,
+    SpringDamper,
+    System,
+)
 from kinform.behaviour.joints import KINDS, JointGeometry
 
 Z = (0.0, 0.0, 1.0)
@@ -161,4 +172,22 @@ def governor():
         model.joint(f"hinge {k}", "shaft", f"arm {k}", point=top)
         spring = SpringDamper(f"spring {k}", f"spring {k}", (0, 0.5, 0) + 0 * along, top + 0.5 * along, 8e5, 4e4, 0.5)
         model.add(spring, a="body slider", b=f"body arm {k}")
+    return model
+
+
+def hung_chain(law=None):
+    """A ball, a slide and hinges in a row, a motion drive in the middle and a loop at the end."""
+    model = Model()
+    model.rod("a", (0, 0, 0), (1, 0, 0))
+    model.rod("b", (1, 0, 0), (2, 0.3, 0.1))
+    model.rod("c", (2, 0.3, 0.1), (3, 0, 0.4))
+    model.rod("d", (3, 0, 0.4), (3, 1, 0.9))
+    model.joint("ball", "base", "a", kind="spherical")
+    model.joint("slide", "a", "b", kind="prismatic", axis=(1, 0, 0), point=(1, 0, 0))
+    model.joint("led", "b", "c", point=(2, 0.3, 0.1))
+    model.joint("knee", "c", "d", axis=(0, 1, 0), point=(3, 0, 0.4))
+    model.joint("held", "base", "d", kind="spherical", point=(3, 1, 0.9))
+    model.on("led", MotionDrive("m", "m", Sine(0.0, 0.1, 2.0, 0.0)))
+    model.on("slide", EffortDrive("e", "e", law or Constant(2.0)))
+    model.add(SpringDamper("s", "s", (0, 0.5, 0), (2, 0.3, 0.1), 30.0, 2.0, 0.5), a="body base", b="body b")
     return model

@@ -37,10 +37,10 @@ def execute(
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
         files.check_text_output(depfile, inputs=[*sources, output])
     first = output is not None and not output.exists()
-    from kinform.run import run, updated
+    import kinform
 
     with Working("run") as working:
-        outcome = (updated if changed else run)(
+        outcome = kinform.run(
             sources[0] if manifest else sources,
             output,
             jobs=cores(jobs),
@@ -49,6 +49,7 @@ def execute(
             units=units,
             say=console.say,
             ranges=ranges,
+            changed=changed,
         )
     if depfile is not None and output is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))

@@ -11,7 +11,7 @@ from kinform.errors import InputError, Problem
 from kinform.ledger import Ledger
 from kinform.model.design import Design
 
-__all__ = ["Progress", "run", "updated"]
+__all__ = ["Progress", "run"]
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the stage, its steps done, and its steps in all."""
@@ -27,6 +27,7 @@ def run(
     units: str | None = None,
     say: Callable[[str], None] | None = None,
     ranges: bool | None = None,
+    changed: bool = False,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
@@ -34,31 +35,16 @@ def run(
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
-    each joint goes; None: where the function states ranges or requirements.
+    each joint goes; None: where the function states ranges or requirements. `changed`: whether it is known that an earlier
+    file is not what a run would give, and need not be asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
-    if output is not None and units is None and ranges is None and isinstance(manifest, str | Path):
+    plain = units is None and ranges is None and not changed
+    if output is not None and plain and isinstance(manifest, str | Path):
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged
-    return updated(
-        manifest, output, jobs=jobs, progress=progress, allow_outside=allow_outside, units=units, say=say, ranges=ranges
-    )  # fmt: skip
-
-
-def updated(
-    manifest: str | Path | Sequence[str | Path],
-    output: str | Path | None = None,
-    *,
-    jobs: int = 1,
-    progress: Progress | None = None,
-    allow_outside: bool = False,
-    units: str | None = None,
-    say: Callable[[str], None] | None = None,
-    ranges: bool | None = None,
-) -> Outcome:
-    """As `run`, where it is known that something changed."""
     ledger = Ledger.of(output)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from known import FIXTURES
-from portmodels import DOWN, Model, bricard, four_bars, governor
+from portmodels import DOWN, Model, bricard, four_bars, governor, hung_chain
 
 from kinform.behaviour import (
     Constant,
@@ -19,7 +19,6 @@ from kinform.behaviour import (
     EffortDrive,
     EndStop,
     Gear,
-    MotionDrive,
     Sine,
     SpringDamper,
     Table,
@@ -51,24 +50,6 @@ def test_a_short_run_does_not_import_numba():
     assert done.stdout.split() == ["done", "False"]
 
 
-def chain():
-    """Led and free joints of several kinds in a row, a spring in space, and a loop through a ball."""
-    model = Model()
-    model.rod("a", (0, 0, 0), (1, 0, 0))
-    model.rod("b", (1, 0, 0), (2, 0.3, 0.1))
-    model.rod("c", (2, 0.3, 0.1), (3, 0, 0.4))
-    model.rod("d", (3, 0, 0.4), (3, 1, 0.9))
-    model.joint("ball", "base", "a", kind="spherical")
-    model.joint("slide", "a", "b", kind="prismatic", axis=(1, 0, 0), point=(1, 0, 0))
-    model.joint("led", "b", "c", point=(2, 0.3, 0.1))
-    model.joint("knee", "c", "d", axis=(0, 1, 0), point=(3, 0, 0.4))
-    model.joint("held", "base", "d", kind="spherical", point=(3, 1, 0.9))
-    model.on("led", MotionDrive("m", "m", Sine(0.0, 0.1, 2.0, 0.0)))
-    model.on("slide", EffortDrive("e", "e", Table(np.array([0.0, 0.15, 1.0]), np.array([2.0, -1.0, 0.5]))))
-    model.add(SpringDamper("s", "s", (0, 0.5, 0), (2, 0.3, 0.1), 30.0, 2.0, 0.5), a="body base", b="body b")
-    return model
-
-
 def geared():
     """A weight that winds up a wheel through a gear and falls on an end stop; a motor with a controller besides."""
     model = Model()
@@ -89,7 +70,7 @@ def geared():
 MODELS = {
     "Bricard": (bricard, SolverSettings(), 0.3),
     "four-bars": (lambda: four_bars(2), SolverSettings(), 0.3),
-    "chain": (chain, SolverSettings(), 0.3),
+    "chain": (lambda: hung_chain(Table(np.array([0.0, 0.15, 1.0]), np.array([2.0, -1.0, 0.5]))), SolverSettings(), 0.3),
     "gears and end stop": (geared, SolverSettings(), 0.6),
     "governor, implicit": (governor, SolverSettings(method="implicit"), 0.02),
 }

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from portmodels import DOWN, Model, bricard, four_bars, squeezer
+from portmodels import DOWN, bricard, four_bars, hung_chain, squeezer
 
-from kinform.behaviour import Constant, EffortDrive, MotionDrive, Sine, SpringDamper
 from kinform.simulation import Course, SolverSettings, simulate_system, solve
 from kinform.simulation.engine import engine
 from kinform.simulation.kernel.addresses import address, addresses
@@ -24,24 +23,6 @@ def begun(model, monkeypatch):
     monkeypatch.setattr(solve, "run_dynamic", caught_run)
     assert simulate_system(model.system(), Course(1e-3, 1e-3, DOWN)).status == "done"
     return caught[0]
-
-
-def hung_chain():
-    """A ball, a slide and hinges in a row, a motion drive in the middle and a loop at the end."""
-    model = Model()
-    model.rod("a", (0, 0, 0), (1, 0, 0))
-    model.rod("b", (1, 0, 0), (2, 0.3, 0.1))
-    model.rod("c", (2, 0.3, 0.1), (3, 0, 0.4))
-    model.rod("d", (3, 0, 0.4), (3, 1, 0.9))
-    model.joint("ball", "base", "a", kind="spherical")
-    model.joint("slide", "a", "b", kind="prismatic", axis=(1, 0, 0), point=(1, 0, 0))
-    model.joint("led", "b", "c", point=(2, 0.3, 0.1))
-    model.joint("knee", "c", "d", axis=(0, 1, 0), point=(3, 0, 0.4))
-    model.joint("held", "base", "d", kind="spherical", point=(3, 1, 0.9))
-    model.on("led", MotionDrive("m", "m", Sine(0.0, 0.1, 2.0, 0.0)))
-    model.on("slide", EffortDrive("e", "e", Constant(2.0)))
-    model.add(SpringDamper("s", "s", (0, 0.5, 0), (2, 0.3, 0.1), 30.0, 2.0, 0.5), a="body base", b="body b")
-    return model
 
 
 MECHANISMS = {

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kinform.consistency._shared import decidable, self_stresses
 from kinform.kinematics.carrying import missing, wrenches_at
-from kinform.kinematics.releases import ContactRows, stated
+from kinform.kinematics.contact_rows import ContactRows, stated
 from kinform.kinematics.screws import Frame
 from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics
@@ -225,9 +225,10 @@ def _patches(design: Design, rows: ContactRows, joint: Joint) -> Iterator[_Patch
         spans = None
         if joint.type in SLIDES and joint.axis is not None:
             found = [_span(design, name, n, joint.axis) for name, n in zip(patch.parts, patch.surfaces, strict=True)]
-            if all(span is not None for span in found):
-                spans = (found[1], found[0]) if turned else (found[0], found[1])
-        yield _Patch(points, normals, second_is_smaller, spans)  # type: ignore[arg-type]
+            first, second = reversed(found) if turned else found
+            if first is not None and second is not None:
+                spans = first, second
+        yield _Patch(points, normals, second_is_smaller, spans)
 
 
 def _pushes(patches: list[_Patch], joint: Joint, X: Array, slide: float, frame: Frame) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from kinform.kinematics.bodies import Merger
 from kinform.kinematics.constraints import assemble
+from kinform.kinematics.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.couplings import couplings
 from kinform.kinematics.extents import Extents
 from kinform.kinematics.fasteners import about_axes, fasten, labelled
@@ -22,7 +23,7 @@ from kinform.kinematics.pairs import Pairs, decide_all
 from kinform.kinematics.proportions import proportioned
 from kinform.kinematics.questions import Answers, bare_patches
 from kinform.kinematics.redundancy import redundancies_of_loops
-from kinform.kinematics.releases import ContactRows, pair_cones, with_releases
+from kinform.kinematics.releases import with_releases
 from kinform.kinematics.separations import links_between, separations
 from kinform.kinematics.sites import redundancy_within
 from kinform.kinematics.snapping import snap, uncertainties

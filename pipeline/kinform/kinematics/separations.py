@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.kinematics.cone import HELD, reduced, unit_rows, within
+from kinform.kinematics.contact_rows import Cone, ContactRows, stated
 from kinform.kinematics.graph import UnionFind, blocks
 from kinform.kinematics.questions import Answers, ask
-from kinform.kinematics.releases import Cone, ContactRows, certainly_held, cone_of, released, stated
+from kinform.kinematics.releases import certainly_held, cone_of, released
 from kinform.kinematics.screws import Frame, cross, scaled, twist_at_origin
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation

@@ -280,8 +280,8 @@ def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]
         gap_above = np.where(np.isfinite(above) & ends_above, above, np.where(inside & ~nearer, below, np.inf))
         (forwards if sign > 0.0 else backwards).append(gap_below.min(initial=np.inf))
         (backwards if sign > 0.0 else forwards).append(gap_above.min(initial=np.inf))
-    found = min(forwards), min(backwards)
-    return tuple(value if math.isfinite(value) else math.nan for value in found)  # type: ignore[return-value]
+    forward, backward = (value if math.isfinite(value) else math.nan for value in (min(forwards), min(backwards)))
+    return forward, backward
 
 
 def _reach(outline: _Outline, row: _Row, touch: Array) -> tuple[float, float]:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.kinematics.contact_rows import ContactRows, stated
 from kinform.kinematics.graph import blocks
-from kinform.kinematics.releases import ContactRows, stated
 from kinform.kinematics.screws import Frame, scaled
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Kinematics
