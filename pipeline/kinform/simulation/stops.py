@@ -7,8 +7,7 @@ dynamics, 1988, without restitution). In contact the joint is held like a prescr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,9 +138,10 @@ class Contact:
         if not self.holding or until <= begin:
             return False
         between = self._between(engine, y, begin, reached, until)
-        pulled = next(
-            (t for t in (*np.linspace(begin, until, 5)[1:-1], until) if self._pulled(engine, t, between(t))), None
-        )
+        if between is None:
+            return False
+        asked = (*np.linspace(begin, until, 5)[1:-1], until)
+        pulled = next((t for t in asked if self._pulled(engine, t, between(t))), None)
         if pulled is None:
             return False
         end, step = float(run.clock[layout.END]), float(run.clock[layout.STEP])
@@ -159,14 +159,22 @@ class Contact:
         run.y[:], run.clock[layout.NOW], run.tally[[layout.NEXT, layout.HIT]] = reached, until, sampled
         return False
 
-    def _between(self, engine: Engine, y: Array, begin: float, reached: Array, until: float) -> CubicHermite:
-        """The state between two times, from the states and their derivatives."""
+    def _between(
+        self, engine: Engine, y: Array, begin: float, reached: Array, until: float
+    ) -> Callable[[float], Array] | None:
+        """The state between two times, from the states and their derivatives; None where these are not finite."""
+        from scipy.interpolate import CubicHermiteSpline
+
         slopes = []
         for t, state in ((begin, y), (until, reached)):
             slope = np.zeros_like(state)
             engine.derivative(self.run, t, state.copy(), slope)
             slopes.append(slope)
-        return CubicHermite(begin, until, y, reached, *slopes)
+        states = np.stack([y, reached])
+        if not (np.isfinite(states).all() and np.isfinite(slopes).all()):
+            return None
+        between: Callable[[float], Array] = CubicHermiteSpline([begin, until], states, np.stack(slopes))
+        return between
 
     def _pulled(self, engine: Engine, t: float, y: Array) -> list[Stop]:
         """The stops that would have to pull in this state."""
@@ -203,25 +211,6 @@ class Contact:
         for k, stop in enumerate(old.actuation.stops):
             made.tables.ints[layout.STOPS][k, 3] = int(any(stop.v == held.v for held in self.holding))
         run.change(made)
-
-
-@dataclass(frozen=True)
-class CubicHermite:
-    """The cubic through two states with their derivatives."""
-
-    begin: float
-    end: float
-    first: Array
-    last: Array
-    rate: Array
-    last_rate: Array
-
-    def __call__(self, t: float) -> Array:
-        h = self.end - self.begin
-        x = (t - self.begin) / h
-        rest = 1.0 - x
-        ends = rest**2 * (1.0 + 2.0 * x) * self.first + x**2 * (1.0 + 2.0 * rest) * self.last
-        return np.asarray(ends + h * x * rest * (rest * self.rate - x * self.last_rate))
 
 
 def beyond(stops: Sequence[Stop], q: Array) -> tuple[tuple[str, str], ...]:
