@@ -51,8 +51,9 @@ def entry() -> NoReturn:
     """The console script."""
     code = _FAILED
     try:
-        from kinform_cli import console
+        from kinform_cli import console, interrupts
 
+        interrupts.listen()
         # nearly all that is made stays until the end: looking for garbage often finds none
         gc.set_threshold(500_000, 20, 20)
         console.tolerate_any_character()

@@ -12,7 +12,7 @@ import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from kinform_cli import console
+from kinform_cli import console, interrupts
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -57,6 +57,7 @@ class Working:
 
     def __call__(self, done: int, total: int) -> None:
         """So many of so many steps of the present stage are done; total 0 when nobody knows."""
+        interrupts.raise_unheard()
         self._done, self._total = done, total
 
     def stage(self, label: str) -> None:

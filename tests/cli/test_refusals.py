@@ -149,6 +149,33 @@ entry()
 """
 
 
+DROPPED = """
+import os, signal, weakref
+from kinform import stages
+from kinform_cli.main import entry
+found = stages.contacts
+class Thing:
+    pass
+def contacts(*given, **named):
+    thing = Thing()
+    held = weakref.ref(thing, lambda _: os.kill(os.getpid(), signal.SIGINT))
+    del thing
+    return found(*given, **named)
+stages.contacts = contacts
+entry()
+"""
+
+
+def test_an_interruption_that_python_drops_in_a_callback_is_heard_at_the_next_step(folder):
+    done = subprocess.run(
+        [sys.executable, "-c", DROPPED, "run", NAME, "-o", "r.h5", "--jobs", "1"],
+        cwd=folder, env=environment(), capture_output=True, text=True, preexec_fn=listening, timeout=60,
+    )  # fmt: skip
+    assert "Exception ignored" in done.stderr
+    assert done.returncode == 2
+    assert not (folder / "r.h5").exists()
+
+
 def test_an_interrupted_run_leaves_the_old_results_as_they_were(folder, command):
     assert command("import", NAME, "-o", "r.h5").returncode == 0
     old = (folder / "r.h5").read_bytes()
