@@ -21,9 +21,9 @@ sys.path[:0] = [str(ROOT / "pipeline"), str(ROOT / "tests")]
 from portmodels import DOWN, Model, bricard, four_bars  # noqa: E402
 
 from kinform.behaviour import RigidBody  # noqa: E402
+from kinform.foundation.algebra.spatial import to_matrix  # noqa: E402
 from kinform.simulation import Course, SolverSettings, simulate_system  # noqa: E402
-from kinform.simulation.engine import Engine, engine  # noqa: E402
-from kinform.simulation.spatial import to_matrix  # noqa: E402
+from kinform.simulation.solver.engine import Engine, engine  # noqa: E402
 
 REPEATS = 5
 TOLERANCES = (1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9, 1e-10)

@@ -34,7 +34,7 @@ solve.run_dynamic = timed
 from kinform_cli.main import main
 sys.exit(main(sys.argv[1:]))
 """
-COMPILE = "from kinform.simulation.engine import engine; engine(compiled=True)"
+COMPILE = "from kinform.simulation.solver.engine import engine; engine(compiled=True)"
 
 
 def started(caches, *command):

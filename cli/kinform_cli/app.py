@@ -63,7 +63,7 @@ _EXAMPLES = examples(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from kinform._version import __version__
+        from kinform.version import __version__
 
         console.emit(f"kinform {__version__}")
         raise typer.Exit

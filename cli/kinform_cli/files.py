@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from kinform_cli.errors import refuse
 
 if TYPE_CHECKING:
-    from kinform.model.design import Design
+    from kinform.design import Design
 
 __all__ = [
     "MESHES",

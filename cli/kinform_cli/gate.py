@@ -14,7 +14,7 @@ from kinform_cli.text import count
 
 if TYPE_CHECKING:
     from kinform.api import Outcome
-    from kinform.model.design import Design
+    from kinform.design import Design
     from kinform.model.findings import Finding
 
 __all__ = ["conclude", "show", "show_run"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kinform.model.design import Design
+    from kinform.design import Design
 
 __all__ = ["ground_note"]
 

@@ -68,7 +68,7 @@ class Lengths:
     @staticmethod
     def of(assembly: Assembly) -> Lengths:
         """In the unit of that assembly's manifest, as fine as its parts call for."""
-        from kinform.form.units import metres_per
+        from kinform.foundation.units import metres_per
 
         metres = metres_per(assembly.units)
         largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)

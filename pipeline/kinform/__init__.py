@@ -7,17 +7,15 @@
 from __future__ import annotations
 
 import importlib
-import sys
-import types
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinform._version import __version__
 from kinform.errors import InputError, KinformError, Problem, ResultsError, StageError
+from kinform.version import __version__
 
 if TYPE_CHECKING:
     from kinform.api import Named, Outcome, Results
-    from kinform.run import run
+    from kinform.method import run
 
 __all__ = [
     "InputError",
@@ -44,7 +42,7 @@ def open(path: str | Path) -> Results:
     return api.open_results(path)
 
 
-_LAZY = {"run": "kinform.run", "Named": "kinform.api", "Outcome": "kinform.api", "Results": "kinform.api"}
+_LAZY = {"run": "kinform.method", "Named": "kinform.api", "Outcome": "kinform.api", "Results": "kinform.api"}
 """Public names that are imported when they are first used, and where from."""
 
 
@@ -56,14 +54,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted(__all__)
-
-
-class _Package(types.ModuleType):
-    """This package: `kinform.run` is the function, also after something imported the module of that name."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name != "run" or not isinstance(value, types.ModuleType):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from kinform.design import Design
 from kinform.errors import Problem, ResultsError, StageError
-from kinform.model.design import Design
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly, Part

@@ -12,25 +12,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from kinform.design import Design
 from kinform.errors import StageError
-from kinform.ledger import Ledger
-from kinform.model.design import Design
+from kinform.foundation.progress import Progress
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import SimulationRequest
+from kinform.reuse.ledger import Ledger
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
-    from kinform.deciding import Known
     from kinform.model.assembly import Assembly
     from kinform.model.kinematics import Kinematics
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
     from kinform.results import Earlier
+    from kinform.reuse.decisions import Known
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
-Progress = Callable[[int, int], None]
-"""Called with the steps done and the steps in all."""
 
 Result = TypeVar("Result")
 
@@ -46,7 +45,7 @@ def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger
 
     Meshes of files that have not changed are taken from earlier results.
     """
-    from kinform.results import lineage
+    from kinform.reuse import lineage
 
     before = None if ledger is None else ledger.previous
     files = {} if before is None or not _current_import(before) else before.fingerprints.files
@@ -75,7 +74,7 @@ def _read(
 
 def _current_import(design: Design | Earlier) -> bool:
     """Whether the present code read this assembly."""
-    from kinform.results import fingerprints
+    from kinform.reuse import fingerprints
 
     mark = fingerprints.mark("assembly", fingerprints.of_assembly(design.assembly))
     return design.fingerprints.stages.get("assembly") == mark
@@ -100,8 +99,7 @@ def contacts(
 
     Earlier surfaces are reused mesh by mesh, earlier contacts pair by pair.
     """
-    from kinform import touching
-    from kinform.results import fingerprints, inputs
+    from kinform.reuse import fingerprints, inputs, touching
 
     ledger = ledger or Ledger()
     view = inputs.assembly_for("contacts", design.assembly)
@@ -123,7 +121,7 @@ def joints(design: Design, *, jobs: int = 1, ledger: Ledger | None = None) -> De
 
     def derive(view: Assembly) -> Any:
         from kinform import kinematics
-        from kinform.deciding import Known
+        from kinform.reuse.decisions import Known
 
         if all(part.mesh is None for part in view.parts):
             return kinematics.functional(view)
@@ -148,7 +146,7 @@ def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
 
     def compile_(view: Assembly) -> Any:
         from kinform.mass import compile_mass
-        from kinform.results import inputs
+        from kinform.reuse import inputs
 
         earlier = _earlier_masses(design, view, ledger)
         return compile_mass(view, inputs.only_bodies(found.bodies), design.surfaces, earlier)
@@ -242,7 +240,7 @@ def check(design: Design, *, ledger: Ledger | None = None) -> Design:
 
 
 def _imported(assembly: Assembly) -> Design:
-    from kinform.results import fingerprints
+    from kinform.reuse import fingerprints
 
     mark = fingerprints.mark("assembly", fingerprints.of_assembly(assembly))
     return Design(assembly, fingerprints=Fingerprints({"assembly": mark}))
@@ -275,7 +273,7 @@ def _without(design: Design, stage: str) -> Design:
 
 def _descended(marks: Fingerprints, stage: str, level: str | None = None) -> Fingerprints:
     """The fingerprints with the lineage of this stage, where that of the stage before is known."""
-    from kinform.results import lineage
+    from kinform.reuse import lineage
 
     before = lineage.STAGES[lineage.STAGES.index(stage) - 1]
     found = lineage.following(stage, marks.lineage.get(before, ""), level)
@@ -293,7 +291,7 @@ def _advance(
 ) -> Design:
     """The design with the result of the stage: the earlier one where nothing changed, else a new one; `asked`: what was
     asked for beside what the design says."""
-    from kinform.results import fingerprints, inputs
+    from kinform.reuse import fingerprints, inputs
 
     ledger = ledger or Ledger()
     start = _without(design, stage)
@@ -322,8 +320,8 @@ def _advance(
 
 def _earlier_masses(design: Design, view: Assembly, ledger: Ledger | None) -> dict[str, MassProperties]:
     """Of earlier results of the present code, the mass properties of parts that are the same to the last bit."""
-    from kinform.results import fingerprints, inputs
-    from kinform.results._digest import digest
+    from kinform.reuse import fingerprints, inputs
+    from kinform.reuse.digest import digest
 
     before = None if ledger is None else ledger.previous
     if before is None or before.assembly.tolerances != view.tolerances or "mass" not in before.fingerprints.inputs:

@@ -79,7 +79,7 @@ def test_the_public_names_are_there_and_run_is_callable_however_it_is_imported()
         "import kinform, sys\n"
         "heavy = {'scipy', 'trimesh', 'numba', 'h5py'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"
-        "import kinform.run\n"
+        "import kinform.method\n"
         "assert callable(kinform.run)\n"
         "assert all(getattr(kinform, name) is not None for name in kinform.__all__)\n"
     )

@@ -11,8 +11,8 @@ from devices import assembly, body, drive, intended, joint, kinematics, rod
 from solids import box, part
 
 from kinform.consistency import check
+from kinform.design import Design
 from kinform.mass import compile_mass
-from kinform.model.design import Design
 from kinform.model.function import Function, Requirement, SimulationRequest
 from kinform.simulation import simulate
 

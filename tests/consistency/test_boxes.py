@@ -7,7 +7,7 @@ import pytest
 from known import FIXTURES
 
 from kinform import form
-from kinform.consistency._plausibility import _rests
+from kinform.consistency.comparisons.plausibility import _rests
 
 MESH = form.load(FIXTURES / "mechanisms/four_bar/four_bar.toml").part("coupler").mesh
 

@@ -12,7 +12,7 @@ from solids import assembly, part
 
 from kinform import contacts, kinematics, stages, surfaces
 from kinform.consistency import check, verdict
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.function import Coupling, Drive, Function, IntendedJoint, Law, Requirement, SimulationRequest
 
 Z = np.array([0.0, 0.0, 1.0])

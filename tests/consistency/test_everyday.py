@@ -11,9 +11,9 @@ from written import manifest, stated_joint
 from kinform import stages
 from kinform.consistency import check
 from kinform.errors import InputError
+from kinform.foundation.words import length
 from kinform.model.findings import Finding
 from kinform.reports.words import place
-from kinform.words import length
 
 
 def checked(path: Path):

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from kinform import stages
-from kinform.kinematics.carrying import missing, wrenches_at
+from kinform.statics.carrying import missing, wrenches_at
 
 BLOCK = 0.04
 """m: edge of a cube that stands on a table; its mass is 0.5 kg."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from contact_shapes import MM, box_loop, extrusion, revolution, round_loop
 
-from kinform.contacts.bvh import MeshIndex
+from kinform.foundation.meshes.index import MeshIndex
 
 PLATE = MeshIndex(extrusion(round_loop(50 * MM, 90), z0=-5 * MM, z1=0.0)[0])
 

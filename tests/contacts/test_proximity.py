@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinform.contacts.boxes import FlatBoxes
-from kinform.contacts.proximity import near_boxes
+from kinform.foundation.meshes.boxes import FlatBoxes
+from kinform.foundation.meshes.proximity import near_boxes
 
 
 def boxes(rng, count, spread, size):

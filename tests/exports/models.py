@@ -9,10 +9,10 @@ import numpy as np
 from devices import HERE, Z, body, device, drive, initial, joint, rod, sine
 
 from kinform import stages
+from kinform.design import Design
 from kinform.exports import export, write
 from kinform.exports.model import export_model
 from kinform.model.assembly import Subassembly
-from kinform.model.design import Design
 from kinform.model.function import Law, Load, SimulationRequest
 from kinform.simulation import simulate
 

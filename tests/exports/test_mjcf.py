@@ -12,7 +12,7 @@ from validators import package
 
 from kinform.behaviour import RigidBody
 from kinform.exports import export
-from kinform.simulation.spatial import to_matrix
+from kinform.foundation.algebra.spatial import to_matrix
 
 
 def loaded(found, folder):

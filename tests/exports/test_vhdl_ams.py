@@ -23,7 +23,7 @@ from kinform.behaviour import JointComponent, Servo
 from kinform.exports import export, vhdl_ams
 from kinform.exports.model import export_model
 from kinform.exports.vhdl_structure import COUNT
-from kinform.simulation.spatial import cross_motion, multiply, quaternions
+from kinform.foundation.algebra.spatial import cross_motion, multiply, quaternions
 
 FREEDOMS = {
     "pendulum": 1, "gimbal": 3, "seeker": 1, "passive_seeker": 2, "every_joint": 12, "reversed_joints": 8, "nested": 5,

@@ -12,9 +12,9 @@ from solids import box, rod
 
 from kinform import contacts, kinematics, stages, surfaces
 from kinform.consistency import check
-from kinform.ledger import Ledger
+from kinform.design import Design
 from kinform.model.assembly import Assumption
-from kinform.model.design import Design
+from kinform.reuse.ledger import Ledger
 
 PLATES = {"upper": drilled(0, 5, CORNERS), "lower": drilled(-5, 0, CORNERS)}
 HORN = {"horn": rod(12, 0, 4, 72) - rod(3, -1, 6), "bracket": box(-20, 20, -20, 20, -5, 0) - rod(4, -6, 1)}

@@ -8,9 +8,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, cKDTree
 
-from kinform.connected import components
-from kinform.kinematics.constraints import hull
-from kinform.near import Near
+from kinform.foundation.graphs.components import components
+from kinform.foundation.meshes.near import Near
+from kinform.kinematics.bodies.matrix import hull
 
 
 def _links(kind: str, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

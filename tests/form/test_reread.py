@@ -11,7 +11,7 @@ from known import FIXTURES
 from kinform import stages
 from kinform.form.again import reread
 from kinform.model.assembly import Assembly
-from kinform.results._digest import digest
+from kinform.reuse.digest import digest
 
 
 def read(manifest: Path) -> tuple[Assembly, dict[str, str]]:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from builders import Z, cylinder, patch, plane, ring, sphere
 
-from kinform.kinematics.decide import decide
-from kinform.kinematics.evidence import gather
+from kinform.kinematics.pair.decision import decide
+from kinform.kinematics.pair.evidence import gather
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]

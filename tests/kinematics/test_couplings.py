@@ -10,7 +10,7 @@ from gearing import cam_and_follower, gear_pair, rack_and_pinion
 from solids import derived, part, random_pose, rod
 
 from kinform.kinematics import functional
-from kinform.kinematics.couplings import convex_turns
+from kinform.kinematics.mobility.couplings import convex_turns
 from kinform.model.function import IntendedJoint
 
 

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from kinform.kinematics.decide import decide
-from kinform.kinematics.evidence import gather
+from kinform.kinematics.pair.decision import decide
+from kinform.kinematics.pair.evidence import gather
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 

@@ -7,8 +7,8 @@ import pytest
 from assemblies import assembly, assume, between, contacts, intended, part
 from builders import Z, cylinder, plane, ring, sphere
 
+from kinform.design import Design
 from kinform.kinematics import derive, functional, mobility_within, query
-from kinform.model.design import Design
 
 
 def hinge(a, b, point, axis=Z, radius=0.004):

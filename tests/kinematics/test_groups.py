@@ -8,8 +8,8 @@ from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
 from solids import ball, box, derived
 
+from kinform.foundation.algebra.screws import Frame, rotation, span, translation
 from kinform.kinematics.groups import group_of, in_words
-from kinform.kinematics.screws import Frame, rotation, span, translation
 
 X, Y, Z = np.eye(3)
 P = np.array([0.1, -0.02, 0.03])

@@ -7,8 +7,8 @@ import pytest
 from assemblies import assembly, between, contacts, intended, part
 from builders import Z, cylinder, plane, ring
 
+from kinform.design import Design
 from kinform.kinematics import derive, insight, intended_answers, query
-from kinform.model.design import Design
 
 X, Y = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinform.kinematics.cycles import short_cycles
-from kinform.kinematics.joints import twists_of
-from kinform.kinematics.mobility import body_twists, close
+from kinform.foundation.graphs.cycles import short_cycles
+from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.pair.joint import twists_of
 
 Z = np.array([0.0, 0.0, 1.0])
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from linkages import bennett
 
-from kinform.kinematics.graph import UnionFind, blocks, forest
-from kinform.kinematics.joints import twists_of
-from kinform.kinematics.mobility import body_twists, close
+from kinform.foundation.graphs.graph import UnionFind, blocks, forest
+from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.pair.joint import twists_of
 
 X, Y, Z = np.eye(3)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from linkages import bennett, bricard, planar, ring
 
-from kinform.kinematics.joints import twists_of
-from kinform.kinematics.motion import loop_system
-from kinform.kinematics.proportions import proportioned
-from kinform.kinematics.screws import Frame
+from kinform.foundation.algebra.screws import Frame
+from kinform.kinematics.bodies.proportions import proportioned
+from kinform.kinematics.mobility.loop_system import loop_system
+from kinform.kinematics.pair.joint import twists_of
 from kinform.model.kinematics import Body, Joint, Misfit
 
 MECHANISMS = {"Bennett": ring(*bennett()), "Bricard": bricard()}

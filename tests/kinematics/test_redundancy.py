@@ -10,9 +10,9 @@ from assemblies import assembly, between, contacts, part
 from builders import cylinder, patch, plane, ring
 from test_mobility import CLOSED, bennett
 
+from kinform.design import Design
 from kinform.kinematics import Motions, derive
-from kinform.kinematics.query import query
-from kinform.model.design import Design
+from kinform.kinematics.questions.query import query
 
 X, Y, Z = np.eye(3)
 

@@ -8,7 +8,7 @@ from gearing import WIDTH, gear_pair, limited, rack_and_pinion, ring, wheel
 from generators.involute import Gear, mesh_angle
 from solids import box, derived, part, random_pose, rod
 
-from kinform.kinematics.teeth import Side, meshing
+from kinform.kinematics.mobility.teeth import Side, meshing
 
 Z = np.array([0.0, 0.0, 1.0])
 

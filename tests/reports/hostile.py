@@ -6,8 +6,8 @@ import dataclasses
 
 from assemblies import assembly, part
 
+from kinform.design import Design
 from kinform.model.assembly import Source
-from kinform.model.design import Design
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
 
 NAMES = (

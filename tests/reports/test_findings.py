@@ -8,7 +8,7 @@ import json
 import pytest
 from assemblies import assembly, part
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports import render
 

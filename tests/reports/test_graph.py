@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinform.kinematics.joints import stated_joint
+from kinform.exports.graph.drawing import graph_dot, graph_svg
+from kinform.exports.graph.layout import placed
+from kinform.kinematics.pair.joint import stated_joint
 from kinform.model.kinematics import Body, ConstraintMatrix, Freedom, Kinematics, Misfit, Mobility, Redundancy
-from kinform.reports._layout import placed
-from kinform.reports.graph import graph_dot, graph_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 ODD = ['a"b', "<script>&", "back\\slash", "line\nbreak", "ein sehr langer Name – Ø"]

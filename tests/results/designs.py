@@ -15,9 +15,9 @@ from hypothesis.extra import numpy as hnp
 
 from kinform.behaviour import Behaviour, Controller, Model, nest
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
+from kinform.design import Design
 from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
-from kinform.model.design import Design
 from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law

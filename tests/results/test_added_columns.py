@@ -5,7 +5,7 @@ from __future__ import annotations
 import h5py
 import pytest
 
-from kinform.results._table import read_rows, real, text, write_rows
+from kinform.results.table import read_rows, real, text, write_rows
 
 
 def test_a_column_that_came_later_may_be_missing(tmp_path):

@@ -12,12 +12,12 @@ import pytest
 from known import FIXTURES
 
 from kinform import stages
-from kinform.beside import beside
-from kinform.deciding import Known
+from kinform.design import Design
 from kinform.kinematics import derive as derived
-from kinform.model.design import Design
-from kinform.results import inputs
-from kinform.results._digest import digest
+from kinform.reuse import inputs
+from kinform.reuse.decisions import Known
+from kinform.reuse.digest import digest
+from kinform.reuse.processes import beside
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
 

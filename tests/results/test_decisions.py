@@ -15,7 +15,7 @@ from linkage import four_bar
 import kinform
 from kinform import results
 from kinform.model.kinematics import Release
-from kinform.results._packed import pack, seal, unpack
+from kinform.reuse.packing import pack, seal, unpack
 
 
 @pytest.fixture(scope="module")

@@ -15,11 +15,11 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import kinform
+from kinform.design import Design
 from kinform.model.assembly import Assembly
-from kinform.model.design import Design
 from kinform.model.function import Function
-from kinform.results import fingerprints, inputs
-from kinform.results._digest import digest
+from kinform.reuse import fingerprints, inputs
+from kinform.reuse.digest import digest
 
 PACKAGE = Path(kinform.__file__).parent
 SETTINGS = settings(

@@ -13,7 +13,7 @@ import pytest
 from known import FIXTURES
 
 from kinform import results
-from kinform.model.design import Design
+from kinform.design import Design
 
 GROUPS = {
     "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation", "findings",

@@ -13,7 +13,7 @@ from known import FIXTURES
 import kinform
 from kinform import results, stages
 from kinform.api import Outcome
-from kinform.kinematics.screws import cross
+from kinform.foundation.algebra.screws import cross
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +125,7 @@ def test_stages_on_results_of_other_code_do_not_pass_for_a_run(pair: Path, monke
 def test_versions_are_read_without_importing_and_are_those_of_the_packages() -> None:
     import importlib
 
-    from kinform.results import fingerprints
+    from kinform.reuse import fingerprints
 
     for packages in fingerprints._CODE.values():
         for package in packages:

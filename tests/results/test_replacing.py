@@ -16,12 +16,12 @@ from pathlib import Path
 import pytest
 
 from kinform import results
+from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.assembly import Assembly, Source
-from kinform.model.design import Design
 from kinform.model.function import Function
 from kinform.model.tolerances import Tolerances
-from kinform.results import _store
+from kinform.results import store as _store
 
 
 def _design(name: str) -> Design:

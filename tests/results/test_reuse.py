@@ -17,7 +17,7 @@ from linkage import four_bar
 
 import kinform
 from kinform import results, stages
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.fingerprints import Fingerprints
 
 STAGES = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")

@@ -9,7 +9,7 @@ from designs import arrays_in, designs, difference
 from hypothesis import HealthCheck, Phase, given, settings
 
 from kinform import results
-from kinform.model.design import Design
+from kinform.design import Design
 
 SETTINGS = settings(
     max_examples=25,

@@ -10,8 +10,8 @@ from scipy.special import ellipk
 from squeezer_equations import end
 
 from kinform.behaviour import Constant, EffortDrive, SpringDamper
+from kinform.foundation.algebra.spatial import to_matrix
 from kinform.simulation import Course, SolverSettings, simulate_system
-from kinform.simulation.spatial import to_matrix
 
 
 def place(run, name, point, k=-1):

@@ -26,13 +26,14 @@ from kinform.behaviour import (
     flat,
 )
 from kinform.model.function import SimulationRequest
-from kinform.simulation import Course, SolverSettings, integrate, simulate, simulate_system
-from kinform.simulation.actuation import Actuation
-from kinform.simulation.assemble import assemble
-from kinform.simulation.dynamics import Dynamics
-from kinform.simulation.engine import Engine, engine
+from kinform.simulation import Course, SolverSettings, simulate, simulate_system
 from kinform.simulation.kernel import layout
-from kinform.simulation.plain import plainly
+from kinform.simulation.kernel.uncompiled import plainly
+from kinform.simulation.mechanism.actuation import Actuation
+from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.solver import integration as integrate
+from kinform.simulation.solver.engine import Engine, engine
 
 SHORT = """
 import sys

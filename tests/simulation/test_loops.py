@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from devices import Z, body, device, drive, initial, joint, rod, sine
 
+from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.function import Law
 from kinform.simulation import simulate
-from kinform.simulation.spatial import to_matrix
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
 

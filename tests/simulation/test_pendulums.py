@@ -8,9 +8,9 @@ from devices import Z, body, device, drive, initial, intended, joint, rod, sine
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
+from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.function import Law, Load
 from kinform.simulation import simulate
-from kinform.simulation.spatial import to_matrix
 
 DOWN = np.array([0.0, -9.81, 0.0])
 

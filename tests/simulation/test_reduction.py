@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from portmodels import DOWN, bricard, four_bars, hung_chain, squeezer
 
-from kinform.simulation import Course, SolverSettings, simulate_system, solve
-from kinform.simulation.engine import engine
+from kinform.simulation import Course, SolverSettings, simulate_system
 from kinform.simulation.kernel.addresses import address, addresses
-from kinform.simulation.run import Run
+from kinform.simulation.solver import solution as solve
+from kinform.simulation.solver.engine import engine
+from kinform.simulation.solver.run_state import Run
 
 
 def begun(model, monkeypatch):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kinform.simulation.topology import arrange
+from kinform.simulation.mechanism.topology import arrange
 
 
 def test_a_chain_is_carried_from_the_ground_outwards():

@@ -17,7 +17,7 @@ from kinform_cli.progress import Working
 from kinform_cli.text import count
 
 if TYPE_CHECKING:
-    from kinform.model.design import Design
+    from kinform.design import Design
     from kinform.model.findings import CheckReport
 
 __all__ = ["EXAMPLES", "check"]

@@ -23,7 +23,7 @@ def contacts(source: Results, output: Output, jobs: Jobs = None, quiet: Quiet = 
     """
     files.check_output(output)
     from kinform import results, stages
-    from kinform.ledger import Ledger
+    from kinform.reuse.ledger import Ledger
 
     design, ledger = files.read(source), Ledger.of(output)
     with files.needing(source), Working("contacts") as progress:

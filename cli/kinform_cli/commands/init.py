@@ -100,8 +100,8 @@ def _fastened(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     if doubts(assembly):
         return _doubted(assembly)
     from kinform import stages
-    from kinform.fastening import fastened
-    from kinform.model.design import Design
+    from kinform.contacts.fastening import fastened
+    from kinform.design import Design
 
     with Working("contacts") as progress:
         found = stages.contacts(Design(assembly), jobs=cores(None), progress=progress).contacts

@@ -16,8 +16,8 @@ from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from kinform.design import Design
     from kinform.kinematics import IntendedAnswer, IntendedMotion, QueryAnswer, QueryBlocker
-    from kinform.model.design import Design
     from kinform_cli.text import Lengths
 
 __all__ = ["EXAMPLES", "query"]

@@ -13,7 +13,7 @@ from kinform_cli.errors import refuse
 from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
 
 if TYPE_CHECKING:
-    from kinform.model.design import Design
+    from kinform.design import Design
 
 __all__ = ["EXAMPLES", "Topic", "show"]
 
@@ -119,7 +119,7 @@ def _draw(source: Path, topic: Topic | None, path: Path) -> None:
     files.check_text_output(path, inputs=[source])
     design = files.read(source)
     from kinform.errors import StageError
-    from kinform.reports.graph import graph_dot, graph_svg
+    from kinform.exports.graph.drawing import graph_dot, graph_svg
 
     with files.needing(source):
         if design.kinematics is None:

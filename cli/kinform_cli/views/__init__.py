@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
+from kinform.design import Design
 from kinform.errors import StageError
-from kinform.model.design import Design
 
 __all__ = ["render", "render_joint"]
 

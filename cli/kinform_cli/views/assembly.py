@@ -7,8 +7,8 @@ from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
 
+from kinform.design import Design
 from kinform.model.assembly import Assembly, Part, Subassembly
-from kinform.model.design import Design
 from kinform_cli.tables import stacked
 from kinform_cli.text import count, number
 

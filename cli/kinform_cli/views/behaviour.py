@@ -33,7 +33,7 @@ from kinform.behaviour import (
 )
 from kinform.behaviour.kinds import kind_of
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform_cli import text
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths, number, vector

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import RenderableType
 
+from kinform.design import Design
 from kinform.model.contacts import Contacts
-from kinform.model.design import Design
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count
 

@@ -6,7 +6,7 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform import reports
-from kinform.model.design import Design
+from kinform.design import Design
 
 __all__ = ["render"]
 

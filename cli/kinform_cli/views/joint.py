@@ -6,8 +6,8 @@ from __future__ import annotations
 from rich.console import RenderableType
 from rich.text import Text
 
+from kinform.design import Design
 from kinform.kinematics import Insight, insight
-from kinform.model.design import Design
 from kinform.model.kinematics import Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, count, number, vector

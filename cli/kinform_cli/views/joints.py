@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
+from kinform.design import Design
 from kinform.model.collisions import JointRange
-from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform_cli.notes import ground_note
 from kinform_cli.tables import Rows, stacked

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.mass import MassProperties, MassReport
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number

@@ -6,12 +6,12 @@ import math
 
 from rich.console import RenderableType
 
+from kinform.design import Design
+from kinform.foundation.words import rate
 from kinform.kinematics import Motions
-from kinform.model.design import Design
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.motions import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
-from kinform.words import rate
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform_cli.tables import stacked
 from kinform_cli.text import count

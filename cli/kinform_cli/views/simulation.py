@@ -7,7 +7,7 @@ import math
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.tables import Rows, stacked

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import ModuleType
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform_cli.views import assembly, behaviour, contacts, findings, joints, mass, mobility, simulation
 
 __all__ = ["TOPICS", "Topic"]

@@ -6,7 +6,6 @@ from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.acting import make_drive, make_gear, make_load, mesh_gear
 from kinform.behaviour.components import Component, Ground, JointComponent, Node, RigidBody, System
@@ -18,8 +17,6 @@ from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 
 __all__ = ["Behaviour", "build"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
 from kinform.behaviour.shafts import (
@@ -25,6 +22,7 @@ from kinform.behaviour.shafts import (
     VoltageController,
     VoltageSource,
 )
+from kinform.model.arrays import Array
 
 __all__ = [
     "Actor",
@@ -49,8 +47,6 @@ __all__ = [
     "VoltageController",
     "VoltageSource",
 ]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

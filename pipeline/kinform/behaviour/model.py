@@ -16,7 +16,7 @@ import math
 from collections import defaultdict
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from kinform.behaviour.components import (
     Component,
@@ -42,11 +42,11 @@ from kinform.behaviour.components import (
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import placed
 from kinform.behaviour.signals import Signal
-from kinform.kinematics.graph import UnionFind
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.model.arrays import Array
 
 __all__ = ["Model"]
 
-Array = NDArray[np.float64]
 Where = str | tuple[str, str]
 """A component by name, or one of its ports: (component, port)."""
 

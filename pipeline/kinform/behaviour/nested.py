@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.components import (
     Component,
@@ -25,11 +24,11 @@ from kinform.behaviour.components import (
     System,
 )
 from kinform.behaviour.joints import KINDS, JointGeometry
-from kinform.kinematics.graph import UnionFind
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.model.arrays import Array
 
 __all__ = ["arranged", "flat", "nest", "placed"]
 
-Array = NDArray[np.float64]
 Leaf = tuple[str, str]
 
 

@@ -14,11 +14,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
 
 __all__ = ["Ball", "OneFreedom", "Primitive", "skew"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.consistency import verdict
+from kinform.design import Design
 from kinform.errors import StageError
+from kinform.foundation.graphs.graph import forest
 from kinform.function import resolve
-from kinform.kinematics.graph import forest
 from kinform.model.assembly import Assembly
-from kinform.model.design import Design
 from kinform.model.findings import CheckReport
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics

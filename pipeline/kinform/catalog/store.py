@@ -14,7 +14,7 @@ from pathlib import Path
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
-from kinform.results import _store
+from kinform.results import store as _store
 
 __all__ = ["SCHEMA", "Catalog", "opened", "read", "write"]
 

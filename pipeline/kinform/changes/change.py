@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kinform.changes.snapshot import Axis, Vector
-from kinform.words import direction, length, place
+from kinform.foundation.words import direction, length, place
 
 __all__ = ["Change", "Said", "freedoms", "listed", "quoted", "signed"]
 

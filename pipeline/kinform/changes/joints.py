@@ -11,7 +11,7 @@ from kinform.changes.change import Change, Said, freedoms, quoted, signed
 from kinform.changes.matching import holder
 from kinform.changes.snapshot import Axis, JointState, Snapshot
 from kinform.changes.tolerance import Tolerance
-from kinform.words import angle, direction
+from kinform.foundation.words import angle, direction
 
 __all__ = ["joint_changes"]
 

@@ -18,8 +18,8 @@ from kinform.changes.change import Change
 from kinform.changes.compare import Comparison, compare
 from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.tolerance import Tolerance
+from kinform.design import Design
 from kinform.errors import InputError, Problem
-from kinform.model.design import Design
 from kinform.model.findings import CheckReport, Finding
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 from kinform.changes.change import Change, Said, signed
 from kinform.changes.snapshot import BodyMass, Snapshot
 from kinform.changes.tolerance import Tolerance
-from kinform.words import number
+from kinform.foundation.words import number
 
 __all__ = ["mass_changes"]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.design import Design
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.design import Design
 from kinform.model.kinematics import Joint
 from kinform.model.mass import MassProperties
 

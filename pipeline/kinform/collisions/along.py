@@ -7,7 +7,6 @@ from functools import lru_cache
 from itertools import combinations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
@@ -15,6 +14,8 @@ from kinform.collisions.ranges import shapes_of
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
 from kinform.collisions.shapes import Shapes
+from kinform.foundation.progress import Progress
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import Collision
 from kinform.model.contacts import Contacts
@@ -24,8 +25,6 @@ from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["along"]
 
-Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 TIME = 1e-4
 """Share of the time between two outputs to which a first contact is found."""

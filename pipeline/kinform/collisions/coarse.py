@@ -12,15 +12,14 @@ from functools import cached_property
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.shapes import Shapes
-from kinform.contacts.bvh import fcl_distance, fcl_pose
+from kinform.foundation.meshes.index import fcl_distance, fcl_pose
+from kinform.model.arrays import Array
 
 __all__ = ["Wholes"]
 
-Array = NDArray[np.float64]
 
 SHORT = 0.01
 """Steps below this share of the smaller part's size are short."""

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
 
 __all__ = ["Course"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.screws import cross
+from kinform.foundation.algebra.screws import cross
+from kinform.model.arrays import Array, Flags
 
 __all__ = ["crossings"]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 

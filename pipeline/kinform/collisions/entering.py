@@ -10,16 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.contacts.bvh import MeshIndex, inner_weights
+from kinform.foundation.meshes.index import MeshIndex, inner_weights
+from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
 __all__ = ["Probes", "probes"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 EACH = 24
 """Points on one surface."""

@@ -6,15 +6,13 @@ Each point is asked for again only after it may have travelled as far as it was 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
+from kinform.model.arrays import Array, Ints
 
 __all__ = ["Inside"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SPECK = 1e-8
 """Share of the smaller part's diagonal by which a point is inside."""

@@ -14,14 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.screws import cross, perpendicular
+from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 __all__ = ["Allowed", "OwnMotions", "Slippage"]
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 DRIFT = 0.02

@@ -13,20 +13,19 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.path import RETURNED, Between, Linkage, Path, follow
 from kinform.collisions.recorded import Nodes, moving_pairs
 from kinform.collisions.scan import first_crossing
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import drive_alone, guide, joint_twist
+from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
 
 __all__ = ["drive_loops"]
 
-Array = NDArray[np.float64]
 Edge = tuple[int, int]
 
 LEAVES = "leaves its guide"

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence, Set
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 __all__ = ["Mates"]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 SurfacePair = tuple[int, int]
 
 _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")

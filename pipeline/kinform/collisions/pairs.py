@@ -13,22 +13,19 @@ from functools import cached_property
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.crossing import crossings
 from kinform.collisions.entering import Probes, probes
 from kinform.collisions.mates import Mates, SurfacePair
 from kinform.collisions.shapes import Shapes
-from kinform.contacts.bvh import fcl_distance, fcl_pose
-from kinform.kinematics.screws import perpendicular
+from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.meshes.index import fcl_distance, fcl_pose
+from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
 
 __all__ = ["Crossing", "PairTest"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 PRESERVED = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""

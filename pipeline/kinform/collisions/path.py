@@ -12,17 +12,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.graph import forest
-from kinform.kinematics.motion import LoopSystem, exponentials, inverse, loop_system
-from kinform.kinematics.screws import Frame
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.graphs.graph import forest
+from kinform.kinematics.mobility.loop_system import LoopSystem, exponentials, inverse, loop_system
+from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics
 
 __all__ = ["RETURNED", "Between", "Linkage", "Path", "follow"]
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Edge = tuple[int, int]
 
 STEP = 0.04

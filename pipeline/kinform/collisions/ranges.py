@@ -6,13 +6,14 @@ are driven together. Of other joints the range is not known, and it is said why.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from kinform.collisions.linkage import drive_loops
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import drive_alone
-from kinform.kinematics.graph import UnionFind, blocks
+from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Contacts
@@ -21,7 +22,6 @@ from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["ONE_FREEDOM", "ranges", "shapes_of", "unknown"]
 
-Progress = Callable[[int, int], None]
 
 ONE_FREEDOM = ("revolute", "prismatic", "screw")
 

@@ -8,20 +8,18 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import preserved
-from kinform.kinematics.motion import inverse
+from kinform.kinematics.mobility.loop_system import inverse
+from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
 
 __all__ = ["HIGHER", "Moving", "Nodes", "moving_pairs"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 HIGHER = ("point", "line")
 """Patches whose place on the parts changes as they move."""

@@ -12,16 +12,15 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.course import Course
 from kinform.collisions.inside import Inside
 from kinform.collisions.mates import SurfacePair
 from kinform.collisions.pairs import NONE, Crossing, PairTest
+from kinform.model.arrays import Array
 
 __all__ = ["First", "first_crossing"]
 
-Array = NDArray[np.float64]
 
 WORK = 4000
 """Poses of one pair that one question may try."""

@@ -7,21 +7,18 @@ from functools import cached_property
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
-from kinform.contacts.boxes import together
-from kinform.contacts.bvh import MeshIndex, MeshStore, partial_model
-from kinform.kinematics.screws import cross
+from kinform.foundation.algebra.screws import cross
+from kinform.foundation.meshes.boxes import together
+from kinform.foundation.meshes.index import MeshIndex, MeshStore, partial_model
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Shapes"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 SPHERES = 96
 """Spheres about the facets of a part."""

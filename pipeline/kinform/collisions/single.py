@@ -8,7 +8,6 @@ from collections.abc import Generator, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.collisions.coarse import Wholes
 from kinform.collisions.course import Course
@@ -16,8 +15,9 @@ from kinform.collisions.pairs import PRESERVED, PairTest
 from kinform.collisions.scan import first_crossing
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.sweeps import Profile, meeting
-from kinform.kinematics.displacements import displacement
-from kinform.kinematics.screws import cross
+from kinform.foundation.algebra.displacements import displacement
+from kinform.foundation.algebra.screws import cross
+from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
@@ -25,7 +25,6 @@ from kinform.model.names import PartName
 
 __all__ = ["drive_alone", "guide", "joint_twist", "preserved"]
 
-Array = NDArray[np.float64]
 Pair = tuple[PartName, PartName]
 
 ANGLE = math.radians(2e-5)

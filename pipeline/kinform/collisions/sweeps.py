@@ -7,15 +7,12 @@ shadow: facets whose boxes in these coordinates are apart never meet, over the w
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.contacts.proximity import near_boxes
-from kinform.kinematics.screws import cross, perpendicular
+from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.foundation.meshes.proximity import near_boxes
+from kinform.model.arrays import Array, Ints
 
 __all__ = ["Profile", "meeting"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Profile:

@@ -7,13 +7,13 @@ what a code means.
 
 from __future__ import annotations
 
-from kinform import words
-from kinform.consistency._baseline import Baseline, adopt, read_baseline, with_baseline
-from kinform.consistency._check import amended, check, verdict
-from kinform.consistency._compare import Comparison, compare
-from kinform.consistency._explain import UnknownRuleError, explain, rules_markdown
-from kinform.consistency._rule import Outcome, Rule
+from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
+from kinform.consistency.comparisons.intended_joints import Comparison, compare
+from kinform.consistency.explain import UnknownRuleError, explain, rules_markdown
+from kinform.consistency.gate import amended, check, verdict
+from kinform.consistency.rule import Outcome, Rule
 from kinform.consistency.rules import RULES
+from kinform.foundation import words
 
 __all__ = [
     "CODE_VERSION",

@@ -7,19 +7,18 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from kinform.contacts.broad import Pair, candidate_pairs
-from kinform.contacts.bvh import MeshStore
+from kinform.contacts.fastening import suggest
+from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, pair_contacts
-from kinform.contacts.solids import SolidStore
-from kinform.fastening import suggest
+from kinform.contacts.search.broad import Pair, candidate_pairs
+from kinform.foundation.meshes.index import MeshStore
+from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["find"]
-
-Progress = Callable[[int, int], None]
 
 
 class _Work:

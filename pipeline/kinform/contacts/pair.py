@@ -5,31 +5,30 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.contacts.bvh import MeshStore
-from kinform.contacts.coaxial import cone_mates, cylinder_mates
-from kinform.contacts.edges import edge_contacts
-from kinform.contacts.freeform import freeform_patches
-from kinform.contacts.higher import higher_pairs, pins_in_slots
-from kinform.contacts.interference import find_interference
-from kinform.contacts.mates import EDGE, Mate, box_overlap
-from kinform.contacts.onesided import one_sided_mates, without_continuations
-from kinform.contacts.patches import mated_patches, placed_in_world
-from kinform.contacts.placed import NearSurfaces, PlacedPart, facing, near_surfaces, place
-from kinform.contacts.planes import plane_mates
-from kinform.contacts.profiles import profile_contacts
-from kinform.contacts.solids import SolidStore
-from kinform.contacts.spheres import sphere_mates
-from kinform.contacts.threads import threaded_patches
-from kinform.model.assembly import Part, freeze
+from kinform.contacts.higher.edges import edge_contacts
+from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
+from kinform.contacts.higher.profiles import profile_contacts
+from kinform.contacts.mating.coaxial import cone_mates, cylinder_mates
+from kinform.contacts.mating.freeform import freeform_patches
+from kinform.contacts.mating.mates import EDGE, Mate, box_overlap
+from kinform.contacts.mating.onesided import one_sided_mates, without_continuations
+from kinform.contacts.mating.patches import mated_patches, placed_in_world
+from kinform.contacts.mating.planes import plane_mates
+from kinform.contacts.mating.spheres import sphere_mates
+from kinform.contacts.mating.threads import threaded_patches
+from kinform.contacts.overlap.interference import find_interference
+from kinform.contacts.overlap.solids import SolidStore
+from kinform.contacts.search.placed import NearSurfaces, PlacedPart, facing, near_surfaces, place
+from kinform.foundation.meshes.index import MeshStore
+from kinform.model.arrays import Array, freeze
+from kinform.model.assembly import Part
 from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["PairContacts", "pair_contacts"]
 
-Array = NDArray[np.float64]
 
 _STRIP = 0.02
 """Share of the area of a part below which a surface may be a facet of a curve."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.primitives import Ball, OneFreedom
 from kinform.exports.robot import Robot, RobotLink
+from kinform.model.arrays import Array
 
 __all__ = ["Hinge", "chain"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform._version import __version__
 from kinform.exports.exported import Exported
 from kinform.exports.looks import Shape, shapes
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
+from kinform.foundation.algebra.spatial import quaternions
+from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
-from kinform.simulation.spatial import quaternions
+from kinform.version import __version__
 
 __all__ = ["export"]
 
-Array = NDArray[np.float64]
 
 FLOAT, UNSIGNED = 5126, 5125
 VERTICES, INDICES = 34962, 34963

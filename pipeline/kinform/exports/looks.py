@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
+from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 
 __all__ = ["Shape", "shapes", "stl"]
 
-Array = NDArray[np.float64]
 Colour = tuple[float, float, float, float]
 
 _KNOWN: dict[str, tuple[float, float, float]] = {

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from kinform.behaviour import JointComponent, MotionDrive
 from kinform.exports.model import ExportModel
 from kinform.exports.tree import Closing, Tree
-from kinform.kinematics.screws import perpendicular
-from kinform.simulation.closure import rank_of
+from kinform.foundation.algebra.screws import perpendicular
+from kinform.model.arrays import Array
+from kinform.simulation.mechanism.closure import rank_of
 
 __all__ = ["Closure", "Loops", "held_rates", "loops", "singular"]
 
-Array = NDArray[np.float64]
 
 MOVED = 1e-9
 """rad or m: what counts as motion."""

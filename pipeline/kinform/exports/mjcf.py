@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.primitives import Ball
 from kinform.exports.exported import Exported
@@ -25,11 +24,11 @@ from kinform.exports.names import MJCF
 from kinform.exports.robot import Robot, RobotLink, robot
 from kinform.exports.text import render, vector
 from kinform.exports.tree import Closing, Link, Motion
-from kinform.simulation.spatial import to_matrix
+from kinform.foundation.algebra.spatial import to_matrix
+from kinform.model.arrays import Array
 
 __all__ = ["export"]
 
-Array = NDArray[np.float64]
 
 CLOSABLE = ("spherical", "revolute", "fixed")
 LEAST_MOMENT = 1e-14

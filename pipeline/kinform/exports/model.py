@@ -9,25 +9,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
 from kinform.behaviour.components import EndStop, SpringDamper
+from kinform.design import Design
 from kinform.errors import StageError
+from kinform.foundation.algebra.spatial import quaternions
 from kinform.function import resolve
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
-from kinform.model.design import Design
 from kinform.model.function import SimulationRequest
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
-from kinform.simulation.assemble import assemble
-from kinform.simulation.mechanism import Mechanism
-from kinform.simulation.spatial import quaternions
+from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.mechanism import Mechanism
 
 __all__ = ["BodyStart", "ExportModel", "export_model"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour import (
     Component,
@@ -39,11 +38,11 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
 from kinform.exports.tree import Link, Tree, grow
-from kinform.simulation.spatial import to_matrix
+from kinform.foundation.algebra.spatial import to_matrix
+from kinform.model.arrays import Array
 
 __all__ = ["export"]
 
-Array = NDArray[np.float64]
 
 LIBRARY = (
     "Frame Shaft Ground Body Revolute Prismatic Screw Spherical Fixed Free Cylindrical Planar PlanarReversed Universal "

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from kinform.behaviour import (
@@ -72,10 +71,9 @@ from kinform.exports.port_schema import (
     VoltageControllerData,
     VoltageData,
 )
+from kinform.model.arrays import Array
 
 __all__ = ["data", "export", "network", "read", "write"]
-
-Array = NDArray[np.float64]
 
 
 def export(model: ExportModel) -> Exported:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 
+from kinform.design import Design
 from kinform.exports.exported import Exported, LostError
 from kinform.exports.model import ExportModel, export_model
-from kinform.model.design import Design
 
 __all__ = ["FORMATS", "Format", "export"]
 

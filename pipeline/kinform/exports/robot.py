@@ -6,7 +6,6 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour import (
     Actor,
@@ -26,10 +25,10 @@ from kinform.exports.looks import Shape, shapes, stl
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
+from kinform.model.arrays import Array
 
 __all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot"]
 
-Array = NDArray[np.float64]
 Driver = MotionDrive | EffortDrive | Servo | DcMotor
 """What drives a joint."""
 

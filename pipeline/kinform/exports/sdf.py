@@ -10,9 +10,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from kinform.behaviour.joints import KINDS
 from kinform.behaviour.primitives import OneFreedom
 from kinform.exports.chains import Hinge, chain
@@ -22,10 +19,10 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import SDF
 from kinform.exports.robot import Robot, RobotLink, robot
 from kinform.exports.text import render
+from kinform.model.arrays import Array
 
 __all__ = ["export"]
 
-Array = NDArray[np.float64]
 
 GRAIN = 1e-9
 """kg and kg·m², of links that have no mass."""

@@ -7,16 +7,14 @@ import io
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.joints import KINDS
 from kinform.exports.exported import Exported, ExportError
 from kinform.exports.model import ExportModel
+from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 
 __all__ = ["export"]
-
-Array = NDArray[np.float64]
 
 
 def export(model: ExportModel) -> Exported:

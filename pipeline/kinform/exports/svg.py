@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from kinform.exports.exported import Exported
+from kinform.exports.graph.drawing import graph_svg
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
-from kinform.reports.graph import graph_svg
 
 __all__ = ["export"]
 

@@ -11,16 +11,14 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour import Ground, JointComponent, RigidBody, System
 from kinform.behaviour.primitives import Ball, Primitive
-from kinform.kinematics.graph import UnionFind, neighbours
-from kinform.simulation.topology import arrange
+from kinform.foundation.graphs.graph import UnionFind, neighbours
+from kinform.model.arrays import Array
+from kinform.simulation.mechanism.topology import arrange
 
 __all__ = ["Closing", "Link", "Motion", "Tree", "coordinate_names", "grow"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour import Ground, JointComponent, RigidBody
 from kinform.exports.exported import Exported
@@ -23,12 +22,11 @@ from kinform.exports.text import number, render, vector
 from kinform.exports.tree import Tree, grow
 from kinform.exports.vhdl_drives import drives
 from kinform.exports.vhdl_structure import AXES, COUNT, Part, Writer
-from kinform.kinematics.screws import perpendicular
-from kinform.simulation.spatial import to_matrix
+from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.algebra.spatial import to_matrix
+from kinform.model.arrays import Array
 
 __all__ = ["export"]
-
-Array = NDArray[np.float64]
 
 
 def export(model: ExportModel) -> Exported:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from kinform.form.problems import Problems
 from kinform.form.sources import MESHES, Sources, earlier_meshes
-from kinform.form.units import metres_per
+from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Part
 
 __all__ = ["reread"]

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
 
 __all__ = ["pose", "quaternion_rotation", "rpy_rotation", "unit_error"]
 
-Array = NDArray[np.float64]
 
 UNIT = 1e-6
 """A quaternion whose length is off by more than this was not meant as a rotation."""

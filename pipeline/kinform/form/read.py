@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.errors import InputError, Problem
 from kinform.form.manifest.common import Posed
@@ -21,15 +20,14 @@ from kinform.form.problems import Problems, did_you_mean, quoted
 from kinform.form.purposes import Purposes
 from kinform.form.scope import Scope, parse
 from kinform.form.sources import Sources, earlier_meshes
-from kinform.form.units import metres_per
+from kinform.foundation.units import metres_per
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Source, Subassembly
 from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["load", "load_with_contents"]
-
-Array = NDArray[np.float64]
 
 
 def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from kinform.form import translate
@@ -17,12 +16,12 @@ from kinform.form.lines import LineTable
 from kinform.form.lines import Path as KeyPath
 from kinform.form.manifest import Manifest
 from kinform.form.problems import Problems
-from kinform.form.units import metres_per
+from kinform.foundation.units import metres_per
+from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 
 __all__ = ["Scope", "parse"]
 
-Array = NDArray[np.float64]
 
 _PLACE = re.compile(r"\(at line (\d+), column \d+\)")
 

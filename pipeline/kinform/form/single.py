@@ -15,7 +15,7 @@ from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems, did_you_mean, quoted
 from kinform.form.sources import read_raw
-from kinform.form.units import METRES_PER_UNIT, UNITS, metres_per
+from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function
 from kinform.model.names import PartName

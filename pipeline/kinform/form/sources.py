@@ -12,7 +12,7 @@ from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.problems import Problems, did_you_mean
-from kinform.form.units import metres_per
+from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh
 
 __all__ = ["MESHES", "Sources", "content", "earlier_meshes", "read_raw"]

@@ -13,18 +13,16 @@ from dataclasses import dataclass
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.contacts.bvh import MeshIndex, fcl_distance, fcl_model, fcl_pose
+from kinform.foundation.meshes.index import MeshIndex, fcl_distance, fcl_model, fcl_pose
+from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Apart", "Nearest", "apart"]
 
-Array = NDArray[np.float64]
 _GRID = np.array([[i, j, 8 - i - j] for i in range(9) for j in range(9 - i)]) / 8.0
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,16 +15,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.graphs.graph import blocks
 from kinform.function.resolve import resolve
-from kinform.kinematics.graph import blocks
-from kinform.kinematics.motion import LoopSystem, loop_system
-from kinform.kinematics.screws import Frame
+from kinform.kinematics.mobility.loop_system import LoopSystem, loop_system
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 
 __all__ = ["Chain", "Coordinate", "chain_between", "close", "mechanism_of"]
 
-Array = NDArray[np.float64]
 
 CLOSED = 1e-9
 """Residual (rad, share of the size) at which loops count as closed."""

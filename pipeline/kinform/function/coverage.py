@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.function.configurations import Chain, close
+from kinform.model.arrays import Array
 
 __all__ = ["Coverage", "cover"]
 
-Array = NDArray[np.float64]
 
 SAMPLES = 4000
 WALK = 600

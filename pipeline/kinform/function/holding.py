@@ -10,13 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.function.configurations import Chain, close
+from kinform.model.arrays import Array
 
 __all__ = ["Force", "holding_effort", "posed"]
 
-Array = NDArray[np.float64]
 
 Force = Callable[[str, Array], tuple[Array, Array] | None]
 """Force (3,) N and torque (3,) N·m about the world's origin on a body that is displaced by (4, 4); None: unknown."""

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.screws import perpendicular
+from kinform.foundation.algebra.screws import perpendicular
+from kinform.model.arrays import Array
 
 __all__ = ["Targets", "targets_of"]
 
-Array = NDArray[np.float64]
 
 INSIDE, RIM = 240, 48
 """Directions inside of a cone, and on its rim."""

@@ -15,15 +15,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinform.foundation.algebra.displacements import displacement, twist_of
 from kinform.function.clearances import Apart, Nearest
 from kinform.function.configurations import Chain
-from kinform.kinematics.displacements import displacement, twist_of
+from kinform.model.arrays import Array
 
 __all__ = ["Swept", "along", "over"]
 
-Array = NDArray[np.float64]
 
 BUDGET = 4000
 """Poses that are measured before giving up."""

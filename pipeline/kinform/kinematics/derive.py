@@ -9,27 +9,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.kinematics.bodies import Merger
-from kinform.kinematics.constraints import assemble
-from kinform.kinematics.contact_rows import ContactRows, pair_cones
-from kinform.kinematics.couplings import couplings
-from kinform.kinematics.extents import Extents
-from kinform.kinematics.fasteners import about_axes, fasten, labelled
-from kinform.kinematics.finite import finite_mobility
-from kinform.kinematics.higher import agree
-from kinform.kinematics.mobility import Closure, body_twists, close
-from kinform.kinematics.motions import named_freedoms
-from kinform.kinematics.pairs import Pairs, decide_all
-from kinform.kinematics.proportions import proportioned
-from kinform.kinematics.questions import Answers, bare_patches
-from kinform.kinematics.redundancy import redundancies_of_loops
-from kinform.kinematics.releases import with_releases
-from kinform.kinematics.separations import links_between, separations
-from kinform.kinematics.sites import redundancy_within
-from kinform.kinematics.snapping import snap, uncertainties
-from kinform.kinematics.spinning import idle_turns, touching_balls
-from kinform.kinematics.stated import coupled_mobility, coupling_rows, restricted
-from kinform.kinematics.statements import intended_joint, pair_between, stated_joints
+from kinform.kinematics.bodies.classification import Pairs, decide_all
+from kinform.kinematics.bodies.extents import Extents
+from kinform.kinematics.bodies.fasteners import about_axes, fasten, labelled
+from kinform.kinematics.bodies.higher_pairs import agree
+from kinform.kinematics.bodies.matrix import assemble
+from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.bodies.proportions import proportioned
+from kinform.kinematics.bodies.snapping import snap, uncertainties
+from kinform.kinematics.bodies.stated_joints import intended_joint, pair_between, stated_joints
+from kinform.kinematics.mobility.closure import Closure, body_twists, close
+from kinform.kinematics.mobility.couplings import couplings
+from kinform.kinematics.mobility.finite import finite_mobility
+from kinform.kinematics.mobility.named_freedoms import named_freedoms
+from kinform.kinematics.mobility.redundancy import redundancies_of_loops
+from kinform.kinematics.mobility.sites import redundancy_within
+from kinform.kinematics.mobility.spinning import idle_turns, touching_balls
+from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restricted
+from kinform.kinematics.pair.answer import Answers, bare_patches
+from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
+from kinform.kinematics.separation.releases import with_releases
+from kinform.kinematics.separation.separations import links_between, separations
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Kinematics, Misfit, Mobility, Separation
@@ -38,7 +39,6 @@ from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["derive", "functional", "mobility_within"]
 
-Array = NDArray[np.float64]
 
 Beside = Callable[[Callable[[], Any], Callable[[], Any]], tuple[Any, Any]]
 """Gives what two computations give."""

@@ -8,13 +8,12 @@ lower pairs among them have a type of their own; the others are `general` joints
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.screws import Frame, canonical, cross, perpendicular
+from kinform.foundation.algebra.screws import Frame, canonical, cross, perpendicular
+from kinform.model.arrays import Array
 
 __all__ = ["group_of", "in_words"]
 
-Array = NDArray[np.float64]
 
 EXACT = 1e-5
 """Of unit twists, scaled in the frame: what is zero is zero to rounding and snapping."""

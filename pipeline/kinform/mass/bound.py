@@ -16,8 +16,6 @@ from kinform.model.tolerances import Tolerances
 
 __all__ = ["mass_bound"]
 
-Array = NDArray[np.float64]
-
 
 def mass_bound(mesh: Mesh, volume: float, surfaces: MeshSurfaces | None, tolerances: Tolerances) -> float:
     """Relative bound of the error of the volume (m³); 0 for polyhedra.

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SolidIntegrals", "integrate_solid"]
+from kinform.model.arrays import Array
 
-Array = NDArray[np.float64]
+__all__ = ["SolidIntegrals", "integrate_solid"]
 
 
 @dataclass(frozen=True, eq=False)

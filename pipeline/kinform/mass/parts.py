@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.mass.bound import mass_bound
 from kinform.mass.integrals import SolidIntegrals, integrate_solid
 from kinform.mass.principal import impossible, principal
+from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh, MeshHealth, Part
 from kinform.model.mass import MassProperties
 from kinform.model.surfaces import MeshSurfaces
@@ -17,7 +17,6 @@ from kinform.model.tolerances import Tolerances
 
 __all__ = ["SolidShape", "known", "part_properties", "unknown"]
 
-Array = NDArray[np.float64]
 
 FLAT = 1e-12
 """A solid with less than this share of its diagonal's cube is flat: what is left is rounding."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.screws import canonical, cross
+from kinform.foundation.algebra.screws import canonical, cross
+from kinform.model.arrays import Array
 
 __all__ = ["impossible", "principal"]
 
-Array = NDArray[np.float64]
 
 EQUAL = 1e-9
 """Moments that differ by less than this share of the largest are one: rounding makes their axes."""

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
@@ -27,16 +27,7 @@ __all__ = [
     "Part",
     "Source",
     "Subassembly",
-    "freeze",
 ]
-
-Array = NDArray[np.float64]
-
-
-def freeze(array: NDArray[Any]) -> NDArray[Any]:
-    """The same array, made read-only."""
-    array.setflags(write=False)
-    return array
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinform.model.arrays import Array
 from kinform.model.names import JointName, PartName
 
 __all__ = ["RANGE_STATUSES", "Collision", "JointRange", "RangeEnd"]
 
-Array = NDArray[np.float64]
 
 RANGE_STATUSES = ("found", "unbounded", "unknown")
 

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinform.model.arrays import Array
 from kinform.model.names import PartName
 
 __all__ = ["Contacts", "Interference", "Patch", "Suggestion"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
 
 __all__ = [
     "Coupling",
@@ -20,8 +21,6 @@ __all__ = [
     "Requirement",
     "SimulationRequest",
 ]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array
 from kinform.model.names import BodyName, JointName, PartName
 
 __all__ = [
@@ -31,7 +32,6 @@ __all__ = [
     "Separation",
 ]
 
-Array = NDArray[np.float64]
 
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal",

@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, JointRange
 
 __all__ = ["DriveUse", "Simulation"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array
+
 __all__ = ["KINDS", "MeshSurfaces", "Surface"]
 
-Array = NDArray[np.float64]
 
 KINDS = (
     "plane", "cylinder", "cone", "sphere", "torus", "helicoid", "revolution", "extrusion", "freeform",

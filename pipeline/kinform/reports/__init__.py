@@ -9,7 +9,7 @@ import importlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import CheckReport
 
 if TYPE_CHECKING:

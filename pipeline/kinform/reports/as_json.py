@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports.words import verdict_line
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import CheckReport
 from kinform.reports.words import one_line, rule_counts, severity_counts, verdict_line, where
 

@@ -5,7 +5,7 @@ No line begins with text that a user chose: a part cannot be named so that it be
 
 from __future__ import annotations
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.words import details, one_line, rule_counts, severity_counts, verdict_line
 

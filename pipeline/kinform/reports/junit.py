@@ -11,7 +11,7 @@ import re
 from collections import Counter
 from xml.etree import ElementTree
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.words import details, verdict_line
 

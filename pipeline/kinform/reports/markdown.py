@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.words import (
     accepted,

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.kinematics.words import axis_word
+from kinform.kinematics.wording import axis_word
+from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint
 
 __all__ = ["follower_rates", "freedom_text", "metres"]
-
-Array = NDArray[np.float64]
 
 
 def metres(point: Array) -> str:

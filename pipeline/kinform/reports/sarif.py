@@ -14,10 +14,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from kinform._version import __version__
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.words import verdict_line
+from kinform.version import __version__
 
 if TYPE_CHECKING:
     from kinform.consistency import Rule

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from kinform import words
+from kinform.foundation import words
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
 __all__ = [

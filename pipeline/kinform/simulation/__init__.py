@@ -10,11 +10,11 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 from kinform.simulation.modelled import modelled
-from kinform.simulation.settings import SolverSettings
 from kinform.simulation.simulate import simulate
+from kinform.simulation.solver.settings import SolverSettings
 
 if TYPE_CHECKING:
-    from kinform.simulation.solve import Course, simulate_system
+    from kinform.simulation.solver.solution import Course, simulate_system
 
 __all__ = ["CODE_VERSION", "Course", "SolverSettings", "modelled", "simulate", "simulate_system"]
 
@@ -26,4 +26,4 @@ _SOLVING = ("Course", "simulate_system")
 def __getattr__(name: str) -> Any:
     if name not in _SOLVING:
         raise AttributeError(f"module 'kinform.simulation' has no attribute {name!r}")
-    return getattr(importlib.import_module("kinform.simulation.solve"), name)
+    return getattr(importlib.import_module("kinform.simulation.solver.solution"), name)

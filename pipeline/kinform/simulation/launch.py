@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.behaviour import Behaviour, build
+from kinform.foundation.progress import Progress, Say
 from kinform.model.assembly import Assembly
 from kinform.model.function import SimulationRequest
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
-from kinform.simulation.assemble import assemble
 from kinform.simulation.levels import (
     Choice,
     choose,
@@ -22,16 +21,14 @@ from kinform.simulation.levels import (
     notes_of_level,
     notes_of_teeth,
 )
-from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.modelled import geared, seen
-from kinform.simulation.settings import SolverSettings
-from kinform.simulation.solve import Course, refuse, solve
-from kinform.simulation.start import stated_values
+from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.solver.solution import Course, refuse, solve
+from kinform.simulation.solver.start import stated_values
 
 __all__ = ["launched"]
-
-Progress = Callable[[int, int], None]
-Say = Callable[[str], None]
 
 
 def launched(

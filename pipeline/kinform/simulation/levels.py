@@ -11,7 +11,7 @@ from kinform.function import resolve
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
-from kinform.simulation.mechanism import Mechanism
+from kinform.simulation.mechanism.mechanism import Mechanism
 
 __all__ = ["Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
 

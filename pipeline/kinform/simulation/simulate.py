@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from kinform.behaviour import Behaviour
+from kinform.foundation.progress import Progress, Say
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 from kinform.simulation.modelled import LEVELS, blank
-from kinform.simulation.settings import SolverSettings
+from kinform.simulation.solver.settings import SolverSettings
 
 __all__ = ["simulate"]
-
-Progress = Callable[[int, int], None]
-Say = Callable[[str], None]
 
 
 def simulate(

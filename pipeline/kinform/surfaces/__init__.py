@@ -1,7 +1,7 @@
 """Facets → analytic surfaces: planes, cylinders, cones, spheres with the uncertainty of each fit."""
 
-from kinform.surfaces._recover import recover
 from kinform.surfaces.congruent import congruent, moved
+from kinform.surfaces.recovery import recover
 
 __all__ = ["CODE_VERSION", "congruent", "moved", "recover"]
 

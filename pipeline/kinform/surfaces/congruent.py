@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.model.assembly import Mesh, freeze
+from kinform.model.arrays import Array, freeze
+from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.surfaces.describe import canonical
 
 __all__ = ["Copy", "congruent", "moved"]
 
-Array = NDArray[np.float64]
 
 EPS32 = float(np.finfo(np.float32).eps)
 TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
 from kinform.behaviour.joints.cylindrical import CYLINDRICAL
 from kinform.behaviour.joints.fixed import FIXED
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.planar import PLANAR
 from kinform.behaviour.joints.prismatic import PRISMATIC
 from kinform.behaviour.joints.revolute import REVOLUTE

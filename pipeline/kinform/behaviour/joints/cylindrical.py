@@ -1,6 +1,6 @@
 """Cylindrical: a turn about an axis and a slide along it. Coordinates: angle (rad), distance (m)."""
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.prismatic import slide
 from kinform.behaviour.joints.revolute import turn
 from kinform.behaviour.primitives import OneFreedom

@@ -1,6 +1,6 @@
 """Fixed: no freedom; the two bodies move as one."""
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 
 
 def _chain(geometry: JointGeometry) -> tuple[()]:

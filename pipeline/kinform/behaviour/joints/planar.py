@@ -1,12 +1,12 @@
 """Planar: slides along two directions u, v of the first body across the axis, and a turn about the axis
 through `point` of the second. Coordinates: angle (rad), then the distances along u and v (m), where
-(u, v, axis) is the right-handed frame of `kinform.kinematics.screws.perpendicular`."""
+(u, v, axis) is the right-handed frame of `kinform.foundation.algebra.screws.perpendicular`."""
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.prismatic import slide
 from kinform.behaviour.joints.revolute import turn
 from kinform.behaviour.primitives import OneFreedom
-from kinform.kinematics.screws import perpendicular
+from kinform.foundation.algebra.screws import perpendicular
 
 __all__ = ["PLANAR"]
 

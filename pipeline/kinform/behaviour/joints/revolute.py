@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from kinform.behaviour.joints._base import Array, JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.primitives import OneFreedom
+from kinform.model.arrays import Array
 
 __all__ = ["REVOLUTE", "turn"]
 

@@ -2,7 +2,7 @@
 
 import math
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.revolute import turn
 from kinform.behaviour.primitives import OneFreedom
 

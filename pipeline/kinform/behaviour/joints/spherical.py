@@ -2,7 +2,7 @@
 first; rates: ω of the second relative to the first (rad/s), in the axes of the first body, which are the
 world's at the pose of the meshes."""
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.primitives import Ball
 
 __all__ = ["SPHERICAL"]

@@ -3,7 +3,7 @@ fixed in the second. Coordinates: both angles (rad) in that order."""
 
 import numpy as np
 
-from kinform.behaviour.joints._base import JointGeometry, JointKind
+from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.revolute import turn
 from kinform.behaviour.primitives import OneFreedom
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kinform.consistency._rule import Rule
+from kinform.consistency.rule import Rule
 from kinform.consistency.rules import (
     kf101_mesh_not_watertight,
     kf102_mesh_inverted,

@@ -11,9 +11,9 @@ Example: a bracket exported with one face hidden has 24 edges with a facet on on
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import counted, listed
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import counted, listed
 
 __all__ = ["RULE"]
 

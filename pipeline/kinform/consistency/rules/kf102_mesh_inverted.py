@@ -11,9 +11,9 @@ Example: a cube of 10 mm with a signed volume of -1000 mm³.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import volume
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import volume
 
 __all__ = ["RULE"]
 

@@ -10,8 +10,8 @@ Example: two cubes in one file that share an edge: the edge has four facets.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
 
 __all__ = ["RULE"]
 

@@ -9,9 +9,9 @@ Example: three facets whose corners were rounded to the same point.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import counted, length
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import counted, length
 
 __all__ = ["RULE"]
 

@@ -10,9 +10,9 @@ Example: an STL made by concatenating two exports of the same part.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import counted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
 

@@ -10,8 +10,8 @@ Example: a bearing exported with rings and balls in one file.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
 
 __all__ = ["RULE"]
 

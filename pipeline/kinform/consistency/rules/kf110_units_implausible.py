@@ -16,8 +16,8 @@ Example: a camera gimbal drawn in millimetres and declared with `units = "m"` is
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
 
 __all__ = ["RULE"]
 

@@ -15,10 +15,10 @@ Example: an arm with `level = "dynamic"` whose gripper has no material.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import quoted
 from kinform.model.assembly import Assembly, Part
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

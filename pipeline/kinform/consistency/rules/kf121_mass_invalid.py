@@ -16,11 +16,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import mass, number, quoted
 from kinform.model.assembly import Part
 from kinform.model.mass import MassProperties
-from kinform.words import mass, number, quoted
 
 __all__ = ["RULE"]
 

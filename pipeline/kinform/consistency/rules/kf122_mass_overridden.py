@@ -9,10 +9,10 @@ Example: a servo of 55 g whose mesh is only its outside.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import mass, quoted
 from kinform.model.assembly import Part
-from kinform.words import mass, quoted
 
 __all__ = ["RULE"]
 

@@ -13,11 +13,11 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
-from kinform.words import length, quoted, volume
 
 __all__ = ["RULE"]
 

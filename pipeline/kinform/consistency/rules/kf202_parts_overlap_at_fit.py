@@ -9,9 +9,9 @@ Example: a dowel of 5.02 mm in a hole of 5 mm overlaps by 0.01 mm.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.words import length, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import length, quoted
 
 __all__ = ["RULE"]
 

@@ -15,12 +15,12 @@ Example: a camera whose bracket was left out hangs 3 mm above its ring.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.kinematics.graph import UnionFind
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.words import quoted
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

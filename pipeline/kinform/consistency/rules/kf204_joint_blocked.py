@@ -14,11 +14,11 @@ Example: an elbow of which 6 % of the contact area, beside the journal, forbids 
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.words import area, counted, length, number, quoted
 
 __all__ = ["RULE"]
 

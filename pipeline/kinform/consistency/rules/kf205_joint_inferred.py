@@ -10,9 +10,9 @@ Example: a servo horn that lies flat on a bracket: the common centre of their ri
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import listed, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import listed, quoted
 
 __all__ = ["RULE"]
 

@@ -12,9 +12,9 @@ Example: a shaft tilted by 0.15° in a bearing of 40 mm length with 0.02 mm of c
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import angle, length, listed, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import angle, length, listed, quoted
 
 __all__ = ["RULE"]
 

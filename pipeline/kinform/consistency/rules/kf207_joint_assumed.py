@@ -9,9 +9,9 @@ Example: a horn assumed fixed to a bracket because they are screwed together at 
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import quoted
 
 __all__ = ["RULE"]
 

@@ -16,10 +16,10 @@ Example: a gimbal that shall turn about two axes has three freedoms, because the
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, quoted
 from kinform.model.kinematics import Kinematics
-from kinform.words import counted, quoted
 
 __all__ = ["RULE"]
 

@@ -10,10 +10,10 @@ Example: a motor with `mobility = 1` whose rotor is fused to its stator by a wro
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, quoted
 from kinform.kinematics import mobility_within
-from kinform.words import counted, quoted
 
 __all__ = ["RULE"]
 

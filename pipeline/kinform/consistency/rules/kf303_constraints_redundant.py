@@ -15,9 +15,9 @@ has none.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.words import counted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
 

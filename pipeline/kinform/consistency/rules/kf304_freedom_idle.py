@@ -12,9 +12,9 @@ Example: a pin that turns in both of its holes.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.words import quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import quoted
 
 __all__ = ["RULE"]
 

@@ -17,9 +17,9 @@ Example: a strut of two hinged bars in line, with a hinge at each end, gives sid
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
-from kinform.words import counted, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
 

@@ -14,9 +14,9 @@ Example: a parallelogram of four bars that lie in one line may go on as a parall
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.words import counted, listed, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import counted, listed, quoted
 
 __all__ = ["RULE"]
 

@@ -12,11 +12,11 @@ Example: the pin of a hinge was left out, and the two leaves are 2 mm apart.
 
 from __future__ import annotations
 
-from kinform.consistency._compare import Comparison
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
+from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import counted, length, quoted
 from kinform.model.kinematics import Body
-from kinform.words import counted, length, quoted
 
 __all__ = ["RULE"]
 

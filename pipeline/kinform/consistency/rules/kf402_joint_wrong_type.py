@@ -15,11 +15,11 @@ Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
 
 from __future__ import annotations
 
-from kinform.consistency._compare import Comparison
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.foundation.words import counted, direction, quoted
 from kinform.model.findings import Finding
-from kinform.words import counted, direction, quoted
 
 __all__ = ["RULE"]
 

@@ -14,11 +14,11 @@ Example: the pitch axis of a gimbal was drilled 0.5° off square.
 
 from __future__ import annotations
 
-from kinform.consistency._compare import Comparison
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import angle, counted, direction
 from kinform.model.findings import Finding
-from kinform.words import angle, counted, direction
 
 __all__ = ["RULE"]
 

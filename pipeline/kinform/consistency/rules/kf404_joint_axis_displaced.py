@@ -14,11 +14,11 @@ Example: a hinge that was moved 2 mm in the CAD model, and not in the manifest.
 
 from __future__ import annotations
 
-from kinform.consistency._compare import Comparison
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.comparisons.intended_joints import Comparison
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, length, place
 from kinform.model.findings import Finding
-from kinform.words import counted, length, place
 
 __all__ = ["RULE"]
 

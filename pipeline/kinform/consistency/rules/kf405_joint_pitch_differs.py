@@ -11,9 +11,9 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import length
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import length
 
 __all__ = ["RULE"]
 

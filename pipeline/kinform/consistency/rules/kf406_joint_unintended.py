@@ -13,12 +13,12 @@ Example: a cable duct on the arm fits around the base like a bearing.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
-from kinform.consistency._unintended import unintended
+from kinform.consistency.comparisons.unintended import unintended
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.foundation.words import direction, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.words import direction, quoted
 
 __all__ = ["RULE"]
 

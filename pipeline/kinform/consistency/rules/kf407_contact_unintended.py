@@ -12,12 +12,12 @@ Example: the side of a link slides along the base.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.consistency._unintended import unintended
+from kinform.consistency.comparisons.unintended import unintended
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import area, counted, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.words import area, counted, quoted
 
 __all__ = ["RULE"]
 

@@ -11,9 +11,9 @@ Example: a cover that was added to the assembly, and not to the function.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.words import counted, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
 

@@ -11,9 +11,9 @@ Example: `[simulation.initial.elbow]` where the elbow is a ball joint.
 
 from __future__ import annotations
 
-from kinform.consistency._actuated import without_freedom
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, skipped
+from kinform.consistency.comparisons.actuated import without_freedom
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, skipped
 
 __all__ = ["RULE"]
 

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import math
 
-from kinform.consistency._context import Context
-from kinform.consistency._ranged import Ranged, ranged, shown
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.comparisons.ranged import Ranged, ranged, shown
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Finding
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

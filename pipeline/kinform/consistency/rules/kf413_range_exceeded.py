@@ -17,15 +17,15 @@ import math
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._peaks import coarse
-from kinform.consistency._ranged import matched, shown
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.comparisons.peaks import coarse
+from kinform.consistency.comparisons.ranged import matched, shown
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import number, quoted, telling
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
-from kinform.words import number, quoted, telling
 
 __all__ = ["RULE"]
 

@@ -21,16 +21,16 @@ import math
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._plausibility import extent
-from kinform.consistency._requirements import Answer, met, requirement_rule, stated_as, undecided, violated
-from kinform.consistency._rule import Outcome
+from kinform.consistency.comparisons.plausibility import extent
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, stated_as, undecided, violated
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import angle, counted, direction, length, place, quoted
 from kinform.function import resolve
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.coverage import cover
 from kinform.function.regions import Targets, targets_of
 from kinform.model.function import Requirement
-from kinform.words import angle, counted, direction, length, place, quoted
 
 __all__ = ["RULE", "judge"]
 

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, met, requirement_rule, simulated, undecided, violated
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, simulated, undecided, violated
+from kinform.foundation.words import angle, length, number, telling
 from kinform.function.paths import Deviation, deviation
 from kinform.model.function import Requirement
 from kinform.model.simulation import Simulation
-from kinform.words import angle, length, number, telling
 
 __all__ = ["RULE", "judge"]
 

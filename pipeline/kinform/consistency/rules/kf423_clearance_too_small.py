@@ -22,10 +22,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import (
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import (
     Answer,
     common,
     met,
@@ -36,18 +35,18 @@ from kinform.consistency._requirements import (
     undecided,
     violated,
 )
-from kinform.consistency._rule import Outcome
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import counted, length, number, quoted, telling
 from kinform.function.clearances import Apart
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.sweeps import Swept, along, over
+from kinform.model.arrays import Array
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
-from kinform.words import counted, length, number, quoted, telling
 
 __all__ = ["RULE", "judge"]
 
-Array = NDArray[np.float64]
 
 REMEDY = "Cut material away, or narrow the motion or the range."
 Pair = tuple[Body, Sequence[str], Body, Sequence[str]]

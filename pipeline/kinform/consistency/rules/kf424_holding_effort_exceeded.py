@@ -17,10 +17,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import (
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import (
     Answer,
     effort,
     met,
@@ -31,18 +30,18 @@ from kinform.consistency._requirements import (
     undecided,
     violated,
 )
-from kinform.consistency._rule import Outcome
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import counted, telling
 from kinform.function import resolve
 from kinform.function.configurations import Chain, mechanism_of
 from kinform.function.holding import holding_effort, posed
+from kinform.model.arrays import Array
 from kinform.model.function import Requirement, SimulationRequest
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
-from kinform.words import counted, telling
 
 __all__ = ["RULE", "judge"]
 
-Array = NDArray[np.float64]
 
 AT_END = 1e-6
 """rad or m: a pose at the very end of a range is inside."""

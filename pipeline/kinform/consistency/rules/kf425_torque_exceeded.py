@@ -16,9 +16,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._peaks import of_joint, peak
-from kinform.consistency._requirements import Answer, effort, requirement_rule, undecided
+from kinform.consistency.comparisons.peaks import of_joint, peak
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, effort, requirement_rule, undecided
 from kinform.function import resolve
 from kinform.model.function import Requirement
 

@@ -19,14 +19,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency._context import Context
-from kinform.consistency._peaks import peak
-from kinform.consistency._requirements import Answer, met, requirement_rule, simulated, undecided
-from kinform.consistency._rule import Outcome
+from kinform.consistency.comparisons.peaks import peak
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, simulated, undecided
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import number
 from kinform.function import resolve
 from kinform.model.function import Requirement
 from kinform.model.simulation import Simulation
-from kinform.words import number
 
 __all__ = ["RULE", "judge"]
 

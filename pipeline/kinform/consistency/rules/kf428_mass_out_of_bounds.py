@@ -12,11 +12,11 @@ Example: `kind = "mass"`, `of = "camera"`, `maximum = 0.2` for a camera of 230 g
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, requirement_rule
-from kinform.consistency._weighed import amount, compared, whose
+from kinform.consistency.comparisons.weighed import amount, compared, whose
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, requirement_rule
+from kinform.foundation.words import mass
 from kinform.model.function import Requirement
-from kinform.words import mass
 
 __all__ = ["RULE", "judge"]
 

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, met, requirement_rule, violated
-from kinform.consistency._weighed import amount, whose
+from kinform.consistency.comparisons.weighed import amount, whose
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, violated
+from kinform.foundation.words import length, place, telling
 from kinform.model.function import Requirement
-from kinform.words import length, place, telling
 
 __all__ = ["RULE", "judge"]
 

@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, requirement_rule
-from kinform.consistency._weighed import amount, compared, whose
+from kinform.consistency.comparisons.weighed import amount, compared, whose
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, requirement_rule
+from kinform.foundation.words import direction, number
 from kinform.model.function import Requirement
-from kinform.words import direction, number
 
 __all__ = ["RULE", "judge"]
 

@@ -14,13 +14,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
-from kinform.consistency._rule import Outcome
-from kinform.consistency._weighed import amount
+from kinform.consistency.comparisons.weighed import amount
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, undecided, violated
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import length, mass, number, quoted, telling
 from kinform.function import resolve
 from kinform.model.function import Requirement
-from kinform.words import length, mass, number, quoted, telling
 
 __all__ = ["RULE", "judge"]
 

@@ -15,21 +15,19 @@ Example: `kind = "retained"`, `part = "shaft"` for a shaft with a shoulder on on
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, met, requirement_rule, undecided, violated
-from kinform.consistency._rule import Outcome
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, met, requirement_rule, undecided, violated
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import direction, quoted
+from kinform.model.arrays import Array
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
-from kinform.words import direction, quoted
 
 __all__ = ["RULE", "judge"]
 
 SAME = np.cos(np.radians(1.0))
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
-
-Array = NDArray[np.float64]
 
 
 def judge(context: Context, requirement: Requirement) -> Answer:

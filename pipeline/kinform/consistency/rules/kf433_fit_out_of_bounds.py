@@ -14,13 +14,13 @@ Example: `kind = "fit"`, `between = ["shaft", "bush"]`, `minimum = 0.01`, `maxim
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._requirements import Answer, common, met, requirement_rule, undecided
-from kinform.consistency._rule import Outcome
-from kinform.consistency._weighed import compared
+from kinform.consistency.comparisons.weighed import compared
+from kinform.consistency.context import Context
+from kinform.consistency.requirements import Answer, common, met, requirement_rule, undecided
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import counted, length, quoted
 from kinform.function.fits import clearances
 from kinform.model.function import Requirement
-from kinform.words import counted, length, quoted
 
 __all__ = ["RULE", "judge"]
 

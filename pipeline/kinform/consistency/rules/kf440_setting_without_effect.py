@@ -12,10 +12,10 @@ Example: `[[check.ignore]]` with `code = "KF303"` after the redundant hinge has 
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import counted
 from kinform.model.assembly import Source
-from kinform.words import counted
 
 __all__ = ["RULE"]
 

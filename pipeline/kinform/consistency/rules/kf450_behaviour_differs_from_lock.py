@@ -14,8 +14,8 @@ Example: a bore was moved by 0.3 mm, and so was the axis of the shoulder.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, skipped
 
 __all__ = ["RULE"]
 

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinform.consistency._actuated import loose
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Declared, Outcome, Rule, decided, inconclusive
+from kinform.consistency.comparisons.actuated import loose
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Declared, Outcome, Rule, decided, inconclusive
+from kinform.foundation.words import quoted
 from kinform.function import resolve
 from kinform.model.findings import Finding
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -10,9 +10,9 @@ Example: a slider-crank whose rod is shorter than its crank jams at t = 0.31 s.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided
-from kinform.words import number
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.foundation.words import number
 
 __all__ = ["RULE"]
 

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._plausibility import extent
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.words import number
+from kinform.consistency.comparisons.plausibility import extent
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import number
 
 __all__ = ["RULE"]
 

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.words import number
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import number
 
 __all__ = ["RULE"]
 

@@ -12,9 +12,9 @@ Example: a camera scans by ±45°, and its gimbal hits the housing at 39°.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.words import counted, length, number, place, quoted
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, length, number, place, quoted
 
 __all__ = ["RULE"]
 

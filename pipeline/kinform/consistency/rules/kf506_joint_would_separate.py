@@ -21,11 +21,11 @@ Example: a cam throws its follower, which only its weight keeps on the cam, off 
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.consistency._separating import Lift, Sharing, lifts
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import number, quoted
 from kinform.model.findings import Finding
-from kinform.words import number, quoted
+from kinform.statics.separating import Lift, Sharing, lifts
 
 __all__ = ["RULE"]
 

@@ -13,11 +13,11 @@ Example: a carriage of 40 mm leaves its rail of 200 mm at a stroke of 125 mm.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
-from kinform.consistency._separating import SLIDES, Slip, slips
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import angle, length, number
 from kinform.model.findings import Finding
-from kinform.words import angle, length, number
+from kinform.statics.separating import SLIDES, Slip, slips
 
 __all__ = ["RULE"]
 

@@ -12,12 +12,12 @@ Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.foundation.words import quoted
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -12,10 +12,10 @@ Example: `[[function.require]]` with `kind = "torque"` where nothing drives the 
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._control import selected
-from kinform.consistency._requirements import Judge, answer
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.control import selected
+from kinform.consistency.requirements import Judge, answer
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.consistency.rules import (
     kf421_region_not_reached,
     kf422_path_not_followed,
@@ -31,8 +31,8 @@ from kinform.consistency.rules import (
     kf432_not_retained,
     kf433_fit_out_of_bounds,
 )
+from kinform.foundation.words import counted
 from kinform.model.function import Requirement
-from kinform.words import counted
 
 __all__ = ["JUDGES", "RULE", "RULES_OF"]
 

@@ -14,10 +14,10 @@ Example: `ratio = -2.5` between two shafts whose gears are drawn as plain discs.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._coupled import derived_ratio, shown_ratio
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.words import counted, quoted
+from kinform.consistency.comparisons.coupled import derived_ratio, shown_ratio
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
 

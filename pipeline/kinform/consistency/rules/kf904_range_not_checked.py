@@ -14,10 +14,10 @@ Example: `range = [-110, 110]` for a shoulder whose motor overlaps its bracket i
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._ranged import Ranged, ranged, shown
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
-from kinform.words import counted
+from kinform.consistency.comparisons.ranged import Ranged, ranged, shown
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
 

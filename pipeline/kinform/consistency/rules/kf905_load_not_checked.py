@@ -13,10 +13,10 @@ Example: a force of 5 N on the gripper of an arm that is simulated kinematically
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.foundation.words import counted, quoted
 from kinform.model.function import Load
-from kinform.words import counted, quoted
 
 __all__ = ["RULE"]
 

@@ -14,11 +14,11 @@ Example: `[fasteners] infer = true`, and two brackets with four aligned holes.
 
 from __future__ import annotations
 
-from kinform.consistency._context import Context
-from kinform.consistency._rule import Outcome, Rule, decided, skipped
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.foundation.words import quoted
 from kinform.model.contacts import Suggestion
 from kinform.model.kinematics import Kinematics
-from kinform.words import quoted
 
 __all__ = ["RULE"]
 

@@ -6,14 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
-from kinform.form.meshes.topology import edges_of, shells_of
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.form.problems import did_you_mean, quoted
+from kinform.foundation.meshes.shells import edges_of, shells_of
+from kinform.model.arrays import Array, Ints
 
 __all__ = ["named_bodies", "select_body", "shell_bodies"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def named_bodies(raw: RawMesh) -> dict[str, RawMesh]:

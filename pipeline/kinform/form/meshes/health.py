@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
-from kinform.form.meshes.topology import EdgeTable, edges_of, shells_of
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
+from kinform.foundation.meshes.shells import EdgeTable, edges_of, shells_of
+from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, MeshHealth
 
 __all__ = ["build_mesh"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FLAT = 1e-9
 """A solid thinner than this share of its size has no volume."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array, Ints
+
 __all__ = ["triangulate"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _SLACK = 1e-9
 """Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError
-from kinform.near import Near
+from kinform.foundation.meshes.near import Near
+from kinform.model.arrays import Array, Ints
 
 __all__ = ["merge_close", "merge_exact", "used_only"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _SAMPLE, _CROWD = 500, 50
 """Vertices whose surroundings are counted, and the mean count above which a mesh would collapse."""

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from kinform.consistency import Comparison, compare, words
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics

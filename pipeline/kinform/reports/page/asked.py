@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from kinform import words
+from kinform.foundation import words
 from kinform.model.assembly import Assembly
 from kinform.model.function import Requirement
 from kinform.reports.page.words import axis, place

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform import words
-from kinform.form.units import metres_per
+from kinform.foundation import words
+from kinform.foundation.units import metres_per
+from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
 from kinform.reports.page.colours import FITS, OVERLAP
@@ -23,7 +24,6 @@ from kinform.reports.values.plain import plain
 
 __all__ = ["packed"]
 
-Array = NDArray[np.float64]
 
 MOST_SAMPLES = 400
 """Samples of one contact patch that are drawn; of larger ones an even choice."""

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from kinform.consistency import explain, words
+from kinform.design import Design
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.design import Design
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint
 from kinform.reports.page.subjects import wanted_names

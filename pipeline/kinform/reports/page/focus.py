@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.design import Design
+from kinform.design import Design
+from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.reports.page.movements import Mark, Movement
 from kinform.reports.page.subjects import subjects
 
 __all__ = ["Focus", "focus"]
 
-Array = NDArray[np.float64]
 
 MEETING = ("KF412", "KF423", "KF505")
 """Rules whose findings are about parts that meet on the way."""

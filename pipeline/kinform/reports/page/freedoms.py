@@ -11,16 +11,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from kinform.kinematics.displacements import displacement
-from kinform.kinematics.graph import forest
+from kinform.foundation.algebra.displacements import displacement
+from kinform.foundation.graphs.graph import forest
+from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 
 __all__ = ["Showing", "Span", "freedom_motions"]
 
-Array = NDArray[np.float64]
 
 FRAMES, FINEST = 16, np.radians(3.0)
 """Steps to each side of the pose of the meshes; more where a turn would take larger ones (rad) than this."""

@@ -11,14 +11,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.connected import components
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Shape", "shape_of", "shape_of_facets"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CREASE = np.radians(32.0)
 """Facets that meet at more than this are not shaded as one surface."""

@@ -10,21 +10,20 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform import words
+from kinform.design import Design
+from kinform.foundation import words
+from kinform.foundation.algebra.spatial import quaternions, to_matrix
 from kinform.function import resolve
+from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
-from kinform.model.design import Design
 from kinform.model.names import PartName
 from kinform.model.simulation import Simulation
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
-from kinform.simulation.spatial import quaternions, to_matrix
 
 __all__ = ["MOST_FRAMES", "Mark", "Movement", "movements"]
 
-Array = NDArray[np.float64]
 
 MOST_FRAMES = 600
 """Poses of a simulated motion that are embedded; of longer ones an even choice."""

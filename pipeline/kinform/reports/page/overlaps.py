@@ -7,9 +7,9 @@ import math
 import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
+from kinform.design import Design
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
-from kinform.model.design import Design
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
 __all__ = ["MOST", "overlap_shapes"]

@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array, Ints
+
 __all__ = ["STEPS", "Blob", "quantised", "restored"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 STEPS = 65535
 """Steps across a box."""

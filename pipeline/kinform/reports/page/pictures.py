@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array, Ints
 from kinform.reports.page.colours import OVERLAP, rgb
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.png import png
@@ -21,8 +22,6 @@ from kinform.reports.page.strokes import dashed, polyline, ring, strokes_of
 
 __all__ = ["Artist"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FINER = 2
 """Pixels of the drawing to a pixel of the picture, each way."""

@@ -11,18 +11,17 @@ from dataclasses import dataclass, replace
 from html import escape
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.form.units import metres_per
+from kinform.design import Design
+from kinform.foundation.units import metres_per
 from kinform.function import resolve
-from kinform.model.design import Design
+from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
 __all__ = ["Plot", "Series", "drawn", "plots"]
 
-Array = NDArray[np.float64]
 
 WIDTH, HEIGHT = 380.0, 168.0
 LEFT, RIGHT, TOP, BOTTOM = 54.0, 366.0, 12.0, 142.0

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array, Ints
+
 __all__ = ["AXES", "Buffers", "View", "rasterise", "view_of"]
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 PORTION = 1 << 16
 """Pixels that are worked on at once."""

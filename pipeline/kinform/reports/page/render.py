@@ -15,9 +15,8 @@ from importlib.resources import files
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from kinform._version import __version__
-from kinform.model.design import Design
-from kinform.reports.graph import graph_legend, graph_panel
+from kinform.design import Design
+from kinform.exports.graph.drawing import graph_legend, graph_panel
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.colours import FITS
 from kinform.reports.page.embedded import packed
@@ -25,6 +24,7 @@ from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plots
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.verdict import verdict
+from kinform.version import __version__
 
 __all__ = ["page"]
 

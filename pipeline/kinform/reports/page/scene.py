@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinform.design import Design
+from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
-from kinform.model.design import Design
 from kinform.model.kinematics import Body, Joint
 from kinform.reports.page.colours import body_colours
 from kinform.reports.page.focus import Focus, focus
@@ -19,8 +19,6 @@ from kinform.reports.page.overlaps import overlap_shapes
 from kinform.reports.page.subjects import wanted_names
 
 __all__ = ["Scene"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

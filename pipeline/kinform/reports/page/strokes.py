@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.reports.page.colours import SIGNAL, rgb
 
 __all__ = ["dashed", "polyline", "ring", "strokes_of"]
 
-Array = NDArray[np.float64]
 
 TURNING = ("revolute", "cylindrical", "screw", "planar")
 SLIDING = ("prismatic", "cylindrical", "screw")

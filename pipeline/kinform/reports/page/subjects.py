@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.model.names import PartName
 
 __all__ = ["subjects", "wanted_names"]

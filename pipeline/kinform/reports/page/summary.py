@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.scene import Scene

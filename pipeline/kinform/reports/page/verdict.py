@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kinform.model.design import Design
+from kinform.design import Design
 from kinform.reports.words import rule_counts, severity_counts, verdict_line
 
 __all__ = ["Verdict", "verdict"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from kinform import words
+from kinform.foundation import words
 from kinform.model.assembly import Assumption
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from kinform.design import Design
 from kinform.model.assembly import Assembly, Part
-from kinform.model.design import Design
 from kinform.model.function import IntendedJoint
 from kinform.model.mass import MassProperties
 from kinform.reports.values.plain import fields

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from kinform.design import Design
 from kinform.kinematics import Motions
-from kinform.model.design import Design
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.reports.motions import freedom_text, metres
 from kinform.reports.values.plain import fields

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from kinform.behaviour.joints import KINDS
+from kinform.design import Design
 from kinform.model.collisions import JointRange
-from kinform.model.design import Design
 from kinform.model.simulation import Simulation
 from kinform.reports.values.plain import fields
 

@@ -10,9 +10,9 @@ import json
 from collections.abc import Callable
 from typing import Any
 
+from kinform.design import Design
 from kinform.errors import StageError
 from kinform.kinematics import insight
-from kinform.model.design import Design
 from kinform.reports import as_json
 from kinform.reports.values.form import assembly_values, contact_values, mass_values
 from kinform.reports.values.kinematics import joint_values, mobility_values, one_joint, ranged

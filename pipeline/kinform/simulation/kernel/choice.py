@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.layout import (
     CHOSEN,
     CLOSURES,
@@ -25,7 +26,7 @@ from kinform.simulation.kernel.layout import (
     VECTORS,
 )
 from kinform.simulation.kernel.loops import gather
-from kinform.simulation.kernel.types import Ints, Nums, Work
+from kinform.simulation.kernel.types import Nums, Work
 
 __all__ = ["choose"]
 

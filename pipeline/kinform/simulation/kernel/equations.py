@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.forces import between, drive, loads
 from kinform.simulation.kernel.layout import (
     ACC,
@@ -47,7 +48,7 @@ from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, so
 from kinform.simulation.kernel.motion import place_links, twist_links
 from kinform.simulation.kernel.reduction import factor, settle
 from kinform.simulation.kernel.signals import law
-from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
 
 TORN = 1e-4
 """Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.crossings import laid, tip
 from kinform.simulation.kernel.equations import derivative, project
 from kinform.simulation.kernel.layout import (
@@ -59,7 +60,7 @@ from kinform.simulation.kernel.layout import (
     WORN,
 )
 from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slope, try_step
-from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
+from kinform.simulation.kernel.types import Counts, Nums, Row, Work
 
 EDGE = 3.0
 """Step times the fastest decay: the method is stable up to about 6."""

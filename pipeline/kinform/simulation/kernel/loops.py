@@ -7,6 +7,7 @@ order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (
 
 from __future__ import annotations
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.layout import (
     BEFORE,
     CHOSEN,
@@ -36,7 +37,7 @@ from kinform.simulation.kernel.layout import (
     TIP,
     VECTORS,
 )
-from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import along, cross, dot, place, six
 
 SWAP = 1.5

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.layout import (
     BEFORE,
     COLUMNS,
@@ -31,7 +32,7 @@ from kinform.simulation.kernel.layout import (
     WIDTH,
     WRENCH,
 )
-from kinform.simulation.kernel.types import Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put, six, three
 
 __all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.layout import (
     AXIS,
     BALL,
@@ -28,7 +29,7 @@ from kinform.simulation.kernel.layout import (
     WIDTH,
     Q,
 )
-from kinform.simulation.kernel.types import Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import along, cross, place, put, six, turned
 
 __all__ = ["place_ball", "place_links", "place_screw", "twist_links"]

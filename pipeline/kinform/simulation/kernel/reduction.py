@@ -7,6 +7,7 @@ when there are none: Eᵀ (M x − f) vanishes for the free ones, and is the eff
 
 from __future__ import annotations
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.layout import (
     ACC,
     BEFORE,
@@ -31,7 +32,7 @@ from kinform.simulation.kernel.layout import (
 )
 from kinform.simulation.kernel.loops import back_substitute, eliminate, gather
 from kinform.simulation.kernel.masses import cholesky, solve_cholesky
-from kinform.simulation.kernel.types import Index, Ints, Nums, Row, Table, Work
+from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
 
 __all__ = ["factor", "reduce", "settle", "weigh"]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.equations import derivative, project, torn
 from kinform.simulation.kernel.layout import (
     ATOL,
@@ -36,7 +37,7 @@ from kinform.simulation.kernel.layout import (
     TIGHTEST,
     TRIED,
 )
-from kinform.simulation.kernel.types import Counts, Ints, Nums, Row, Work
+from kinform.simulation.kernel.types import Counts, Nums, Row, Work
 
 CLOSE = 1e-4
 """Loops at an evaluation of a step are closed to this share of the tolerance."""

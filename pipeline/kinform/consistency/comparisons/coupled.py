@@ -1,0 +1,128 @@
+"""The ratio that geometry gives two intended joints: through one contact, or through several one after the other."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.consistency.context import Context
+from kinform.foundation.words import rate
+from kinform.function import resolve
+from kinform.model.function import Coupling as Stated
+from kinform.model.kinematics import Coupling, Kinematics
+
+__all__ = ["Ratio", "coupled_through", "derived_ratio", "shown_ratio"]
+
+TEETH = 1e-2
+"""Relative: what the ratio of teeth at one pose may be off."""
+COUNTED = 1e-3
+"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
+SCREW = 1e-3
+"""Relative: what the pitch of a screw may be off."""
+MOST = 0.05
+"""Relative uncertainty beyond which a ratio says nothing."""
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """value(first) over value(second) of intended joints, by the designer's signs, and by how much it may be off."""
+
+    value: float
+    allowed: float
+    through: tuple[str, ...]
+
+
+def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> Ratio | str:
+    """What the geometry gives for a stated coupling, or the reason why it gives nothing."""
+    ends = [resolve(context.assembly, kinematics, name) for name in stated.joints]
+    for end in ends:
+        if end.joint is None:
+            return end.reason
+    first, second = (str(end.joint.name) for end in ends if end.joint is not None)
+    if first == second:
+        return "both names stand for one joint"
+    chain = _chain(kinematics, first, second)
+    if chain is None:
+        return "no contact of teeth, cam or screw is found that ties these joints"
+    ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
+    for coupling, forward in chain:
+        if coupling.status != "determined":
+            return f"the coupling through '{coupling.through}' is {coupling.status}"
+        if coupling.kind == "cam":
+            return f"'{coupling.through}' is a cam: its ratio is another in every pose"
+        if coupling.meshing is not None:
+            ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
+            relative += COUNTED
+            continue
+        ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
+        known = math.isfinite(coupling.uncertainty)
+        own = 3.0 * coupling.uncertainty / abs(coupling.ratio) if known else 0.0
+        relative += max(own, SCREW if coupling.kind == "screw" else TEETH)
+    if relative > MOST * len(chain):
+        return f"the {shown_ratio(context, stated, ratio)} is uncertain by {100 * relative:.2g} %"
+    return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
+
+
+def shown_ratio(context: Context, stated: Stated, ratio: float) -> str:
+    """A ratio of SI values as the manifest has it, of degrees and lengths in the assembly's units: "ratio 0.02 mm/°"."""
+    slides = [_slides(context, name) for name in stated.joints]
+    return f"ratio {rate(ratio, slides[0], slides[1], context.units)}"
+
+
+def _slides(context: Context, name: str) -> bool:
+    """Whether values of the joint are lengths."""
+    return any(joint.name == name and joint.type == "prismatic" for joint in context.function.joints)
+
+
+def coupled_through(context: Context, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:
+    """Names of the joints, teeth, cams or screws, that a stated coupling goes through; none where there are none."""
+    joints = [resolve(context.assembly, kinematics, name).joint for name in stated.joints]
+    names = [str(joint.name) for joint in joints if joint is not None]
+    if len(names) < 2 or names[0] == names[1]:
+        return ()
+    return tuple(str(coupling.through) for coupling, _ in _chain(kinematics, names[0], names[1]) or [])
+
+
+def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupling, bool]] | None:
+    """The fewest couplings that lead from the one joint to the other, each with whether it is taken forwards."""
+    links = (*kinematics.couplings, *_leads(kinematics))
+    came: dict[str, tuple[str, Coupling, bool]] = {}
+    queue = deque([first])
+    while queue and second not in came:
+        name = queue.popleft()
+        for coupling in links:
+            for here, there, forward in ((*coupling.joints, True), (*coupling.joints[::-1], False)):
+                if here == name and there != first and there not in came:
+                    came[str(there)] = (name, coupling, forward)
+                    queue.append(str(there))
+    if second not in came:
+        return None
+    out: list[tuple[Coupling, bool]] = []
+    name = second
+    while name != first:
+        name, coupling, forward = came[name]
+        out.append((coupling, forward))
+    return out[::-1]
+
+
+def _leads(kinematics: Kinematics) -> list[Coupling]:
+    """Each screw with the slide that it moves: its own value is in as fixed a ratio to that of the slide as the turn
+    beside it, where all freedoms have one ratio."""
+    types = {joint.name: joint.type for joint in kinematics.joints}
+    out = []
+    for coupling in kinematics.couplings:
+        slides = [name for name in coupling.joints if types[name] == "prismatic"]
+        if coupling.kind != "screw" or len(slides) != 1:
+            continue
+        rates = []
+        for freedom in kinematics.mobility.named:
+            moved = {name: rate for name, _, rate in freedom.drives}
+            if coupling.through in moved or slides[0] in moved:
+                rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
+        ratios = [slide / screw for slide, screw in rates if screw]
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW * abs(ratios[0]):
+            out.append(replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0]))
+    return out

@@ -1,0 +1,188 @@
+"""Intended joints beside the joints that geometry gives: type, direction, position, pitch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.kinematics.questions.through import relative
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Body, Joint, Kinematics
+
+__all__ = ["Comparison", "bodies_of", "compare"]
+
+
+STATES = ("stated", "one body", "absent", "undecided", "found")
+
+WITH_LINE = ("revolute", "cylindrical", "screw")
+"""Joints whose axis is a line: direction and position count."""
+FROM_GEOMETRY = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar")
+"""Joint types that contact alone can prove so far; of others only an assumption speaks."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """One intended joint and what was found of it. Angles in rad, lengths in m; None: not comparable.
+
+    `state`: stated (the joint comes from the function, nothing to compare), one body (both sides are
+    one body), absent (no contact, direct or through loose parts), undecided (`reason` says why), found.
+    """
+
+    intended: IntendedJoint
+    bodies: tuple[Body, Body]
+    state: str
+    reason: str = ""
+    type: str = ""
+    axis: Array | None = None
+    point: Array | None = None
+    axis2: Array | None = None
+    pitch: float | None = None
+    freedoms: int = 0
+    joint: Joint | None = None
+    """The direct joint of the two bodies."""
+    through: tuple[str, ...] = ()
+    """Loose bodies that take part."""
+    angle_slack: float = 0.0
+    """Uncertainty of the found direction."""
+    position_slack: float = 0.0
+    """Uncertainty of the found position."""
+    tolerance: float = 0.0
+    """Contact tolerance at the joint (m)."""
+
+    @property
+    def right_type(self) -> bool:
+        """Whether the joint is there and of the intended type."""
+        if self.state == "one body":
+            return self.intended.type == "fixed"
+        return self.state == "found" and self.type == self.intended.type
+
+    @property
+    def angle(self) -> float | None:
+        """Angle between the intended and the found axis, sign left aside."""
+        wanted, wanted2 = self.intended.axis, self.intended.axis2
+        if not self.right_type or wanted is None or self.axis is None:
+            return None
+        if wanted2 is None or self.axis2 is None:
+            return _between(wanted, self.axis)
+        straight = max(_between(wanted, self.axis), _between(wanted2, self.axis2))
+        crossed = max(_between(wanted, self.axis2), _between(wanted2, self.axis))
+        return min(straight, crossed)
+
+    @property
+    def offset(self) -> float | None:
+        """Distance of the found axis from the intended one, where the joint is; of centres for
+        spherical and universal joints."""
+        wanted = self.intended.point
+        if not self.right_type or wanted is None or self.point is None:
+            return None
+        if self.type in ("spherical", "universal"):
+            return float(np.linalg.norm(self.point - wanted))
+        if self.type not in WITH_LINE or self.intended.axis is None or self.axis is None:
+            return None
+        return _apart(self.intended.axis, wanted, self.axis, self.point)
+
+
+def bodies_of(assembly: Assembly, kinematics: Kinematics, between: tuple[str, str]) -> tuple[str, str]:
+    """Names of the bodies that contain two parts or groups."""
+    first, second = (kinematics.body_of(assembly.parts_of(name)[0]).name for name in between)
+    return first, second
+
+
+def compare(
+    assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint
+) -> Comparison:
+    """The intended joint beside what the geometry of its two bodies, and of loose parts that connect
+    them, leaves free."""
+    first, second = (kinematics.body_of(assembly.parts_of(name)[0]) for name in intended.between)
+    bodies = (first, second)
+    if first.name == second.name:
+        reason = "; ".join(first.merged)
+        return Comparison(intended, bodies, "one body", reason, type="fixed")
+    pair = {first.name, second.name}
+    direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
+    if direct is not None and "function" in direct.evidence:
+        return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
+    named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
+    motion = relative(kinematics, first.name, second.name, named)
+    used: tuple[Joint, ...] = (direct,) if direct is not None else ()
+    if motion is not None:
+        used = motion.joints
+    if not used:
+        return Comparison(intended, bodies, "absent")
+    patches = [contacts.patches[k] for j in used for k in j.patches] if contacts is not None else []
+    angle_slack, position_slack = _slack(patches)
+    form = direct if motion is None else motion.form
+    assert form is not None
+    state, reason = _certainty(intended, form.type, used)
+    return Comparison(
+        intended,
+        bodies,
+        state,
+        reason,
+        type=form.type,
+        axis=form.axis,
+        point=form.point,
+        axis2=direct.axis2 if motion is None and direct is not None else None,
+        pitch=form.pitch,
+        freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
+        joint=direct,
+        through=motion.helpers if motion is not None else (),
+        angle_slack=angle_slack,
+        position_slack=position_slack,
+        tolerance=_tolerance(assembly, contacts, patches),
+    )
+
+
+def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> tuple[str, str]:
+    doubtful = [joint for joint in used if joint.status == "ambiguous"]
+    if doubtful:
+        return "undecided", f"joint '{doubtful[0].name}' is ambiguous: {doubtful[0].reason}"
+    if intended.type not in FROM_GEOMETRY and found != intended.type:
+        if intended.type == "screw":
+            return "undecided", f"a {found} joint is no screw joint, but geometry shows those only by modelled threads"
+        article = "an" if intended.type[0] in "aeio" else "a"
+        return "undecided", f"{article} {intended.type} joint is not recognised from geometry yet"
+    return "found", ""
+
+
+def _slack(patches: list[Patch]) -> tuple[float, float]:
+    """Uncertainty of direction and position: of the best curved patch, else of the worst flat one."""
+    curved = [p for p in patches if p.kind in ("cylinder", "cone")]
+    if curved:
+        return min(p.uncertainty[0] for p in curved), min(p.uncertainty[1] for p in curved)
+    if not patches:
+        return 0.0, 0.0
+    return max(p.uncertainty[0] for p in patches), max(p.uncertainty[1] for p in patches)
+
+
+def _tolerance(assembly: Assembly, contacts: Contacts | None, patches: list[Patch]) -> float:
+    """Contact tolerance of the pairs of parts that carry the joint: the greatest."""
+    used = [contacts.tolerance.get(patch.parts) for patch in patches] if contacts is not None else []
+    known = [value for value in used if value is not None]
+    return max(known) if known else assembly.tolerances.contact or assembly.tolerances.contact_cap
+
+
+def _between(a: Array, b: Array) -> float:
+    """Angle between two undirected lines (rad, 0 to π/2)."""
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), abs(float(a @ b)))
+
+
+def _apart(axis: Array, point: Array, other_axis: Array, other_point: Array) -> float:
+    """Least distance (m) of the second line from the first over the stretch between the two points.
+
+    Parallel lines: their distance. A tilt about any point of the stretch gives 0, so that a tilted
+    axis is not reported as displaced as well.
+    """
+    end = float(axis @ (other_point - point))
+    start = point - other_point
+    r0 = start - other_axis * float(other_axis @ start)
+    r1 = axis - other_axis * float(other_axis @ axis)
+    square = float(r1 @ r1)
+    at = -float(r0 @ r1) / square if square > 0.0 else 0.0
+    at = min(max(at, min(0.0, end)), max(0.0, end))
+    return float(np.linalg.norm(r0 + at * r1))

@@ -1,0 +1,152 @@
+"""Whether the sizes of an assembly can be what the designer meant.
+
+A mesh file carries no unit, so the commonest mistake is a factor of 1000. No size proves it; these
+limits were chosen so that machines that people build, from a wrist watch to a ship's crane, stay
+clear of an error:
+
+- more than 100 m across, or more than 1000 m³ of solid material (8000 t of steel, more than the
+  structure of the largest land machines): an error. A device of 50 mm read in metres is about 50 m
+  across and some 10 000 m³ of material;
+- below 1 mm across, unless the unit is um (then 1 um): an error. A device of 100 mm whose metres are
+  read as millimetres is 0.1 mm across;
+- more than 20 m, below 3 mm (1 um to 3 um for um), or one part a hundred times larger than all others
+  together: a warning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.words import length, quoted, volume
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly, Part, Source
+
+__all__ = ["Doubt", "doubts", "extent"]
+
+
+HUGE = 100.0
+"""Diagonal (m) above which the units are taken to be wrong."""
+LARGE = 20.0
+"""Diagonal (m) above which the units are doubted."""
+MASSIVE = 1000.0
+"""Volume of solid material (m³) above which the units are taken to be wrong."""
+TINY = {"um": 1e-6}
+"""Diagonal (m) below which the units are taken to be wrong, for each unit; 1 mm where not listed."""
+SMALL = 3.0
+"""Below so many times TINY the units are doubted."""
+OUTLIER = 100.0
+"""A part so many times larger than all others together is doubted."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One implausible size."""
+
+    severity: str
+    subject: tuple[str, ...]
+    message: str
+    found: str
+    source: Source
+
+
+def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
+    """What is implausible about the sizes of the assembly and of its parts; stick models by the points
+    of their intended joints."""
+    size = extent(assembly)
+    whole = _of_the_whole(assembly, size) if size is not None else None
+    return (whole,) if whole is not None else _outliers(assembly)
+
+
+def extent(assembly: Assembly) -> float | None:
+    """Diagonal (m) of the box around all meshes in their poses, or around the points of the intended
+    joints of a stick model; None where there are fewer than two."""
+    boxes = _boxes(assembly)
+    if boxes:
+        corners = np.concatenate(list(boxes.values()))
+    else:
+        points = [joint.point for joint in assembly.function.joints if joint.point is not None]
+        if len(points) < 2:
+            return None
+        corners = np.array(points)
+    return float(np.linalg.norm(np.ptp(corners, axis=0)))
+
+
+def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
+    units = assembly.units
+    tiny = TINY.get(units, 1e-3)
+    material = sum(_material(part) for part in assembly.parts)
+    found = f"{length(size, units)} across"
+
+    def doubt(severity: str, message: str, found: str = found) -> Doubt:
+        return Doubt(severity, (assembly.name,), message, found, assembly.source)
+
+    if size > HUGE:
+        return doubt("error", f"the assembly is {found} with units = '{units}': no mechanism is that large")
+    if material > MASSIVE:
+        amount = volume(material, units)
+        return doubt(
+            "error",
+            f"the parts hold {amount} of solid material with units = '{units}': no mechanism is that heavy",
+            f"{found}, {amount} of material",
+        )
+    if 0.0 < size < tiny:
+        return doubt("error", f"the assembly is only {found} with units = '{units}'")
+    if size > LARGE:
+        return doubt("warning", f"the assembly is {found} with units = '{units}': unusually large for a mechanism")
+    if 0.0 < size < SMALL * tiny:
+        return doubt("warning", f"the assembly is only {found} with units = '{units}': unusually small")
+    return None
+
+
+def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
+    """Parts that dwarf all others together: perhaps their own `units` are wrong."""
+    boxes = _boxes(assembly)
+    if len(boxes) < 2:
+        return ()
+    rests = dict(zip(boxes, _rests(np.array(list(boxes.values()))), strict=True))
+    found = []
+    for part in assembly.parts:
+        if part.name not in boxes:
+            continue
+        rest = float(np.linalg.norm(rests[part.name]))
+        size = float(np.linalg.norm(np.ptp(boxes[part.name], axis=0)))
+        if rest > 0.0 and size > OUTLIER * rest:
+            text = length(size, assembly.units)
+            message = (
+                f"{quoted([part.name])} is {text} across, read with units = '{part.units}', "
+                f"and all other parts together {length(rest, assembly.units)}"
+            )
+            found.append(Doubt("warning", (part.name,), message, f"{text} across", part.source))
+    return tuple(found)
+
+
+def _rests(boxes: Array) -> Array:
+    """(n, 3) sizes of the box around all boxes (n, 2, 3) but one, for each that is left out."""
+    none = np.full((1, 3), np.inf)
+
+    def least_of_others(values: Array) -> Array:
+        before = np.minimum.accumulate(np.concatenate([none, values[:-1]]))
+        after = np.minimum.accumulate(np.concatenate([none, values[:0:-1]]))[::-1]
+        return np.asarray(np.minimum(before, after))
+
+    return -least_of_others(-boxes[:, 1]) - least_of_others(boxes[:, 0])
+
+
+def _boxes(assembly: Assembly) -> dict[str, Array]:
+    """Box of each part with a mesh, by name."""
+    return {part.name: _box(part) for part in assembly.parts if part.mesh is not None and len(part.mesh.vertices)}
+
+
+def _box(part: Part) -> Array:
+    """(2, 3) corners of the part's box in the world (m)."""
+    assert part.mesh is not None
+    return np.array(part.mesh.placed_box(part.X_WP))
+
+
+def _material(part: Part) -> float:
+    """Volume of the part's material (m³), 0 when it is not known."""
+    if part.mesh is None or not part.solid or not part.mesh.health.watertight:
+        return 0.0
+    return abs(part.mesh.health.volume)

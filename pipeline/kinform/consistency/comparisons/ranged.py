@@ -1,0 +1,93 @@
+"""Stated ranges of joints beside those that the parts leave."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
+from kinform.consistency.context import Context
+from kinform.consistency.rule import Outcome
+from kinform.foundation.words import angle, length, quoted
+from kinform.model.collisions import RangeEnd
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
+
+__all__ = ["Ranged", "matched", "ranged", "shown"]
+
+
+@dataclass(frozen=True, eq=False)
+class Ranged:
+    """One stated range: what was found to its sides in the designer's sense, or why nothing was."""
+
+    intended: IntendedJoint
+    lower: RangeEnd | None = None
+    upper: RangeEnd | None = None
+    sign: float = 1.0
+    """−1 where the designer's values run against those of kinform."""
+    left_out: tuple[tuple[str, str], ...] = ()
+    """Pairs of parts of which nothing is known, as they overlap from the start."""
+    reason: str = ""
+    given: bool = False
+    """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
+
+
+def ranged(context: Context) -> list[Ranged]:
+    """Every intended joint that states a range, sorted by name."""
+    joints = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
+    compared = context.comparisons
+    by_name = {} if isinstance(compared, Outcome) else {item.intended.name: item for item in compared}
+    other = compared.reason if isinstance(compared, Outcome) else ""
+    return [
+        _of_sticks(context, joint)
+        or (_ranged(context, joint, by_name[joint.name]) if by_name else Ranged(joint, reason=other))
+        for joint in joints
+    ]
+
+
+def _of_sticks(context: Context, intended: IntendedJoint) -> Ranged | None:
+    """A range of which a body has no mesh; it is given where nothing in the assembly could meet."""
+    kinematics = context.kinematics
+    if isinstance(kinematics, Outcome):
+        return None
+    bodies = sorted(set(bodies_of(context.assembly, kinematics, intended.between)))
+    bare = [name for name in bodies if name not in context.shaped]
+    if not bare:
+        return None
+    given = bare == bodies and len(context.shaped) < 2
+    return Ranged(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given)
+
+
+def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -> Ranged:
+    run, match = context.design.simulation, matched(comparison)
+    if match is None:
+        return Ranged(intended, reason="no joint of that type was found directly between its parts")
+    joint, sign = match
+    if run is None or run.ranges is None:
+        return Ranged(intended, reason="ranges have not been computed: run `kinform simulate`")
+    found = next((item for item in run.ranges if item.joint == joint.name), None)
+    if found is None:
+        return Ranged(intended, reason="no range was computed for it")
+    ends = (found.lower, found.upper) if sign > 0.0 else (found.upper, found.lower)
+    return Ranged(intended, *ends, sign=sign, left_out=found.left_out)
+
+
+def matched(comparison: Comparison) -> tuple[Joint, float] | None:
+    """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the designer's
+    values run against those of kinform, else 1; None where there is none."""
+    intended, joint = comparison.intended, comparison.joint
+    if not (comparison.right_type or comparison.state == "stated") or joint is None or joint.type != intended.type:
+        return None
+    if joint.axis is None or intended.axis is None:
+        return None
+    sign = 1.0 if float(joint.axis @ intended.axis) >= 0.0 else -1.0
+    return joint, sign if comparison.bodies[0].name == joint.bodies[0] else -sign
+
+
+def shown(value: float, joint: IntendedJoint, units: str, digits: int | None = None) -> str:
+    """A value of a range in words; digits: significant ones."""
+    if math.isinf(value):
+        return "free"
+    if joint.type == "prismatic":
+        return length(value, units, digits or 4)
+    return angle(value, digits or 3)

@@ -1,0 +1,85 @@
+"""The documentation of the rules: for one code in the terminal, for all in `docs/rules.md`."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import re
+
+from kinform.consistency.rule import Rule
+from kinform.consistency.rules import RULES
+from kinform.errors import KinformError
+
+__all__ = ["UnknownRuleError", "explain", "rules_markdown"]
+
+FAMILIES = (
+    ("KF1", "Mesh, units, mass"),
+    ("KF2", "Contact and joints"),
+    ("KF3", "Mobility and redundancy"),
+    ("KF4", "Function"),
+    ("KF5", "Motion and forces"),
+    ("KF9", "Inconclusive"),
+)
+
+INTRODUCTION = """\
+# Rules
+
+`kinform check` compares the form, the behaviour and the function of a design by these rules. Each rule
+passes, fails, is inconclusive (something that it is about could not be decided), or is skipped (it does
+not apply). Findings are errors, warnings or notes. Exit code of the gate: 1 with findings at or above
+`--fail-on` (default error); else 2 when nothing was checked or a rule is inconclusive; else 0.
+
+`kinform explain CODE` prints the text of one rule. This page is generated from the rules by
+`python -m kinform.consistency docs/rules.md`.
+"""
+
+
+class UnknownRuleError(KinformError):
+    """No rule has this code or name; lists the nearest ones."""
+
+    def __init__(self, code: str, near: tuple[str, ...]):
+        self.code, self.near = code, near
+        hint = f"did you mean {', '.join(near)}?" if near else "`docs/rules.md` lists all rules"
+        super().__init__(f"no rule has the code or name {code!r}: {hint}")
+
+
+def explain(code: str) -> str:
+    """Documentation of the rule with this code or name (case does not matter); UnknownRuleError otherwise."""
+    wanted = code.strip().casefold()
+    for rule in RULES:
+        if wanted in (rule.code.casefold(), rule.name):
+            return f"{rule.code} {rule.name} ({rule.severity})\n\n{_text(rule)}\n"
+    raise UnknownRuleError(code, _near(wanted))
+
+
+def rules_markdown() -> str:
+    """The text of `docs/rules.md`."""
+    lines = [INTRODUCTION, "| code | name | severity | what is wrong |", "|---|---|---|---|"]
+    for rule in RULES:
+        lines.append(f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severity} | {_summary(rule)} |")
+    for prefix, title in FAMILIES:
+        lines.append(f"\n## {prefix}: {title}")
+        for rule in RULES:
+            if rule.code.startswith(prefix):
+                text = re.sub(r"^([A-Z][a-z ]+): ", r"**\1.** ", _text(rule), flags=re.MULTILINE)
+                lines.append(f"\n### {rule.code} {rule.name}\n\nSeverity: {rule.severity}.\n\n{text}")
+    return "\n".join(lines) + "\n"
+
+
+def _text(rule: Rule) -> str:
+    return inspect.cleandoc(rule.documentation or "")
+
+
+def _summary(rule: Rule) -> str:
+    return " ".join(_text(rule).split("\n\n")[0].split())
+
+
+def _anchor(rule: Rule) -> str:
+    return f"{rule.code} {rule.name}".lower().replace(" ", "-")
+
+
+def _near(wanted: str) -> tuple[str, ...]:
+    names = {rule.code.casefold(): rule for rule in RULES} | {rule.name: rule for rule in RULES}
+    close = difflib.get_close_matches(wanted, names, n=5, cutoff=0.5)
+    close += [name for name in names if len(wanted) > 2 and wanted in name]
+    return tuple(dict.fromkeys(f"{names[name].code} {names[name].name}" for name in close))[:5]

@@ -1,0 +1,8 @@
+"""What the geometry hints at and does not prove: parts that are probably one body, axes of plain faces."""
+
+from kinform.contacts.fastening.suggest import fastened, suggest
+
+__all__ = ["CODE_VERSION", "fastened", "suggest"]
+
+CODE_VERSION: int = 2
+"""Bumped when results change."""

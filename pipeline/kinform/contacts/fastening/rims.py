@@ -1,0 +1,82 @@
+"""Rims: full circles in which a plane of a mesh ends at a surface of revolution. World frame, SI.
+
+The centre comes from the axis of that surface; the mesh only tells that the circle is there and goes all round.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
+from kinform.model.assembly import Mesh, Part
+from kinform.model.surfaces import MeshSurfaces, Surface
+
+__all__ = ["rims_of"]
+
+
+ROUND = frozenset({"cylinder", "cone", "torus", "revolution"})
+UPRIGHT = math.cos(math.radians(0.5))
+WHOLE = 0.9 * 2 * math.pi
+"""Least angle that the edges of a rim cover."""
+SCATTER = 0.01
+"""Greatest spread of the distances of a rim's vertices from its axis, of their mean."""
+
+
+def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array, float]]:
+    """(centre on the plane (3,), radius) of the rims of one plane surface, by the index of the other surface."""
+    assert part.mesh is not None
+    out = []
+    R_WP, p_WP = part.X_WP[:3, :3], part.X_WP[:3, 3]
+    flat = surfaces.surfaces[plane]
+    upright = [s for s in surfaces.surfaces if s.kind in ROUND and abs(float(s.axis @ flat.axis)) >= UPRIGHT]
+    for other, edges in _borders(part.mesh, flat, upright):
+        radius = _circle(part.mesh.vertices[edges], other)
+        if radius is not None:
+            height = float((flat.point - other.point) @ flat.axis) / float(other.axis @ flat.axis)
+            out.append((R_WP @ (other.point + height * other.axis) + p_WP, radius))
+    return out
+
+
+def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tuple[Surface, NDArray[np.int64]]]:
+    """Those of the other surfaces that share edges with the plane, with the (n, 2) vertices of these edges."""
+    if not others:
+        return []
+    on_plane = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    on_plane[mesh.faces[plane.faces]] = True
+    inside = np.sort(_keys(_edges(mesh.faces[plane.faces]), mesh))
+    out = []
+    for other in others:
+        corners = mesh.faces[other.faces]
+        ends = _edges(corners[on_plane[corners].sum(axis=1) >= 2])
+        keys = _keys(ends, mesh)
+        place = np.minimum(np.searchsorted(inside, keys), len(inside) - 1)
+        shared = inside[place] == keys
+        if shared.any():
+            out.append((other, ends[shared]))
+    return out
+
+
+def _edges(corners: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(3 n, 2) vertices of the edges of facets (n, 3), each edge with the lower first."""
+    return np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+
+
+def _keys(edges: NDArray[np.int64], mesh: Mesh) -> NDArray[np.int64]:
+    """One number an edge."""
+    return edges[:, 0] * len(mesh.vertices) + edges[:, 1]
+
+
+def _circle(edges: Array, surface: Surface) -> float | None:
+    """Radius about the axis of a surface, of edges (n, 2, 3) that go all round it on one circle."""
+    offset = edges - surface.point
+    across = offset - (offset @ surface.axis)[..., None] * surface.axis
+    distance = np.linalg.norm(across, axis=2)
+    radius = float(distance.mean())
+    if radius <= 0.0 or float(np.ptp(distance)) > SCATTER * radius:
+        return None
+    cosine = np.clip(np.einsum("ij,ij->i", across[:, 0], across[:, 1]) / distance.prod(axis=1), -1.0, 1.0)
+    return radius if float(np.arccos(cosine).sum()) >= WHOLE else None

@@ -1,0 +1,1 @@
+"""Points and lines of contact, where parts share no surface."""

@@ -1,0 +1,303 @@
+"""Outlines of prismatic parts: smooth plane curves through the vertices of facets that run along one direction.
+
+Gear flanks, cams and racks are extrusions. Across their direction the facets are segments whose ends lie on
+the true curve, so a cubic spline through the ends has the normals of the curve where those of the facets
+are off by half a facet's turn. A curve is cut where it bends sharply, where a long straight segment meets
+short ones, and where an exact cylinder begins.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinform.contacts.mating.charts import perpendicular
+from kinform.contacts.search.placed import PlacedPart
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Flags, Ints
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
+
+__all__ = ["Curve", "Segments", "Sheet", "across", "curves", "segments"]
+
+
+_LONG = 3.0
+"""A segment this many times longer than both neighbours is a straight face between curves."""
+_BENT = math.radians(3.0)
+"""A curve that turns less than this in all is a straight face."""
+_STRIP = 0.3
+"""A facet is a strip of a doubly curved surface where its neighbour on along the direction is longer than this share."""
+_CIRCULAR = 0.05
+"""A cylinder is exact when its fit misses the vertices by less than this share of its chord error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A smooth curve (2-D, m) with the material to its left, by chord length."""
+
+    points: Array
+    """(n, 2) the vertices."""
+    labels: Ints
+    """(n − 1,) surface of each segment."""
+    lows: Array
+    """(n − 1,) m along the direction."""
+    highs: Array
+    exact: bool
+    """One plane or one cylinder, whose analytic surface is better than any curve through its vertices."""
+    near: Flags
+    """(n − 1,) segments that come near the other part."""
+
+    @cached_property
+    def knots(self) -> Array:
+        """(n,) m, of the vertices."""
+        length = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return np.concatenate([[0.0], np.cumsum(length)])
+
+    @cached_property
+    def spline(self) -> PPoly:
+        """The curve by its knots."""
+        from scipy.interpolate import CubicSpline, PPoly
+
+        points, knots = self.points, self.knots
+        if len(points) == 2:
+            return PPoly(np.stack([(points[1] - points[0]) / knots[1], points[0]])[:, None], knots)
+        if len(points) == 3:
+            slopes = np.diff(points, axis=0) / np.diff(knots)[:, None]
+            bend = (slopes[1] - slopes[0]) / knots[2]
+            return PPoly(np.stack([bend, slopes[0] - bend * knots[1], points[0]])[:, None], knots[[0, 2]])
+        return CubicSpline(knots, points)
+
+    @cached_property
+    def chords(self) -> Array:
+        """(n − 1,) m: distance of the middle of each segment from the curve."""
+        middle = 0.5 * (self.knots[:-1] + self.knots[1:])
+        return np.asarray(np.linalg.norm(self.spline(middle) - 0.5 * (self.points[:-1] + self.points[1:]), axis=1))
+
+    def at(self, s: Array) -> tuple[Array, Array, Array]:
+        """Points (n, 2), unit tangents (n, 2) and signed curvatures (n,) (positive: convex material) at s (n,)."""
+        p, d, dd = self.spline(s), self.spline(s, 1), self.spline(s, 2)
+        size = np.linalg.norm(d, axis=1)
+        return p, d / size[:, None], (d[:, 0] * dd[:, 1] - d[:, 1] * dd[:, 0]) / size**3
+
+    def segment(self, s: float) -> int:
+        """The segment that parameter s lies on."""
+        return int(np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.labels) - 1))
+
+    def doubt(self, s: float) -> float:
+        """rad: how far the tangent at s may be off, as the difference to that of a parabola through three vertices."""
+        if len(self.knots) < 3:
+            return 0.0
+        k = int(np.clip(np.argmin(np.abs(self.knots - s)), 1, len(self.knots) - 2))
+        t, p = self.knots[k - 1 : k + 2], self.points[k - 1 : k + 2]
+        parabola = np.polynomial.polynomial.polyfit(t - t[1], p, 2)
+        slope = parabola[1]
+        own = self.spline(t[1], 1)
+        turn = float(own[0] * slope[1] - own[1] * slope[0]) / float(np.linalg.norm(own) * np.linalg.norm(slope))
+        return abs(math.asin(float(np.clip(turn, -1.0, 1.0))))
+
+
+def across(direction: Array) -> Array:
+    """(2, 3) right-handed axes of the plane across a unit direction."""
+    u = perpendicular(direction)
+    return np.stack([u, np.cross(direction, u)])
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Facets that run along a direction, as directed segments across it: the material lies to their left."""
+
+    points: Array
+    """(p, 2) m."""
+    start: Ints
+    """(n,) index of a point."""
+    end: Ints
+    lows: Array
+    """(n,) m along the direction."""
+    highs: Array
+    labels: Ints
+    """(n,) surface."""
+
+    def boxes(self) -> tuple[Array, Array]:
+        """Lowest and highest corners (n, 3)."""
+        first, last = self.points[self.start], self.points[self.end]
+        low = np.column_stack([np.minimum(first, last), self.lows])
+        return low, np.column_stack([np.maximum(first, last), self.highs])
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Facets of a part (ascending), and pairs (k, 2) of them that meet in a smooth edge: a bent or a flat one."""
+
+    facets: Ints
+    bends: Ints
+    flats: Ints
+
+    @staticmethod
+    def of(part: PlacedPart, facets: Ints, flat: float, smooth: float) -> Sheet:
+        """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
+        faces, count = part.faces[facets], np.int64(len(part.vertices))
+        first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
+        key = np.minimum(first, second) * count + np.maximum(first, second)
+        order = np.argsort(key, kind="stable")
+        key, owner = key[order], np.tile(facets, 3)[order]
+        shared = np.flatnonzero(key[1:] == key[:-1])
+        pairs = np.stack([owner[shared], owner[shared + 1]], axis=1)
+        cosine = np.einsum("ij,ij->i", part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
+        bent = cosine < math.cos(flat)
+        return Sheet(facets, pairs[bent & (cosine > math.cos(smooth))], pairs[~bent])
+
+
+def segments(part: PlacedPart, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
+    """Those of the facets that run along `direction` (3,) within `alignment` (rad), and are no strip of a surface
+    that bends along it too; ends nearer to each other than `grain` (m) are one."""
+    upright = np.zeros(len(part.faces), dtype=bool)
+    facets = sheet.facets
+    upright[facets] = np.abs(part.normals(facets) @ direction) < math.sin(alignment)
+    upright[facets] &= part.index.areas(facets) > 0.0
+    if not upright.any():
+        return None
+    inner, outer = np.concatenate([sheet.bends, sheet.bends[:, ::-1]]).T
+    leaves = upright[inner] & ~upright[outer]
+    inner, outer = inner[leaves], outer[leaves]
+    heights = [np.ptp(part.vertices[part.faces[own]] @ direction, axis=1) for own in (inner, outer)]
+    upright[inner[heights[1] > _STRIP * heights[0]]] = False
+    facets = facets[upright[facets]]
+    if not len(facets):
+        return None
+    plane = across(direction)
+    face = _faces(len(part.faces), facets, sheet.flats[upright[sheet.flats].all(axis=1)])
+    lead = facets[np.unique(face, return_index=True)[1]]
+    normals = part.normals(lead) @ plane.T
+    along = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    corners = part.vertices[part.faces[facets]]
+    flat, height = (corners @ plane.T).reshape(-1, 2), (corners @ direction).ravel()
+    owner = np.repeat(face, 3)
+    reach = np.einsum("ik,ik->i", flat, along[owner])
+    order = np.lexsort((reach, owner))
+    ends = np.searchsorted(owner[order], np.arange(len(lead) + 1))
+    first, last = order[ends[:-1]], order[ends[1:] - 1]
+    lows, highs = np.full(len(lead), np.inf), np.full(len(lead), -np.inf)
+    np.minimum.at(lows, owner, height)
+    np.maximum.at(highs, owner, height)
+    keep = reach[last] - reach[first] > grain
+    if not keep.any():
+        return None
+    ids, points = _merged(np.concatenate([flat[first[keep]], flat[last[keep]]]), grain)
+    count = int(keep.sum())
+    key, number, back = np.unique(
+        ids[:count] * np.int64(len(points)) + ids[count:], return_index=True, return_inverse=True
+    )
+    low, high = np.full(len(key), np.inf), np.full(len(key), -np.inf)
+    np.minimum.at(low, back, lows[keep])
+    np.maximum.at(high, back, highs[keep])
+    start, end = np.divmod(key, np.int64(len(points)))
+    return Segments(points, start, end, low, high, part.surfaces.labels[lead[keep]][number])
+
+
+def _faces(count: int, facets: Ints, flats: Ints) -> Ints:
+    """(n,) number of the plane face that each facet belongs to: facets joined by flat edges are one face, so that
+    vertices on chords, which booleans leave, do not count."""
+    place = np.zeros(count, dtype=np.int64)
+    place[facets] = np.arange(len(facets))
+    one, two = place[flats].T if len(flats) else (np.zeros(0, np.int64), np.zeros(0, np.int64))
+    return components(one, two, len(facets))
+
+
+def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
+    """Points (n, 2) with those nearer than `grain` made one: index of each, and the points."""
+    from scipy.spatial import cKDTree
+
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    pairs = cKDTree(points[order]).query_pairs(grain, output_type="ndarray")
+    leader = np.arange(len(points))
+    if len(pairs):
+        np.minimum.at(leader, pairs.max(axis=1), pairs.min(axis=1))
+    while (leader[leader] != leader).any():
+        leader = leader[leader]
+    unique, back = np.unique(leader, return_inverse=True)
+    ids = np.empty(len(points), dtype=np.int64)
+    ids[order] = back
+    return ids, points[order][unique]
+
+
+def curves(part: PlacedPart, found: Segments, near: Flags, smooth_edge: float) -> list[Curve]:
+    """The smooth curves that segments make, of those curves that have a segment flagged in `near` (n,)."""
+    out = []
+    for chain in _chains(found.start, found.end, len(found.points), near):
+        out += _cut(part, found, chain, near, smooth_edge)
+    return out
+
+
+def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
+    """Segments in order along unbranched runs that have one flagged in `near`; a closed run begins anywhere."""
+    out_of, into = np.bincount(start, minlength=count), np.bincount(end, minlength=count)
+    through = ((out_of == 1) & (into == 1)).tolist()
+    leaving, entering = np.full(count, -1), np.full(count, -1)
+    leaving[start], entering[end] = np.arange(len(start)), np.arange(len(start))
+    after = [int(leaving[p]) if through[p] else -1 for p in end]
+    before = [int(entering[p]) if through[p] else -1 for p in start]
+    used: set[int] = set()
+    chains = []
+    for seed in np.flatnonzero(near).tolist():
+        if seed in used:
+            continue
+        head = seed
+        while before[head] not in (-1, seed):
+            head = before[head]
+        run, k = [head], after[head]
+        while k not in (-1, head):
+            run.append(k)
+            k = after[k]
+        used.update(run)
+        chains.append(np.array(run, dtype=np.int64))
+    return chains
+
+
+def _cut(part: PlacedPart, found: Segments, chain: Ints, near: Flags, smooth_edge: float) -> list[Curve]:
+    """One chain as smooth curves; a closed one is turned to begin at a cut, or overlaps itself where it has none."""
+    corners = found.points[np.append(found.start[chain], found.end[chain[-1]])]
+    labels, count = found.labels[chain], len(chain)
+    closed = bool(found.start[chain[0]] == found.end[chain[-1]]) and count > 2
+    steps = np.diff(corners, axis=0)
+    length = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+    unit = steps / length[:, None]
+    exact = _circular(part, labels)
+    before, after = np.arange(-1, count - 1), np.arange(1, count + 1) % count
+    turn = np.arctan2(
+        unit[before, 0] * unit[:, 1] - unit[before, 1] * unit[:, 0], np.einsum("ij,ij->i", unit[before], unit)
+    )
+    flat = length > _LONG * np.maximum(length[before], length[after])
+    cut = (np.abs(turn) >= smooth_edge) | flat | flat[before]
+    cut |= (labels != labels[before]) & (exact | exact[before])
+    if not closed:
+        cut[0] = True
+    if cut.any():
+        starts = np.flatnonzero(cut)
+        ends = np.append(starts[1:], starts[0] + count)
+        runs = [np.arange(s, e) % count for s, e in zip(starts, ends, strict=True)]
+    else:
+        runs = [np.arange(count + min(4, count)) % count]
+    return [
+        Curve(
+            points=np.concatenate([corners[run], corners[run[-1] + 1][None]]),
+            labels=labels[run],
+            lows=found.lows[chain[run]],
+            highs=found.highs[chain[run]],
+            exact=bool(exact[run].all() or np.abs(turn[run[1:]]).sum() < _BENT),
+            near=near[chain[run]],
+        )
+        for run in runs
+        if near[chain[run]].any()
+    ]
+
+
+def _circular(part: PlacedPart, labels: Ints) -> Flags:
+    """Whether each segment belongs to an exact cylinder."""
+    unique, back = np.unique(labels, return_inverse=True)
+    own = [part.surfaces.surfaces[k] for k in unique]
+    return np.array([s.kind == "cylinder" and s.residual < _CIRCULAR * s.chord for s in own])[back]

@@ -1,0 +1,1 @@
+"""Surfaces that lie on each other."""

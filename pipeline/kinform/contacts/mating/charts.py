@@ -1,0 +1,246 @@
+"""Area-preserving maps between an analytic surface and the plane, where overlaps are cut as polygons.
+
+Plane: itself. Cylinder and cone: developed. Sphere: Lambert's azimuthal projection. A chart has a
+base direction (an azimuth, or a pole) that should point into the region of interest: the seam, or the
+point that the projection cannot show, lies opposite. Lengths in m, one frame throughout.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
+
+__all__ = ["Chart", "ConeChart", "CylinderChart", "PlaneChart", "SphereChart", "perpendicular"]
+
+
+_ARC = math.radians(15.0)
+"""Angle that one sample of a curved surface may stand for."""
+
+
+class Chart(Protocol):
+    """What the overlay needs of a surface."""
+
+    @property
+    def step(self) -> tuple[float, float]:
+        """Greatest size (m), along both coordinates, of a piece that one sample may stand for."""
+        ...
+
+    def flatten(self, triangles: Array) -> Array:
+        """(n, 3, 3) facets as (m, 3, 2); facets across the seam come twice."""
+        ...
+
+    def window(self) -> Array | None:
+        """(k, 2) polygon outside of which the map repeats itself; None where it does not."""
+        ...
+
+    def lift(self, flat: Array) -> Array:
+        """(n, 2) → (n, 3) on the surface."""
+        ...
+
+    def normals(self, points: Array) -> Array:
+        """(n, 3) unit normals at points: away from the axis or the centre; of a plane, its axis."""
+        ...
+
+    def heights(self, points: Array) -> Array:
+        """(n,) m above the surface, along its normals."""
+        ...
+
+
+def perpendicular(axis: Array, hint: Array | None = None) -> Array:
+    """A unit vector perpendicular to `axis`, towards `hint` where that says anything."""
+    if hint is not None:
+        across = hint - (hint @ axis) * axis
+        length = float(np.linalg.norm(across))
+        if length > 1e-6 * max(float(np.linalg.norm(hint)), 1e-300):
+            return np.asarray(across / length)
+    across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    return np.asarray(across / np.linalg.norm(across))
+
+
+def _unit_rows(vectors: Array) -> Array:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneChart:
+    """A plane through `point` with unit normal `axis`."""
+
+    axis: Array
+    point: Array
+    step: tuple[float, float] = (math.inf, math.inf)
+
+    def _basis(self) -> Array:
+        first = perpendicular(self.axis)
+        return np.stack([first, np.cross(self.axis, first)])
+
+    def flatten(self, triangles: Array) -> Array:
+        return np.asarray((triangles - self.point) @ self._basis().T)
+
+    def window(self) -> Array | None:
+        return None
+
+    def lift(self, flat: Array) -> Array:
+        return np.asarray(self.point + flat @ self._basis())
+
+    def normals(self, points: Array) -> Array:
+        return np.tile(self.axis, (len(points), 1))
+
+    def heights(self, points: Array) -> Array:
+        return np.asarray((points - self.point) @ self.axis)
+
+
+@dataclass(frozen=True, eq=False)
+class _Axial:
+    """What charts about an axis share. `base`: unit, across the axis, azimuth 0."""
+
+    axis: Array
+    point: Array
+    base: Array
+
+    def _polar(self, points: Array) -> tuple[Array, Array, Array, Array]:
+        """Height along the axis, radius, azimuth in [−π, π] and radial unit vectors of points (…, 3)."""
+        arm = points - self.point
+        along = arm @ self.axis
+        across = arm - along[..., None] * self.axis
+        azimuth = np.arctan2(across @ np.cross(self.axis, self.base), across @ self.base)
+        return along, np.linalg.norm(across, axis=-1), azimuth, _unit_rows(across)
+
+    def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
+        """Height, radius and azimuth (n, 3) of the corners, each azimuth within π of its centroid's."""
+        along, radius, azimuth, _ = self._polar(triangles)
+        middle = self._polar(triangles.mean(axis=1))[2][:, None]
+        turn = azimuth - middle
+        turn -= 2.0 * math.pi * np.round(turn / (2.0 * math.pi))
+        turn = np.where(radius > 1e-9 * radius.max(initial=0.0), turn, 0.0)
+        return along, radius, middle + turn
+
+    def _radial(self, azimuth: Array) -> Array:
+        across = np.cross(self.axis, self.base)
+        return np.asarray(np.cos(azimuth)[..., None] * self.base + np.sin(azimuth)[..., None] * across)
+
+
+def _repeated(azimuth: Array) -> tuple[NDArray[np.int64], Array]:
+    """Rows to use and their azimuths, with rows that cross the seam at ±π repeated on its other side."""
+    rows = np.arange(len(azimuth))
+    over = np.nonzero((azimuth > math.pi).any(axis=1))[0]
+    under = np.nonzero((azimuth < -math.pi).any(axis=1))[0]
+    turned = [azimuth, azimuth[over] - 2.0 * math.pi, azimuth[under] + 2.0 * math.pi]
+    return np.concatenate([rows, over, under]).astype(np.int64), np.concatenate(turned)
+
+
+@dataclass(frozen=True, eq=False)
+class CylinderChart(_Axial):
+    """A cylinder: (arc length, height)."""
+
+    radius: float
+
+    @property
+    def step(self) -> tuple[float, float]:
+        return _ARC * self.radius, math.inf
+
+    def flatten(self, triangles: Array) -> Array:
+        along, _, azimuth = self._unrolled(triangles)
+        rows, turned = _repeated(azimuth)
+        return np.stack([self.radius * turned, along[rows]], axis=2)
+
+    def window(self) -> Array | None:
+        half, far = math.pi * self.radius, 1e3 * self.radius
+        return np.array([[-half, -far], [half, -far], [half, far], [-half, far]])
+
+    def lift(self, flat: Array) -> Array:
+        radial = self._radial(flat[:, 0] / self.radius)
+        return np.asarray(self.point + self.radius * radial + flat[:, 1:] * self.axis)
+
+    def normals(self, points: Array) -> Array:
+        return self._polar(points)[3]
+
+    def heights(self, points: Array) -> Array:
+        return np.asarray(self._polar(points)[1] - self.radius)
+
+
+@dataclass(frozen=True, eq=False)
+class ConeChart(_Axial):
+    """A cone with its apex at `point`, opening along `axis`: developed about the apex."""
+
+    half_angle: float
+    middle: float
+    """Radius in the region of interest (m)."""
+
+    @property
+    def step(self) -> tuple[float, float]:
+        return _ARC * self.middle, _ARC * self.middle
+
+    def flatten(self, triangles: Array) -> Array:
+        along, radius, azimuth = self._unrolled(triangles)
+        slant = along * math.cos(self.half_angle) + radius * math.sin(self.half_angle)
+        rows, turned = _repeated(azimuth)
+        angle = turned * math.sin(self.half_angle)
+        return np.asarray(slant[rows][..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=2))
+
+    def window(self) -> Array | None:
+        half = math.pi * math.sin(self.half_angle)
+        angles = np.linspace(-half, half, 9)
+        far = 1e3 * self.middle / math.sin(self.half_angle)
+        return np.concatenate([np.zeros((1, 2)), far * np.stack([np.cos(angles), np.sin(angles)], axis=1)])
+
+    def lift(self, flat: Array) -> Array:
+        slant = np.linalg.norm(flat, axis=1)
+        azimuth = np.arctan2(flat[:, 1], flat[:, 0]) / math.sin(self.half_angle)
+        ray = math.cos(self.half_angle) * self.axis + math.sin(self.half_angle) * self._radial(azimuth)
+        return np.asarray(self.point + slant[:, None] * ray)
+
+    def normals(self, points: Array) -> Array:
+        radial = self._polar(points)[3]
+        return np.asarray(math.cos(self.half_angle) * radial - math.sin(self.half_angle) * self.axis)
+
+    def heights(self, points: Array) -> Array:
+        along, radius, _, _ = self._polar(points)
+        return np.asarray(radius * math.cos(self.half_angle) - along * math.sin(self.half_angle))
+
+
+@dataclass(frozen=True, eq=False)
+class SphereChart:
+    """A sphere about `point`, seen from `pole` (unit): Lambert's azimuthal equal-area projection."""
+
+    point: Array
+    radius: float
+    pole: Array
+
+    @property
+    def step(self) -> tuple[float, float]:
+        return _ARC * self.radius, _ARC * self.radius
+
+    def _basis(self) -> Array:
+        first = perpendicular(self.pole)
+        return np.stack([first, np.cross(self.pole, first)])
+
+    def flatten(self, triangles: Array) -> Array:
+        rays = _unit_rows(triangles - self.point)
+        rise = rays @ self.pole
+        shown = rays.mean(axis=1) @ self.pole > -0.97
+        rays, rise = rays[shown], rise[shown]
+        stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
+        return np.asarray(stretch[..., None] * (rays @ self._basis().T))
+
+    def window(self) -> Array | None:
+        return None
+
+    def lift(self, flat: Array) -> Array:
+        distance = np.linalg.norm(flat, axis=1)
+        angle = 2.0 * np.arcsin(np.clip(distance / (2.0 * self.radius), 0.0, 1.0))
+        ray = (flat / np.where(distance > 0.0, distance, 1.0)[:, None]) @ self._basis()
+        rise = np.cos(angle)[:, None] * self.pole + np.sin(angle)[:, None] * ray
+        return np.asarray(self.point + self.radius * rise)
+
+    def normals(self, points: Array) -> Array:
+        return _unit_rows(points - self.point)
+
+    def heights(self, points: Array) -> Array:
+        return np.asarray(np.linalg.norm(points - self.point, axis=1) - self.radius)

@@ -1,0 +1,247 @@
+"""Where two sets of facets lie over each other on one analytic surface, as points with areas.
+
+Both sets are drawn in the surface's chart, intersected as polygons (manifold3d's cross-sections), and
+the result is cut into triangles, which are gathered into bins of a grid. A triangle counts with 3/4 of
+its area at its centroid and 1/12 at each corner, which is exact for quadratic functions; each bin then
+stands at its mean, so that areas and first moments carry no sampling noise. The rim of the patch, which
+bounds the cone of separating motions, stays as points of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from manifold3d import CrossSection, FillRule, triangulate
+from numpy.typing import NDArray
+
+from kinform.contacts.mating.charts import Chart
+from kinform.model.arrays import Array, Flags, Ints
+
+__all__ = ["Cells", "overlay"]
+
+
+_BINS = 24
+"""Least number of bins of a patch, so that a blocked part of it can be told."""
+_RIM = 96
+"""Greatest number of points that stand for the rim."""
+_THIN = 0.01
+"""Regions thinner than this share of the tolerance are lines, not patches."""
+_SMALL = 0.02
+"""Regions smaller than this share of the squared tolerance are points, not patches."""
+_MANY = 64
+"""Triangles of which the outline is quicker to unite than all of them."""
+_KEY = 1e-6
+"""Points of a region closer than this share of the tolerance are one."""
+
+
+def _signed(corners: Array) -> Array:
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+
+
+def _means(points: Array, weights: Array, group: Ints, count: int) -> tuple[Array, Array]:
+    """Weighted mean (count, 2) and total weight (count,) of the points of each group."""
+    total = np.bincount(group, weights=weights, minlength=count)
+    sums = [np.bincount(group, weights=weights * points[:, k], minlength=count) for k in range(2)]
+    return np.stack(sums, axis=1) / np.where(total > 0.0, total, 1.0)[:, None], np.asarray(total, np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Triangles of an overlap in the chart, gathered into bins."""
+
+    corners: Array
+    """(k, 3, 2) m."""
+    bins: Ints
+    """(k,) bin of each triangle; every number from 0 occurs."""
+    rim: Array
+    """(r, 2) m: corners that bound the overlap."""
+    unit: float
+    """m: the contact tolerance."""
+
+    @property
+    def areas(self) -> Array:
+        """(k,) m²."""
+        return np.abs(_signed(self.corners))
+
+    @property
+    def centroids(self) -> Array:
+        """(k, 2) m."""
+        return np.asarray(self.corners.mean(axis=1))
+
+    def probes(self) -> Array:
+        """(bins, 2) m: for each bin the centroid, of its triangles, that is nearest to its mean."""
+        centroids = self.centroids
+        mean, _ = _means(centroids, self.areas, self.bins, int(self.bins.max()) + 1)
+        off = np.linalg.norm(centroids - mean[self.bins], axis=1)
+        order = np.lexsort((off, self.bins))
+        _, first = np.unique(self.bins[order], return_index=True)
+        return np.asarray(centroids[order[first]])
+
+    def kept(self, triangles: Flags) -> Cells:
+        """Only the flagged triangles (k,), their bins renumbered, and the rim that they touch."""
+        _, bins = np.unique(self.bins[triangles], return_inverse=True)
+        corners = self.corners[triangles]
+        touched = np.isin(self._keys(self.rim), self._keys(corners.reshape(-1, 2)))
+        return Cells(corners, bins.ravel().astype(np.int64), self.rim[touched], self.unit)
+
+    def _keys(self, points: Array) -> NDArray[np.complex128]:
+        grid = np.round(points / (_KEY * self.unit))
+        return np.asarray(grid[:, 0] + 1j * grid[:, 1])
+
+    def quadrature(self) -> tuple[Array, Array]:
+        """Points (n, 2) m and the area (n,) m² each stands for: bins in order, then the rim."""
+        count = int(self.bins.max()) + 1
+        corners = self.corners.reshape(-1, 2)
+        shares = np.repeat(self.areas / 12.0, 3)
+        rim_keys, rim_first = np.unique(self._keys(self.rim), return_index=True)
+        keys = self._keys(corners)
+        at = np.minimum(np.searchsorted(rim_keys, keys), max(len(rim_keys) - 1, 0))
+        on_rim = rim_keys[at] == keys if len(rim_keys) else np.zeros(len(keys), dtype=bool)
+        rim_shares = np.bincount(at[on_rim], weights=shares[on_rim], minlength=len(rim_keys))
+        inner, inner_shares = corners[~on_rim], shares[~on_rim]
+        points = np.concatenate([self.centroids, inner])
+        weights = np.concatenate([0.75 * self.areas, inner_shares])
+        mean, total = _means(points, weights, np.concatenate([self.bins, np.repeat(self.bins, 3)[~on_rim]]), count)
+        return np.concatenate([mean, self.rim[rim_first]]), np.concatenate([total, rim_shares])
+
+
+def _region(flat: Array, unit: float) -> CrossSection:
+    """The union of triangles (n, 3, 2), in units of `unit` (m)."""
+    signed = _signed(flat)
+    flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
+    flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
+    return CrossSection(_outline(flat) if len(flat) > _MANY else list(flat), FillRule.Positive)
+
+
+def _outline(flat: Array) -> list[Array]:
+    """Closed loops around triangles (n, 3, 2) of positive area: edges that no other triangle runs the other way.
+
+    They wind about every point as often as the triangles do, and there are far fewer of them.
+    """
+    cells = np.round(flat.reshape(-1, 2) / _KEY)
+    order = np.lexsort((cells[:, 1], cells[:, 0]))
+    fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
+    renamed = np.empty(len(order), np.int64)
+    renamed[order] = np.cumsum(fresh) - 1
+    points, count = flat.reshape(-1, 2)[order[fresh]], np.int64(fresh.sum())
+    corner = renamed.reshape(-1, 3)
+    start, end = renamed, np.roll(corner, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    edge, number = np.unique(low * count + high, return_inverse=True)
+    net = np.bincount(number, np.where(start < end, 1.0, -1.0)).astype(np.int64)
+    times = np.abs(net)
+    one: Ints = np.repeat(edge // count, times)
+    two: Ints = np.repeat(edge % count, times)
+    forward = np.repeat(net > 0, times)
+    onward: dict[int, list[int]] = {}
+    for a, b in zip(np.where(forward, one, two).tolist(), np.where(forward, two, one).tolist(), strict=True):
+        onward.setdefault(a, []).append(b)
+    loops = []
+    for begin in sorted(onward):
+        while onward[begin]:
+            # every corner is left as often as it is reached, so that a walk ends where it began
+            loop, at = [begin], onward[begin].pop()
+            while at != begin:
+                loop.append(at)
+                at = onward[at].pop()
+            if len(loop) > 2:
+                loops.append(points[loop])
+    return loops
+
+
+def _perimeter(polygons: list[Array]) -> float:
+    return float(sum(np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1).sum() for p in polygons))
+
+
+def _resampled(polygon: Array, step: Array) -> Array:
+    """The polygon (n, 2) with points added so that no edge is longer than `step` (2,) in any coordinate."""
+    ends = np.roll(polygon, -1, axis=0)
+    counts = np.maximum(np.ceil((np.abs(ends - polygon) / step).max(axis=1) - 1e-9), 1).astype(np.int64)
+    rows = np.repeat(np.arange(len(polygon)), counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(len(rows)) - first) / counts[rows]
+    return np.asarray(polygon[rows] + share[:, None] * (ends[rows] - polygon[rows]))
+
+
+def _split(corners: Array, size: Array) -> Array:
+    """Halve triangles at their longest edge, in units of `size` (2,), until no edge is longer than it."""
+    while True:
+        edges = np.linalg.norm((corners - np.roll(corners, -1, axis=1)) / size, axis=2)
+        longest = np.argmax(edges, axis=1)
+        large = edges.max(axis=1, initial=0.0) > 1.0
+        if not large.any():
+            return corners
+        rows = np.nonzero(large)[0]
+        turned = np.stack([corners[rows, (longest[rows] + k) % 3] for k in range(3)], axis=1)
+        middle = 0.5 * (turned[:, 0] + turned[:, 1])
+        one = np.stack([turned[:, 0], middle, turned[:, 2]], axis=1)
+        two = np.stack([middle, turned[:, 1], turned[:, 2]], axis=1)
+        corners = np.concatenate([corners[~large], one, two])
+
+
+def _overlap(chart: Chart, first: Array, second: Array, unit: float) -> CrossSection | None:
+    """The region, in units of `unit`, that both sets of facets cover."""
+    flat_a, flat_b = chart.flatten(first), chart.flatten(second)
+    if not len(flat_a) or not len(flat_b):
+        return None
+    low = np.maximum(flat_a.min(axis=(0, 1)), flat_b.min(axis=(0, 1)))
+    high = np.minimum(flat_a.max(axis=(0, 1)), flat_b.max(axis=(0, 1)))
+    if (low >= high).any():
+        return None
+    sides = []
+    for flat in (flat_a, flat_b):
+        within = ((flat.min(axis=1) <= high) & (flat.max(axis=1) >= low)).all(axis=1)
+        sides.append(_region(flat[within], unit))
+    region = sides[0] ^ sides[1]
+    window = chart.window()
+    return region if window is None else region ^ CrossSection([window / unit], FillRule.Positive)
+
+
+def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
+    """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
+    pieces = []
+    for piece in region.decompose():
+        polygons = [np.asarray(p) for p in piece.simplify(_THIN * 0.1).to_polygons()]
+        area = piece.area()
+        if polygons and area >= _SMALL and 2.0 * area >= thin * _perimeter(polygons):
+            pieces.append(polygons)
+    return pieces
+
+
+def _rim(polygons: list[Array], flat: bool) -> Array:
+    """Points that bound the region: of a plane the corners of its hull, else all corners; thinned evenly."""
+    corners = np.concatenate(polygons)
+    if flat:
+        corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
+    every = math.ceil(len(corners) / _RIM)
+    return np.asarray(corners[::every])
+
+
+def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: float = 0.0) -> Cells | None:
+    """Overlap of the facets `first` (n, 3, 3) and `second` (m, 3, 3) in the chart; None where there is none.
+
+    `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case.
+    """
+    region = _overlap(chart, first, second, tolerance)
+    pieces = _pieces(region, max(_THIN, thin / tolerance)) if region is not None else []
+    if not pieces:
+        return None
+    step = np.array(chart.step) / tolerance
+    flat = bool(np.isinf(step).all())
+    triangles = []
+    for number, polygons in enumerate(pieces):
+        pieces[number] = [_resampled(polygon, step) for polygon in polygons]
+        triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
+    corners = np.concatenate(triangles)
+    area = float(np.abs(_signed(corners)).sum())
+    size = np.minimum(step, math.sqrt(area / _BINS))
+    corners = _split(corners, size)
+    corners = corners[np.abs(_signed(corners)) > 0.0]
+    # Bins are counted from the region's own corner, so that they move with it.
+    place = np.floor((corners.mean(axis=1) - corners.min(axis=(0, 1))) / size).astype(np.int64)
+    _, bins = np.unique(place, axis=0, return_inverse=True)
+    rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
+    return Cells(corners * tolerance, bins.ravel().astype(np.int64), rim * tolerance, tolerance)

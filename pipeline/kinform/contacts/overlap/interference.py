@@ -1,0 +1,262 @@
+"""Solids that overlap: how much, how deep, and whether mating surfaces explain it.
+
+Facets of two tessellated surfaces that mate overlap without any overlap of the surfaces that they stand
+for: a 32-gon in a 24-gon of radius 10 mm by up to 0.09 mm at zero gap. So a piece of overlap counts only
+where it is deeper than the chord errors of the surfaces that bound it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.contacts.mating.mates import EDGE
+from kinform.contacts.overlap.solids import Piece, SolidStore
+from kinform.contacts.search.placed import PlacedPart
+from kinform.model.arrays import Array, Ints, freeze
+from kinform.model.contacts import Interference, Patch
+
+__all__ = ["find_interference"]
+
+
+_SAMPLES = 400
+"""Points at which the depth of one pair's overlap is measured."""
+_BESIDE = 100
+"""Points beside the deepest one that are measured too."""
+_EXACT = 0.02
+"""Share of the contact tolerance below which an overlap is none: rounding of coordinates."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """Points on the boundary of one part inside the other: depth, and the surfaces on both sides."""
+
+    points: Array
+    depth: Array
+    surfaces: Ints
+    """(n, 2) of the first and the second part."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Allowance:
+    """What depth the surfaces explain: chord errors and uncertainty, and which of them mate."""
+
+    chords: tuple[Array, Array]
+    """Chord error and residual of each surface of both parts (m)."""
+    mates: dict[tuple[int, int], Patch]
+    floor: float
+    tolerance: float
+
+    def chords_of(self, samples: _Samples) -> Array:
+        """(n,) m: depth that the chord errors of the surfaces on both sides explain."""
+        i, j = samples.surfaces.T
+        return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
+
+    def unexplained(self, samples: _Samples) -> tuple[NDArray[np.bool_], bool]:
+        """Samples deeper than what tessellation explains, and whether they all lie at mates."""
+        i, j = samples.surfaces.T
+        present = (set(i.tolist()), set(j.tolist()))
+        mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
+        allowed = self.chords_of(samples)
+        for patch in mates:
+            allowed = np.maximum(allowed, patch.chord + patch.uncertainty[1] + self.floor)
+        deep = samples.depth > allowed
+        at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
+        pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
+        mated = bool(mates) and bool(
+            ((samples.depth[deep] <= EDGE * self.tolerance) & (at_mate[deep] | (samples.depth[deep] <= pressed))).all()
+        )
+        return deep, mated
+
+
+def find_interference(
+    a: PlacedPart, b: PlacedPart, patches: list[Patch], solids: SolidStore, tolerance: float
+) -> Interference | None:
+    """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
+    if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, tolerance):
+        return None
+    allowance = _Allowance(
+        chords=(_chords(a), _chords(b)),
+        mates={p.surfaces: p for p in patches if not p.one_sided},
+        floor=_EXACT * tolerance,
+        tolerance=tolerance,
+    )
+    pieces = solids.overlap(a, b, allowance.floor**3)
+    if pieces is None:
+        return _by_facets(a, b, allowance)
+    return _by_volume(a, b, pieces, allowance)
+
+
+def _chords(part: PlacedPart) -> Array:
+    return part.table.slacks + part.table.point_uncertainty
+
+
+def _meet(a: PlacedPart, b: PlacedPart, patches: list[Patch], tolerance: float) -> bool:
+    """Whether the two boundaries cross, or one part holds a shell of the other.
+
+    Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide
+    cross or do not as rounding has it, so the question is put once more with the second part moved by as much.
+    """
+    low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
+    least = _EXACT * tolerance
+    if (high - low).min() < least:
+        return False
+    X_AF = np.linalg.inv(a.X_FP)
+
+    def cross(move: Array) -> bool:
+        X_FB = b.X_FP.copy()
+        X_FB[:3, 3] += move
+        return a.region.crosses(b.region, X_AF @ X_FB)
+
+    apart = _parting(patches)
+    if apart is None or cross(0.9 * least * apart):
+        shift = least * np.array([0.61, 0.53, 0.59])
+        if any(cross(move) for move in (np.zeros(3), shift, -shift)):
+            return True
+    return _holds(a, b) or _holds(b, a)
+
+
+def _parting(patches: list[Patch]) -> Array | None:
+    """The direction (3,) in which the second part leaves all plane contacts fastest; None where none does.
+
+    The point of least norm in the hull of the normals, by Frank and Wolfe's method.
+    """
+    normals = np.array([patch.axis for patch in patches if patch.kind == "plane"]).reshape(-1, 3)
+    if not len(normals):
+        return None
+    nearest = normals.mean(axis=0)
+    for _ in range(60):
+        step = normals[np.argmin(normals @ nearest)] - nearest
+        gain = -float(step @ nearest)
+        if gain <= 1e-9:
+            break
+        nearest = nearest + min(1.0, gain / float(step @ step)) * step
+    length = float(np.linalg.norm(nearest))
+    return nearest / length if length > 0.1 else None
+
+
+def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
+    """Whether a whole shell of `inner` lies inside `outer`, given that no facets cross."""
+    shells = inner.index.shells
+    if len(shells) == 1 and ((inner.low < outer.low) | (inner.high > outer.high)).any():
+        return False
+    middles = inner.vertices[inner.faces[shells]].mean(axis=1)
+    middles = middles[((middles > outer.low) & (middles < outer.high)).all(axis=1)]
+    return bool(len(middles)) and bool(outer.index.contains(outer.to_part(middles)).any())
+
+
+def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
+    """Depth of points on the owner's facets below the surface of the other part."""
+    depth, nearest = other.depths(points)
+    own, theirs = owner.surfaces.labels[facets], other.surfaces.labels[nearest]
+    return _Samples(points, depth, np.stack([own, theirs] if first else [theirs, own], axis=1))
+
+
+def _joined(samples: list[_Samples]) -> _Samples:
+    return _Samples(
+        np.concatenate([s.points for s in samples]),
+        np.concatenate([s.depth for s in samples]),
+        np.concatenate([s.surfaces for s in samples]),
+    )
+
+
+def _sampled(a: PlacedPart, b: PlacedPart, piece: Piece, count: int) -> _Samples:
+    """Depths at about `count` points of a piece: middles of its facets, and just inside their corners."""
+    points, part, facet = _points_of(piece)
+    chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
+    return _measured_on(a, b, points[chosen], part[chosen], facet[chosen])
+
+
+def _deepest(a: PlacedPart, b: PlacedPart, piece: Piece, samples: _Samples, deep: NDArray[np.bool_]) -> float:
+    """Greatest depth (m) of the piece: of the deep samples, and of the points beside the deepest of them."""
+    best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
+    points, part, facet = _points_of(piece)
+    off = np.linalg.norm(points - samples.points[best], axis=1)
+    beside = np.lexsort((np.arange(len(off)), off))[:_BESIDE]
+    more = _measured_on(a, b, points[beside], part[beside], facet[beside])
+    return max(float(samples.depth[best]), float(more.depth.max()))
+
+
+def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
+    """Middles of the facets of a piece, and points just inside their corners; of which part and facet each is."""
+    middle = piece.corners.mean(axis=1)
+    points = np.concatenate([middle, (0.98 * piece.corners + 0.02 * middle[:, None]).reshape(-1, 3)])
+    part, facet = (np.concatenate([own, np.repeat(own, 3)]) for own in (piece.part, piece.facet))
+    return points, part, facet
+
+
+def _measured_on(a: PlacedPart, b: PlacedPart, points: Array, part: Ints, facet: Ints) -> _Samples:
+    return _joined(
+        [
+            _measured(a, b, points[part == 0], facet[part == 0], True),
+            _measured(b, a, points[part == 1], facet[part == 1], False),
+        ]
+    )
+
+
+def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Allowance) -> Interference | None:
+    """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
+    volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
+    facets = sum(len(piece.corners) for piece in pieces)
+    for piece in pieces:
+        # Faces that coincide leave sheets of no thickness: they need no measuring.
+        if piece.volume <= allowance.floor**3:
+            continue
+        count = max(16, round(_SAMPLES * len(piece.corners) / facets))
+        samples = _sampled(a, b, piece, count)
+        deep, at_mates = allowance.unexplained(samples)
+        thick = 2.0 * piece.volume / piece.area
+        if deep.any():
+            here = _deepest(a, b, piece, samples, deep)
+        elif thick > allowance.chords_of(samples).max(initial=0.0):
+            # Two boundaries that coincide have no depth below each other: a part placed twice.
+            here, at_mates = thick, False
+        else:
+            continue
+        volume += piece.volume
+        moment += piece.volume * piece.centroid
+        depth = max(depth, here)
+        mated &= at_mates
+    if volume <= 0.0:
+        return None
+    return _interference(a, b, volume, depth, moment / volume, mated, "manifold")
+
+
+def _by_facets(a: PlacedPart, b: PlacedPart, allowance: _Allowance) -> Interference | None:
+    """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
+    samples = []
+    for owner, other, first in ((a, b, True), (b, a, False)):
+        points, facets = _inside(owner, other)
+        samples.append(_measured(owner, other, points, facets, first))
+    joined = _joined(samples)
+    if not len(joined.points):
+        return None
+    deep, mated = allowance.unexplained(joined)
+    if not deep.any():
+        return None
+    depth, weights = float(joined.depth[deep].max()), joined.depth[deep]
+    place = weights @ joined.points[deep] / weights.sum()
+    return _interference(a, b, math.nan, depth, place, mated, "facets")
+
+
+def _inside(owner: PlacedPart, other: PlacedPart) -> tuple[Array, Ints]:
+    """Points on the owner's facets that are inside the other part, and their facets."""
+    corners = owner.vertices[owner.faces]
+    middle = corners.mean(axis=1)
+    points = np.concatenate([middle, (0.98 * corners + 0.02 * middle[:, None]).reshape(-1, 3)])
+    facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
+    within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
+    chosen = within[:: max(1, math.ceil(len(within) / _SAMPLES))]
+    points, facets = points[chosen], facets[chosen]
+    inside = other.index.contains(other.to_part(points))
+    return points[inside], facets[inside].astype(np.int64)
+
+
+def _interference(
+    a: PlacedPart, b: PlacedPart, volume: float, depth: float, place: Array, mated: bool, method: str
+) -> Interference:
+    names = (a.part.name, b.part.name)
+    return Interference(names, volume, depth, np.asarray(freeze(place)), mated, method)

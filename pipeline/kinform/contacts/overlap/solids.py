@@ -1,0 +1,111 @@
+"""Overlap of two closed meshes by manifold3d: its pieces, and which facets of either part bound them.
+
+Coordinates are centred on the part whose frame is that of the pair, and scaled by a power of two to the order of 1 before the
+boolean, because manifold3d's tolerances are relative to the size of what it is given.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from manifold3d import Error, Manifold, Mesh64
+
+from kinform.contacts.search.placed import PlacedPart
+from kinform.model.arrays import Array, Ints
+from kinform.model.assembly import Mesh
+
+__all__ = ["Piece", "SolidStore"]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One connected piece of the overlap, in the frame of the pair."""
+
+    volume: float
+    """m³."""
+    area: float
+    """m², of its boundary."""
+    centroid: Array
+    """(3,) m."""
+    corners: Array
+    """(t, 3, 3) m, its facets."""
+    part: Ints
+    """(t,) 0 or 1: whose surface the facet is cut from."""
+    facet: Ints
+    """(t,) index of that facet in the part's mesh."""
+
+
+def _scaling(mesh: Mesh) -> tuple[Array, float]:
+    """Centre (3,) and scale (a power of two) that bring a mesh to the order of 1."""
+    middle = 0.5 * (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))
+    return middle, 2.0 ** math.ceil(math.log2(max(mesh.diagonal, 1e-300)))
+
+
+@dataclass
+class SolidStore:
+    """Manifolds of meshes, by digest and by their role (0, 1) in a pair."""
+
+    solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
+
+    def overlap(self, a: PlacedPart, b: PlacedPart, least: float) -> list[Piece] | None:
+        """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
+        home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
+        first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
+        if first is None or second is None:
+            return None
+        middle, scale = _scaling(home.index.mesh)
+        own_middle, own_scale = _scaling(guest.index.mesh)
+        R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
+        place = np.concatenate([R * own_scale, (R @ own_middle + p - middle)[:, None]], axis=1) / scale
+        pieces = [
+            _piece(piece, middle, scale)
+            for piece in (first ^ second.transform(place)).decompose()
+            if not piece.is_empty() and piece.volume() * scale**3 > 0.5 * least
+        ]
+        return sorted(pieces, key=lambda piece: (-piece.volume, tuple(piece.centroid)))
+
+    def _solid(self, mesh: Mesh, role: int) -> Manifold | None:
+        key = (mesh.digest, role)
+        if key not in self.solids:
+            self.solids[key] = _solid(mesh, role)
+        return self.solids[key]
+
+
+def _solid(mesh: Mesh, role: int) -> Manifold | None:
+    """The mesh as a manifold whose facets remember their number; inside-out meshes are turned."""
+    if not mesh.health.watertight or mesh.health.manifold_status != "NoError":
+        return None
+    middle, scale = _scaling(mesh)
+    faces = mesh.faces if mesh.health.volume >= 0.0 else mesh.faces[:, ::-1]
+    solid = Manifold(
+        Mesh64(
+            np.ascontiguousarray((mesh.vertices - middle) / scale),
+            np.ascontiguousarray(faces, dtype=np.uint64),
+            run_index=np.array([0, 3 * len(faces)], dtype=np.uint64),
+            run_original_id=np.array([role], dtype=np.uint32),
+            face_id=np.arange(len(faces), dtype=np.uint64),
+        )
+    )
+    return solid if solid.status() == Error.NoError and not solid.is_empty() else None
+
+
+def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
+    mesh = solid.to_mesh64()
+    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts, dtype=np.int64)]
+    starts = np.asarray(mesh.run_index, dtype=np.int64) // 3
+    owners = np.asarray(mesh.run_original_id, dtype=np.int64)
+    part = np.repeat(owners, np.diff(starts))
+    # Facets in an order of their own, so that sums do not depend on how manifold3d went about it.
+    order = np.lexsort(tuple(corners.reshape(len(corners), 9).T[::-1]))
+    corners, part = corners[order], part[order]
+    facet = np.asarray(mesh.face_id, dtype=np.int64)[order]
+    origin = corners.reshape(-1, 3).mean(axis=0)
+    a, b, c = (corners[:, k] - origin for k in range(3))
+    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    volume = float(volumes.sum())
+    moment = volumes @ (a + b + c) / 4.0
+    centroid = origin + (moment / volume if volume > 0.0 else 0.0)
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return Piece(volume * scale**3, area * scale**2, centroid * scale + middle, corners * scale + middle, part, facet)

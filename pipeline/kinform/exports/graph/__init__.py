@@ -1,0 +1,1 @@
+"""The kinematic graph as a drawing."""

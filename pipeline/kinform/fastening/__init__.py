@@ -1,8 +1,0 @@
-"""What the geometry hints at and does not prove: parts that are probably one body, axes of plain faces."""
-
-from kinform.fastening.suggest import fastened, suggest
-
-__all__ = ["CODE_VERSION", "fastened", "suggest"]
-
-CODE_VERSION: int = 2
-"""Bumped when results change."""

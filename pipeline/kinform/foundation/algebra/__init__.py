@@ -1,0 +1,1 @@
+"""Vectors, screws, displacements, rotations."""

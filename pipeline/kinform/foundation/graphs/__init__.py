@@ -1,0 +1,1 @@
+"""Connected components, blocks, spanning trees, cycles. No physics here."""

@@ -1,0 +1,1 @@
+"""Facets: edges, shells, boxes, nearness, FCL, parity of rays."""

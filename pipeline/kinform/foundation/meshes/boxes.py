@@ -1,0 +1,112 @@
+"""The boxes of a mesh's facets, in chunks of facets that lie together: what meets a small box is found without
+asking all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.model.arrays import Array, Ints
+
+__all__ = ["FacetBoxes", "FlatBoxes", "facet_boxes", "together"]
+
+
+_CHUNK = 48
+"""Facets of a chunk."""
+_OFTEN = 6
+"""Questions that are cheaper to answer without chunks than the chunks are to make."""
+_FINEST = 512
+"""Cells along the side of a grid, at most."""
+_LISTED = 12
+"""Cells of a grid that a facet is listed in on average, at most."""
+
+
+def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+    """Lower and upper corners (n, d) of the boxes of triangles, given by their three corners (n, d) each."""
+    first, second, third = corners
+    return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
+
+
+class FacetBoxes:
+    """Boxes (F, d) of facets, d 2 or 3, in an order of chunks by size and place once they are asked for often."""
+
+    def __init__(self, low: Array, high: Array):
+        self.low, self.high = low, high
+        self._asked = 0
+        self._order: Ints | None = None
+
+    def meeting(self, low: Array, high: Array) -> Ints:
+        """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
+        self._asked += 1
+        if self._asked <= _OFTEN or len(self.low) <= _CHUNK:
+            meets = np.ones(len(self.low), dtype=bool)
+            for axis in range(self.low.shape[1]):
+                meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
+            return np.flatnonzero(meets)
+        if self._order is None:
+            self._order = together(self.low, self.high)
+            self._starts = np.arange(0, len(self.low), _CHUNK)
+            self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
+            self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
+        chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
+        at = (self._starts[chunks, None] + np.arange(_CHUNK)).ravel()
+        some = np.sort(self._order[at[at < len(self._order)]])
+        meets = ((self.low[some] <= high) & (self.high[some] >= low)).all(axis=1)
+        return np.asarray(some[meets])
+
+
+class FlatBoxes:
+    """Boxes (F, 2) of facets in a plane, listed by the cells of a grid: which of many points are in which of them."""
+
+    def __init__(self, low: Array, high: Array):
+        self.low, self.high = low, high
+        self._origin = low.min(axis=0, initial=np.inf)
+        whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, _FINEST))
+        while True:
+            self._cell, self._side = whole / side, side
+            first, last = self._cells(low), self._cells(high)
+            wide = last - first + 1
+            count = wide.prod(axis=1)
+            if side == 1 or count.sum() <= _LISTED * len(low) + 4096:
+                break
+            side = (side + 1) // 2
+        box = np.repeat(np.arange(len(low)), count)
+        step = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
+        cell = first[box] + np.stack([step // wide[box, 1], step % wide[box, 1]], axis=1)
+        key = cell[:, 0] * side + cell[:, 1]
+        self._facets = box[np.argsort(key, kind="stable")]
+        self._starts = np.concatenate([[0], np.cumsum(np.bincount(key, minlength=side * side))])
+
+    def around(self, points: Array) -> tuple[Ints, Ints]:
+        """Indices of points (n, 2), ascending, and of facets whose box they are in."""
+        cell = self._cells(points)
+        key = cell[:, 0] * self._side + cell[:, 1]
+        start = self._starts[key]
+        count = self._starts[key + 1] - start
+        which = np.repeat(np.arange(len(points)), count)
+        facets = self._facets[np.arange(len(which)) + np.repeat(start - np.cumsum(count) + count, count)]
+        x, y = points[which].T
+        low, high = self.low[facets], self.high[facets]
+        held = np.flatnonzero((low[:, 0] <= x) & (high[:, 0] >= x) & (low[:, 1] <= y) & (high[:, 1] >= y))
+        return which[held], facets[held]
+
+    def _cells(self, points: Array) -> Ints:
+        """(n, 2) the cells that points are in, or nearest to."""
+        cell = np.floor((points - self._origin) / self._cell)
+        return np.asarray(np.clip(cell, 0, self._side - 1).astype(np.int64))
+
+
+def together(low: Array, high: Array) -> Ints:
+    """An order in which neighbours are of like size and lie together: by octave of size, then along a Z-curve."""
+    count, dimensions = low.shape
+    if count == 0:
+        return np.zeros(0, np.int64)
+    size = (high - low).max(axis=1)
+    whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -20, 0).astype(np.int64)
+    cell = np.clip((0.5 * (low + high) - low.min(axis=0)) / whole * 1024.0, 0, 1023).astype(np.int64)
+    code = np.zeros(count, dtype=np.int64)
+    for bit in range(10):
+        for axis in range(dimensions):
+            code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
+    return np.lexsort((code, -octave)).astype(np.int64)

@@ -1,0 +1,66 @@
+"""Which points are near each other: by their places along a line, or, where many share a place, by a k-d tree.
+
+Of a few thousand points nearly all are alone on a line that no designer lays an edge along, which takes a sort to see:
+less than to import a tree.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kinform.model.arrays import Array, Ints
+
+__all__ = ["Near"]
+
+
+_LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
+_FEW, _SHARED = 1 << 16, 2
+"""Pairs that share a place up to which all of them are measured: in all, and a point."""
+
+
+class Near:
+    """Points (m, k), k up to 4, that lie within a distance of each other."""
+
+    def __init__(self, points: Array, distance: float):
+        self._points, self._distance = points, distance
+
+    @cached_property
+    def pairs(self) -> Ints:
+        """(n, 2) indices i < j of all that are near each other, in their order."""
+        found = (
+            self._tree.query_pairs(self._distance, output_type="ndarray") if self._in_line is None else self._in_line
+        )
+        return np.asarray(found[np.lexsort((found[:, 1], found[:, 0]))])
+
+    def about(self, some: Ints) -> Array:
+        """How many points lie near each of some of them, itself among them; had before all pairs are, which are many where
+        these are."""
+        if self._in_line is None:
+            return np.asarray(self._tree.query_ball_point(self._points[some], self._distance, return_length=True))
+        return np.asarray(1.0 + np.bincount(self._in_line.ravel(), minlength=len(self._points))[some])
+
+    @cached_property
+    def _tree(self) -> Any:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self._points, compact_nodes=False, balanced_tree=False)
+
+    @cached_property
+    def _in_line(self) -> Ints | None:
+        """The pairs, by their places along a line; None where too many share a place."""
+        points, distance = self._points, self._distance
+        line = _LINE[: points.shape[1]]
+        place = points @ (line / np.linalg.norm(line))
+        order = np.argsort(place)
+        ordered = place[order]
+        counts = np.searchsorted(ordered, ordered + distance * (1 + 1e-9), side="right") - np.arange(1, len(points) + 1)
+        if counts.sum() > max(_FEW, _SHARED * len(points)):
+            return None
+        first = np.repeat(np.arange(len(points)), counts)
+        second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+        pairs = np.stack([order[first], order[second]], axis=1)
+        apart = points[pairs[:, 0]] - points[pairs[:, 1]]
+        return np.sort(pairs[np.einsum("ij,ij->i", apart, apart) <= distance * distance], axis=1)

@@ -1,0 +1,75 @@
+"""Which facets of two parts come near each other, by their boxes on a grid: everything else need not be asked.
+
+Boxes of facets are counted into cells by their eight corners and summed along the axes, and looked up in
+the same way, so that the work grows with the number of facets, whatever their size.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.model.arrays import Array, Flags, Ints
+
+__all__ = ["near_boxes"]
+
+
+_CELLS = 48
+"""Most cells along the longest side of the common box; for few boxes fewer do."""
+
+
+def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:
+    """Which boxes (n, 3) of the first kind may come within `margin` of any (m, 3) of the second, and the reverse.
+
+    None that does is missed; some that do not are kept.
+    """
+    if not len(low_a) or not len(low_b):
+        return np.zeros(len(low_a), bool), np.zeros(len(low_b), bool)
+    low = np.maximum(low_a.min(axis=0), low_b.min(axis=0)) - margin
+    high = np.minimum(high_a.max(axis=0), high_b.max(axis=0)) + margin
+    size = np.maximum(high - low, 1e-300)
+    finest = min(_CELLS, 8 + int(np.sqrt(len(low_a) + len(low_b)) / 4))
+    counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
+    first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
+    keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
+    keep_a &= ((low_a <= high) & (high_a >= low)).all(axis=1)
+    first, last = _cells(low_a[keep_a] - margin, high_a[keep_a] + margin, low, size, counts)
+    keep_b = _occupied(_grid(first, last, counts), *_cells(low_b, high_b, low, size, counts))
+    keep_b &= ((low_b <= high) & (high_b >= low)).all(axis=1)
+    return keep_a, keep_b
+
+
+def _cells(low: Array, high: Array, origin: Array, size: Array, counts: Ints) -> tuple[Ints, Ints]:
+    """First and last cell (n, 3) of each box, inside the grid."""
+    first = np.floor((low - origin) / size * counts)
+    last = np.floor((high - origin) / size * counts)
+    top = counts - 1
+    return np.clip(first, 0, top).astype(np.int64), np.clip(last, 0, top).astype(np.int64)
+
+
+def _grid(first: Ints, last: Ints, counts: Ints) -> Array:
+    """Sums of occupied cells from the origin, one larger than the grid along each axis."""
+    shape = counts + 1
+    total = np.zeros(int(shape.prod()))
+    for corner in range(8):
+        upper = np.array([(corner >> k) & 1 for k in range(3)])
+        at = np.where(upper == 1, last + 1, first)
+        flat = (at[:, 0] * shape[1] + at[:, 1]) * shape[2] + at[:, 2]
+        total += (-1) ** int(upper.sum()) * np.bincount(flat, minlength=len(total))
+    cells = total.reshape(tuple(shape))
+    for axis in range(3):
+        cells = np.cumsum(cells, axis=axis)
+    summed = np.zeros(tuple(shape))
+    summed[1:, 1:, 1:] = cells[:-1, :-1, :-1] > 0.5
+    for axis in range(3):
+        summed = np.cumsum(summed, axis=axis)
+    return summed
+
+
+def _occupied(summed: Array, first: Ints, last: Ints) -> Flags:
+    """Whether any cell of each box is occupied."""
+    found = np.zeros(len(first))
+    for corner in range(8):
+        upper = [(corner >> k) & 1 for k in range(3)]
+        at = tuple(last[:, k] + 1 if upper[k] else first[:, k] for k in range(3))
+        found += (-1) ** (3 - sum(upper)) * summed[at]
+    return np.asarray(found > 0.5)

@@ -1,0 +1,147 @@
+"""Edges and shells of a welded mesh.
+
+Where more than two facets meet in an edge, bodies touch: facets are paired about the edge so that each pair
+encloses material (radial sorting of half-edges, as in Hoffmann, Geometric and Solid Modeling, 1989, ch. 2),
+so that two boxes that stand on each other stay two shells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Ints
+
+__all__ = ["EdgeTable", "edges_of", "shells_of"]
+
+
+_SAME_ANGLE = 1e-7
+"""rad: facets about an edge within this are coincident."""
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeTable:
+    """Half-edges sorted by undirected edge. Half-edge 3·f + k runs from corner k of facet f to the next."""
+
+    half_edges: Ints
+    """(3F,) half-edge numbers, grouped by edge."""
+    starts: Ints
+    """(E,) where each edge begins in `half_edges`."""
+    counts: Ints
+    """(E,) facets at each edge."""
+    forward: NDArray[np.bool_]
+    """(3F,) by half-edge number: runs from the lower to the higher vertex."""
+
+    @property
+    def open(self) -> int:
+        """Edges of one facet only."""
+        return int((self.counts == 1).sum())
+
+    @property
+    def overused(self) -> int:
+        """Edges of more than two facets."""
+        return int((self.counts > 2).sum())
+
+    @property
+    def balance(self) -> Ints:
+        """(E,) runs forward less runs backward; 0 on a shared edge whose facets agree."""
+        direction = np.where(self.forward[self.half_edges], 1, -1)
+        return np.add.reduceat(direction, self.starts) if len(self.starts) else np.zeros(0, dtype=np.int64)
+
+
+def edges_of(faces: Ints, vertices: int) -> EdgeTable:
+    """Edges of (F, 3) faces, none of which uses a vertex twice, over that many vertices."""
+    a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    forward = a < b
+    key = np.where(forward, a * vertices + b, b * vertices + a)
+    order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]])) if len(key) else key
+    return EdgeTable(order, starts, np.diff(np.append(starts, len(key))), forward)
+
+
+def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
+    """(F,) number of the shell of each facet; shells are numbered by their first facet."""
+    if not len(faces):
+        return np.zeros(0, dtype=np.int64)
+    edges = edges or edges_of(faces, len(vertices))
+    two = edges.starts[edges.counts == 2]
+    links = [np.stack([edges.half_edges[two], edges.half_edges[two + 1]], axis=1) // 3]
+    if edges.overused:
+        links.append(_radial_links(vertices, faces, edges) // 3)
+    link = np.concatenate(links)
+    return components(link[:, 0], link[:, 1], len(faces))
+
+
+def _radial_links(vertices: Array, faces: Ints, edges: EdgeTable) -> Ints:
+    """Pairs of half-edges that belong together at edges of more than two facets."""
+    busy = edges.counts > 2
+    paired = busy & (edges.balance == 0)
+    return np.concatenate([
+        _neighbours_in_edge(edges, busy & ~paired), _across_material(vertices, faces, edges, paired),
+    ])  # fmt: skip
+
+
+def _members(edges: EdgeTable, which: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Half-edges of the chosen edges, and for each the number of its edge among the chosen."""
+    counts = edges.counts[which]
+    owner = np.repeat(np.arange(len(counts)), counts)
+    within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    return edges.half_edges[np.repeat(edges.starts[which], counts) + within], owner
+
+
+def _neighbours_in_edge(edges: EdgeTable, which: NDArray[np.bool_]) -> Ints:
+    """All facets of an edge hang together: where directions disagree nothing finer can be said."""
+    half, owner = _members(edges, which)
+    same = owner[1:] == owner[:-1]
+    return np.stack([half[:-1][same], half[1:][same]], axis=1)
+
+
+def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: NDArray[np.bool_]) -> Ints:
+    """Each forward facet with the next backward one, turning from its back side through its material."""
+    half, owner = _members(edges, which)
+    if not len(half):
+        return np.zeros((0, 2), dtype=np.int64)
+    angle = _angles(vertices, faces, half, owner, edges.forward)
+    backward = ~edges.forward[half]
+    order = np.lexsort((angle, owner))
+    angle, owner_sorted = angle[order], owner[order]
+    step = np.concatenate([[False], (owner_sorted[1:] != owner_sorted[:-1]) | (np.diff(angle) > _SAME_ANGLE)])
+    # at one angle the backward facet comes first: it closes what came before, not what begins here
+    order = order[np.lexsort((~backward[order], np.cumsum(step)))]
+    return _next_backward(half[order], owner[order], backward[order])
+
+
+def _next_backward(half: Ints, owner: Ints, backward: NDArray[np.bool_]) -> Ints:
+    """Pairs each forward half-edge with the next backward one of its edge, cyclically."""
+    position = np.arange(len(half))
+    begin = np.searchsorted(owner, owner)
+    first_backward = np.full(int(owner[-1]) + 1, len(half))
+    np.minimum.at(first_backward, owner[backward], position[backward])
+    ahead = np.where(backward, position, len(half))
+    ahead = np.minimum.accumulate(ahead[::-1])[::-1]
+    end = np.searchsorted(owner, owner, side="right")
+    target = np.where(ahead < end, ahead, first_backward[owner])
+    keep = ~backward & (begin <= position)
+    return np.stack([half[keep], half[target[keep]]], axis=1)
+
+
+def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: NDArray[np.bool_]) -> Array:
+    """Angle of each facet about its edge, from the first facet of the edge, towards a forward facet's back."""
+    f, k = half // 3, half % 3
+    a, b, apex = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
+    low, high = np.where(forward[half], a, b), np.where(forward[half], b, a)
+    along = vertices[high] - vertices[low]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    out = vertices[apex] - vertices[low]
+    out -= np.einsum("ij,ij->i", out, along)[:, None] * along
+    first = np.searchsorted(owner, owner)
+    u = out[first] / np.linalg.norm(out[first], axis=1, keepdims=True)
+    v = np.cross(along, u)
+    # a forward facet's outward normal is along × out, so its material lies at decreasing angles
+    angle: Array = np.mod(-np.arctan2(np.einsum("ij,ij->i", out, v), np.einsum("ij,ij->i", out, u)), 2 * np.pi)
+    angle[angle > 2 * np.pi - _SAME_ANGLE] = 0.0
+    return angle

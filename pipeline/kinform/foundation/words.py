@@ -1,0 +1,115 @@
+"""Numbers, names and places in an engineer's words; they cost no import, so that a run with nothing to do stays quick."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+__all__ = [
+    "angle",
+    "area",
+    "counted",
+    "direction",
+    "length",
+    "listed",
+    "mass",
+    "number",
+    "place",
+    "quoted",
+    "rate",
+    "telling",
+    "volume",
+]
+
+IN_METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+
+
+def number(value: float, digits: int = 4) -> str:
+    """The value with so many significant digits, without an exponent where that reads well."""
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-6 <= abs(value) < 1e9:
+        text = f"{float(text):.12f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def _unit(size: float, units: str) -> str:
+    """The unit that shows a length of this size (m) in an assembly of these units."""
+    if units in ("in", "ft"):
+        return "ft" if units == "ft" and size >= 3.0 else "in"
+    if units == "um" and size < 1e-3:
+        return "um"
+    return "m" if size >= 1.0 else "mm"
+
+
+def length(value: float, units: str, digits: int = 4) -> str:
+    """A length (m) with a unit that suits the assembly: "0.25 mm"."""
+    unit = _unit(abs(value), units)
+    return f"{number(value / IN_METRES[unit], digits)} {unit}"
+
+
+def place(point: Iterable[float], units: str) -> str:
+    """A point (m) as "(12.3, 0, -4) mm"."""
+    values = [float(v) for v in point]
+    unit = _unit(max(abs(v) for v in values), units)
+    rounded = (number(round(v / IN_METRES[unit], 4), 6) for v in values)
+    return f"({', '.join(rounded)}) {unit}"
+
+
+def area(value: float, units: str) -> str:
+    """An area (m²): "12.5 mm²"."""
+    unit = _unit(math.sqrt(abs(value)), units)
+    return f"{number(value / IN_METRES[unit] ** 2)} {unit}²"
+
+
+def volume(value: float, units: str) -> str:
+    """A volume (m³): "3.2 mm³"."""
+    unit = _unit(abs(value) ** (1.0 / 3.0), units)
+    return f"{number(value / IN_METRES[unit] ** 3)} {unit}³"
+
+
+def mass(value: float, digits: int = 4) -> str:
+    """A mass (kg): "12.5 g"."""
+    return f"{number(1e3 * value, digits)} g" if abs(value) < 1.0 else f"{number(value, digits)} kg"
+
+
+def angle(value: float, digits: int = 3) -> str:
+    """An angle (rad) in degrees: "0.5°"."""
+    return f"{number(math.degrees(value), digits)}°"
+
+
+def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
+    """A rate of one joint value by another (rad or m) as manifests have them, in degrees and lengths: "0.02 mm/°"."""
+    own, per = (IN_METRES[units] if slide else math.radians(1.0) for slide in (slides, per_slides))
+    unit = "" if slides == per_slides else f" {units}/°" if slides else f" °/{units}"
+    return f"{number(value * per / own, 6)}{unit}"
+
+
+def direction(vector: Iterable[float]) -> str:
+    """A direction as "(0, 0.942, 0.335)"."""
+    return f"({', '.join(number(round(float(v), 6), 6) for v in vector)})"
+
+
+def telling(shown: Callable[[float, int], str], *values: float) -> Callable[[float], str]:
+    """`shown` with as many significant digits, four at least, as tell the values apart: nothing is said to be "5 mm,
+    required is at most 5 mm"."""
+    different = len(set(values))
+    digits = next((n for n in range(4, 13) if len({shown(value, n) for value in values}) >= different), 12)
+    return lambda value: shown(value, digits)
+
+
+def quoted(names: Iterable[str], limit: int = 4) -> str:
+    """Names in quotes, with commas; beyond the limit "and 3 more"."""
+    every = [f"'{name}'" for name in names]
+    if len(every) > limit + 1:
+        return ", ".join(every[:limit]) + f" and {len(every) - limit} more"
+    return listed(every)
+
+
+def listed(words: Sequence[str]) -> str:
+    """ "a", "a and b", "a, b and c"."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1] if words else ""]))
+
+
+def counted(count: int, noun: str, plural: str | None = None) -> str:
+    """ "1 facet", "2 facets"."""
+    return f"{count} {noun if count == 1 else plural or noun + 's'}"

@@ -1,0 +1,1 @@
+"""The bodies and joints of an assembly."""

@@ -1,0 +1,161 @@
+"""Higher pairs in loops: teeth and cams whose rows are made exactly consistent with the joints around them.
+
+Several pairs of teeth in contact say one thing only, and shafts are parallel only within the uncertainty of
+their fits; taken at their word such rows would lock a gear pair. So the motions that the other joints leave
+are held against the rows of all points and lines: those that the rows preserve within their uncertainty are
+kept, and the spaces of the higher pairs are turned until they contain them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame, cross, scaled, span, twist_at_origin
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.pair.certainty import TOUCHING, meets
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Body, Joint
+
+__all__ = ["agree", "is_higher"]
+
+
+SIGMAS = 3.0
+DOUBTFUL = 3.0
+"""A motion that the rows miss by less than this many times what is allowed is doubtful."""
+BENT = 0.1
+"""Share of a motion that may lie outside the space of the pair that is turned to contain it."""
+AT_REST = 1e-9
+"""Relative speed below which a motion does not concern a pair."""
+
+
+def is_higher(joint: Joint, patches: Sequence[Patch]) -> bool:
+    """Whether the joint is `general` and carried by points and lines, beside planes across them."""
+    return joint.type == "general" and bool(joint.patches) and meets([patches[k] for k in joint.patches])
+
+
+@dataclass(frozen=True, eq=False)
+class _Pair:
+    """One higher pair that closes a loop of other joints."""
+
+    index: int
+    relative: Array
+    """(m, 6) twist of its second body relative to its first, for each motion that the other joints leave."""
+    frame: Frame
+    rows: Array
+    """(n, m) velocity along the normal at each sample, for each motion."""
+    slip: Array
+    """(n, m, 3) velocity at each sample."""
+    angle: Array
+    """(n,) rad, and m: uncertainty of the normal and of the place."""
+    position: Array
+
+
+def agree(
+    bodies: Sequence[Body], joints: Sequence[Joint], patches: Sequence[Patch], size: float, alignment: float
+) -> tuple[Joint, ...]:
+    """The joints, with the twists of higher pairs that close loops made consistent; `alignment` (rad) is the
+    angle up to which axes count as parallel."""
+    touching = [k for k, joint in enumerate(joints) if is_higher(joint, patches) and joint.status == "determined"]
+    if not touching:
+        return tuple(joints)
+    index = {body.name: k for k, body in enumerate(bodies)}
+    others = [joint for k, joint in enumerate(joints) if k not in set(touching)]
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in others]
+    ground = next(k for k, body in enumerate(bodies) if body.ground)
+    closure = close(len(bodies), edges, [j.twists for j in others], ground, size)
+    twists = body_twists(closure, edges, [j.twists for j in others])
+    pairs = []
+    for k in touching:
+        a, b = (index[name] for name in joints[k].bodies)
+        if closure.tree.root[a] == closure.tree.root[b] and len(twists):
+            pairs.append(_pair(k, joints[k], twists[:, b] - twists[:, a], patches, bodies, alignment))
+    out = list(joints)
+    for group, motions in _groups(pairs, len(twists)):
+        kept, doubt = _preserved([pairs[g] for g in group], motions)
+        for g in group:
+            pair = pairs[g]
+            if doubt:
+                out[pair.index] = replace(out[pair.index], status="ambiguous", reason=doubt)
+            elif len(kept):
+                out[pair.index] = _turned(out[pair.index], kept @ pair.relative[motions], pair.frame)
+    return tuple(out)
+
+
+def _pair(
+    index: int, joint: Joint, relative: Array, patches: Sequence[Patch], bodies: Sequence[Body], alignment: float
+) -> _Pair:
+    first = next(body for body in bodies if body.name == joint.bodies[0])
+    own = [patches[k] for k in joint.patches if patches[k].kind in TOUCHING]
+    points = np.concatenate([p.points for p in own])
+    normals = np.concatenate([p.normals if p.parts[0] in first.parts else -p.normals for p in own])
+    counts = [len(p.points) for p in own]
+    slip = relative[None, :, 3:] + cross(relative[None, :, :3], points[:, None])
+    return _Pair(
+        index=index,
+        relative=relative,
+        frame=Frame.of(points),
+        rows=np.einsum("nmk,nk->nm", slip, normals),
+        slip=slip,
+        angle=np.repeat([alignment + SIGMAS * p.uncertainty[0] for p in own], counts),
+        position=np.repeat([SIGMAS * p.uncertainty[1] + p.chord for p in own], counts),
+    )
+
+
+def _groups(pairs: Sequence[_Pair], count: int) -> list[tuple[list[int], list[int]]]:
+    """Pairs and the motions that concern them, apart where they have nothing to do with each other."""
+    sets = UnionFind(len(pairs) + count)
+    for g, pair in enumerate(pairs):
+        speed = np.linalg.norm(pair.slip, axis=2).max(axis=0) if len(pair.slip) else np.zeros(count)
+        turn = pair.frame.length * np.linalg.norm(pair.relative[:, :3], axis=1)
+        large = speed + turn
+        mine = np.flatnonzero(large > AT_REST * max(float(large.max(initial=0.0)), 1e-300))
+        for motion in mine.tolist():
+            sets.union(g, len(pairs) + motion)
+    out: dict[int, tuple[list[int], list[int]]] = {}
+    for g in range(len(pairs)):
+        out.setdefault(sets.find(g), ([], []))[0].append(g)
+    for m in range(count):
+        root = sets.find(len(pairs) + m)
+        if root in out:
+            out[root][1].append(m)
+    return list(out.values())
+
+
+def _preserved(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Array, str]:
+    """(r, motions) combinations that all rows preserve within their uncertainty, and what is doubtful about that."""
+    rows = np.concatenate([pair.rows[:, motions] for pair in pairs])
+    slip = np.concatenate([pair.slip[:, motions] for pair in pairs])
+    speed = np.maximum(np.linalg.norm(slip, axis=2).max(axis=0), 1e-300)
+    _, _, right = np.linalg.svd(rows / speed)
+    kept = np.zeros((0, len(motions)))
+    for combination in right[::-1] / speed:
+        share = 0.0
+        for pair in pairs:
+            relative = combination @ pair.relative[motions]
+            velocity = np.linalg.norm(combination @ pair.slip[:, motions], axis=1)
+            allowed = pair.angle * velocity + pair.position * float(np.linalg.norm(relative[:3]))
+            missed = np.abs(pair.rows[:, motions] @ combination)
+            share = max(share, float((missed / np.maximum(allowed, 1e-300)).max()) if missed.max() > 0.0 else 0.0)
+        if share > 1.0:
+            doubtful = share < DOUBTFUL
+            return kept, "teeth or cams hold a motion by hardly more than their uncertainty" if doubtful else ""
+        kept = np.vstack([kept, combination])
+    return kept, ""
+
+
+def _turned(joint: Joint, motions: Array, frame: Frame) -> Joint:
+    """The joint with its space (f, 6) turned to contain the relative motions (r, 6), where it nearly does."""
+    wanted = span(scaled(motions.T, frame)) if np.any(motions) else np.zeros((6, 0))
+    own = span(scaled(joint.twists.T, frame))
+    outside = wanted - own @ (own.T @ wanted)
+    if wanted.shape[1] == 0 or wanted.shape[1] > own.shape[1] or float(np.abs(outside).max()) > BENT:
+        return joint
+    rest = own - wanted @ (wanted.T @ own)
+    left, _, _ = np.linalg.svd(rest, full_matrices=False)
+    basis = np.hstack([wanted, left[:, : own.shape[1] - wanted.shape[1]]])
+    return replace(joint, twists=twist_at_origin(basis, frame).T)

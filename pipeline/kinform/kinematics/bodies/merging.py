@@ -1,0 +1,86 @@
+"""Which parts move as one: groups, assumptions, and contact that leaves nothing free."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.model.assembly import Assembly
+from kinform.model.kinematics import Body
+from kinform.model.names import BodyName, PartName
+
+__all__ = ["Merger"]
+
+
+class Merger:
+    """Parts of an assembly, merged step by step; remembers why."""
+
+    def __init__(self, assembly: Assembly):
+        self._assembly = assembly
+        self._names = [part.name for part in assembly.parts]
+        self._parts = {part.name: part for part in assembly.parts}
+        self._index = {name: k for k, name in enumerate(self._names)}
+        self._sets = UnionFind(len(self._names))
+        self._reasons: list[tuple[int, str]] = []
+        for group in assembly.groups:
+            self._join(group.parts, f"group {group.name}")
+        for assumption in assembly.assumptions:
+            if assumption.type == "fixed":
+                firsts = [assembly.parts_of(name)[0] for name in assumption.between]
+                self._join(firsts, f"assumed fixed: {assumption.reason}")
+
+    def _join(self, parts: tuple[PartName, ...] | list[PartName], reason: str) -> None:
+        for other in parts[1:]:
+            self._sets.union(self._index[parts[0]], self._index[other])
+        self._reasons.append((self._index[parts[0]], reason))
+
+    def fuse(self, first: PartName, second: PartName, reason: str) -> None:
+        """Make the bodies that contain the two parts one."""
+        self._join([first, second], reason)
+
+    def root(self, part: PartName) -> int:
+        """A number that two parts share exactly when they are one body."""
+        return self._sets.find(self._index[part])
+
+    def bodies(self) -> tuple[Body, ...]:
+        """The bodies, sorted by name, with ground marked."""
+        members: dict[int, list[PartName]] = defaultdict(list)
+        for name in self._names:
+            members[self.root(name)].append(name)
+        reasons: dict[int, set[str]] = defaultdict(set)
+        for index, reason in self._reasons:
+            reasons[self._sets.find(index)].add(reason)
+        ground = self._ground(members)
+        bodies = [
+            Body(self._body_name(parts), tuple(sorted(parts)), root == ground, tuple(sorted(reasons[root])))
+            for root, parts in members.items()
+        ]
+        return tuple(sorted(bodies, key=lambda body: body.name))
+
+    def _body_name(self, parts: list[PartName]) -> BodyName:
+        if len(parts) == 1:
+            return BodyName(parts[0])
+        inside = set(parts)
+        groups = sorted(g.name for g in self._assembly.groups if inside.issuperset(g.parts))
+        return BodyName(groups[0] if groups else min(parts))
+
+    def _ground(self, members: dict[int, list[PartName]]) -> int:
+        """The stated ground, else the heaviest body, or the largest where a density is missing."""
+        if self._assembly.ground is not None:
+            return self.root(self._assembly.parts_of(self._assembly.ground)[0])
+        weighed = all(p.density is not None or p.override is not None for p in self._assembly.parts)
+
+        def size(root: int) -> tuple[float, str]:
+            total = 0.0
+            for name in members[root]:
+                part = self._parts[name]
+                volume = abs(part.mesh.health.volume) if part.mesh is not None else 0.0
+                if not weighed:
+                    total += volume
+                elif part.override is not None:
+                    total += part.override.mass
+                else:
+                    total += volume * float(part.density or 0.0)
+            return (-total, min(members[root]))
+
+        return min(members, key=size)

@@ -1,0 +1,1 @@
+"""What the whole can do: loops, freedoms, mobility."""

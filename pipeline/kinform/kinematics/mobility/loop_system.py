@@ -1,0 +1,250 @@
+"""Forward kinematics and loop closure of one block of joints, in joint coordinates.
+
+A joint of f freedoms is a product of f exponentials exp(S₁q₁)…exp(S_f q_f) of its twists: exact for lower
+pairs (Brockett 1984), whose twists span the Lie algebra of the group of their motions, and for universal
+joints, whose first axis is fixed in the first body and whose second in the second. All displacements are
+of the world relative to the pose of the meshes, where every coordinate is zero and every loop is closed.
+
+Lengths are in units of the block's own size about its centre, so that turns (rad) and slides compare.
+Leading axes of arrays are batches of configurations. No forces, no names, no decisions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.graphs.graph import forest
+from kinform.model.arrays import Array
+
+__all__ = ["Closed", "LoopSystem", "bracket", "exponentials", "inverse", "loop_system"]
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """How far the loops are from closing at a batch of D configurations, and how that changes."""
+
+    residual: Array
+    """(D, 6 loops + ties) rotation and shift of what each loop comes back with, then what ties miss: zero where it
+    closes."""
+    jacobian: Array
+    """(D, 6 loops + ties, n)."""
+    columns: Array
+    """(D, n, 6) twist of each coordinate where it is now."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoopSystem:
+    """A block of N bodies, its joints and independent loops; n coordinates."""
+
+    screws: Array
+    """(n, 6) unit twists at the reference pose."""
+    joint: Index
+    """(n,) joint of each coordinate, counted within the block."""
+    first: Index
+    """(joints,) first body of each joint."""
+    levels: tuple[tuple[Index, Index], ...]
+    """Coordinates that come first, second, … in their joints, with those joints."""
+    depths: tuple[tuple[Index, Index, Index, NDArray[np.bool_]], ...]
+    """By distance from the root: bodies, their parents, the joints between, whether these point at the root."""
+    chords: tuple[Index, Index, Index]
+    """Joints that close the loops, with their first and second bodies."""
+    loops: Array
+    """(loops, n) how often, and in which sense, a loop runs through a coordinate."""
+    ahead: Array
+    """(n, n) rates that add up to the twist of what a coordinate acts on."""
+    reach: Array
+    """(N, n) rates that add up to the twist of each body."""
+    ties: Array
+    """(k, n) combinations of coordinates that stay zero: ratios that gears keep. They count as rows of the closure."""
+
+    @property
+    def coordinates(self) -> int:
+        """n."""
+        return len(self.screws)
+
+    def close(self, q: Array) -> Closed:
+        """Residual and Jacobian of the loops at configurations (D, n)."""
+        bodies, inside, across = self._placed(q)
+        batch = len(q)
+        columns = _carried(bodies[:, self.first[self.joint]] @ inside, self.screws)
+        members, a, b = self.chords
+        gap = bodies[:, a] @ across[:, members] @ inverse(bodies[:, b])
+        turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
+        residual = np.stack(
+            [turn[..., 2, 1], turn[..., 0, 2], turn[..., 1, 0], gap[..., 0, 3], gap[..., 1, 3], gap[..., 2, 3]], -1
+        )
+        jacobian = self.loops[:, None, :] * np.swapaxes(columns, -1, -2)[:, None]
+        missed = residual.reshape(batch, 6 * len(members))
+        rows = jacobian.reshape(batch, 6 * len(members), len(self.screws))
+        if len(self.ties):
+            missed = np.concatenate([missed, q @ self.ties.T], axis=1)
+            rows = np.concatenate([rows, np.broadcast_to(self.ties, (batch, *self.ties.shape))], axis=1)
+        return Closed(missed, rows, columns)
+
+    def bodies(self, q: Array) -> Array:
+        """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
+        return self._placed(q)[0]
+
+    def _placed(self, q: Array) -> tuple[Array, Array, Array]:
+        """Displacements of bodies, of coordinates within their joints, and across joints."""
+        batch, joints = len(q), len(self.first)
+        steps = exponentials(self.screws, q)
+        inside = np.empty((batch, len(self.screws), 4, 4))
+        across = np.broadcast_to(np.eye(4), (batch, joints, 4, 4)).copy()
+        for coordinates, members in self.levels:
+            inside[:, coordinates] = across[:, members]
+            across[:, members] = across[:, members] @ steps[:, coordinates]
+        bodies = np.broadcast_to(np.eye(4), (batch, 1 + sum(len(d[0]) for d in self.depths), 4, 4)).copy()
+        for nodes, parents, members, backward in self.depths:
+            moves = across[:, members]
+            moves[:, backward] = inverse(moves[:, backward])
+            bodies[:, nodes] = bodies[:, parents] @ moves
+        return bodies, inside, across
+
+    def curvature(self, columns: Array, rates: Array) -> Array:
+        """(D, 6 loops + ties) change of the Jacobian along `rates` (D, n), times `rates`: the acceleration that
+        joint rates alone cause in each loop, Σ [twist ahead of i, column i] rateᵢ² and mixed terms.
+        `columns` (n, 6) of one configuration."""
+        moving = columns * rates[..., None]
+        bent = bracket(self.ahead @ moving, moving)
+        turned: Array = (self.loops @ bent).reshape(len(rates), 6 * len(self.loops))
+        return np.concatenate([turned, np.zeros((len(rates), len(self.ties)))], axis=1) if len(self.ties) else turned
+
+
+def loop_system(
+    edges: Sequence[tuple[int, int]],
+    spaces: Sequence[Array],
+    frame: Frame,
+    ties: Sequence[tuple[int, int, float]] = (),
+) -> LoopSystem:
+    """The loops of a connected block: `edges` between bodies of any numbers, `spaces[k]` the (f, 6) twists
+    of joint k (ω; v at the world's origin) of its second body relative to its first, in the order of the
+    product of exponentials; `frame` centre and size (m) of the block. `ties` (a, b, ratio): joints of one freedom,
+    of which the first moves by ratio (SI) when the second moves by one, along their twists."""
+    number = {body: i for i, body in enumerate(sorted({n for edge in edges for n in edge}))}
+    inner = [(number[a], number[b]) for a, b in edges]
+    sizes = [len(space) for space in spaces]
+    start = np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+    total = int(start[-1])
+    twists = np.concatenate([np.zeros((0, 6)), *spaces])
+    local = scaled(twists.T, frame).T / frame.length
+    turning = np.linalg.norm(local[:, :3], axis=1)
+    sliding = np.linalg.norm(local[:, 3:], axis=1)
+    turns = turning > 1e-9 * sliding
+    norms = np.where(turns, turning, sliding)
+    local = local / np.maximum(norms, 1e-300)[:, None]
+    local[~turns, :3] = 0.0
+    held = np.zeros((len(ties), total))
+    for line, (a, b, ratio) in zip(held, ties, strict=True):
+        # a coordinate of one is so much of the joint's own value
+        for k, factor in ((a, 1.0), (b, -ratio)):
+            line[start[k]] = (
+                factor
+                * (1.0 if turns[start[k]] else frame.length)
+                / np.linalg.norm(spaces[k][0, :3] if turns[start[k]] else spaces[k][0, 3:])
+            )
+        line /= np.abs(line).max()
+    tree = forest(len(number), inner, 0)
+    reach = np.zeros((len(number), total))
+    depth = [0] * len(number)
+    layers: dict[int, list[tuple[int, int, int, bool]]] = {}
+    for node in tree.order[1:]:
+        k, parent = tree.edge[node], tree.parent[node]
+        backward = inner[k][1] != node
+        reach[node] = reach[parent]
+        reach[node, start[k] : start[k + 1]] = -1.0 if backward else 1.0
+        depth[node] = depth[parent] + 1
+        layers.setdefault(depth[node], []).append((node, parent, k, backward))
+    used = set(tree.edge)
+    chords = [k for k in range(len(inner)) if k not in used]
+    loops = np.array([reach[inner[k][0]] - reach[inner[k][1]] for k in chords]).reshape(len(chords), total)
+    for row, k in enumerate(chords):
+        loops[row, start[k] : start[k + 1]] += 1.0
+    joint = np.repeat(np.arange(len(inner)), sizes)
+    place = np.arange(total) - start[joint]
+    first = np.array([a for a, _ in inner], dtype=np.intp)
+    earlier = (joint[:, None] == joint[None]) & (place[None] < place[:, None])
+    return LoopSystem(
+        screws=local,
+        joint=joint,
+        first=first,
+        levels=tuple((np.flatnonzero(place == n), joint[place == n]) for n in range(max(sizes, default=0))),
+        depths=tuple(_layer(layers[d]) for d in sorted(layers)),
+        chords=(
+            np.array(chords, dtype=np.intp),
+            np.array([inner[k][0] for k in chords], dtype=np.intp),
+            np.array([inner[k][1] for k in chords], dtype=np.intp),
+        ),
+        loops=loops,
+        ahead=reach[first[joint]] + earlier,
+        reach=reach,
+        ties=held,
+    )
+
+
+def _layer(rows: Sequence[tuple[int, int, int, bool]]) -> tuple[Index, Index, Index, NDArray[np.bool_]]:
+    nodes, parents, members, backward = zip(*rows, strict=True)
+    return (
+        np.array(nodes, dtype=np.intp),
+        np.array(parents, dtype=np.intp),
+        np.array(members, dtype=np.intp),
+        np.array(backward, dtype=np.bool_),
+    )
+
+
+def exponentials(screws: Array, q: Array) -> Array:
+    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, by Rodrigues' formula; a slide has no ω and
+    falls out of the same terms."""
+    spin = _skew(screws[:, :3])
+    twice = spin @ spin
+    v = screws[:, 3:]
+    s, c = np.sin(q)[..., None], 1.0 - np.cos(q)[..., None]
+    out = np.zeros((*q.shape, 4, 4))
+    out[..., :3, :3] = np.eye(3) + s[..., None] * spin + c[..., None] * twice
+    along = q[..., None]
+    out[..., :3, 3] = along * v + c * (spin @ v[..., None])[..., 0] + (along - s) * (twice @ v[..., None])[..., 0]
+    out[..., 3, 3] = 1.0
+    return out
+
+
+def _skew(w: Array) -> Array:
+    out = np.zeros((*w.shape[:-1], 3, 3))
+    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = w[..., 0], w[..., 1], w[..., 2]
+    return out - np.swapaxes(out, -1, -2)
+
+
+def inverse(pose: Array) -> Array:
+    """Inverses of poses (…, 4, 4)."""
+    turned = np.swapaxes(pose[..., :3, :3], -1, -2)
+    out = np.zeros_like(pose)
+    out[..., :3, :3] = turned
+    out[..., :3, 3] = -(turned @ pose[..., :3, 3:])[..., 0]
+    out[..., 3, 3] = 1.0
+    return out
+
+
+def _carried(pose: Array, screws: Array) -> Array:
+    """Adjoint of each pose (…, n, 4, 4) on its screw (n, 6)."""
+    omega = (pose[..., :3, :3] @ screws[:, :3, None])[..., 0]
+    v = (pose[..., :3, :3] @ screws[:, 3:, None])[..., 0]
+    return np.concatenate([omega, v + _cross(pose[..., :3, 3], omega)], axis=-1)
+
+
+def bracket(a: Array, b: Array) -> Array:
+    """Lie bracket [a, b] of twists (…, 6): the rate of b when it is carried along by a."""
+    turn = _cross(a[..., :3], b[..., :3])
+    return np.concatenate([turn, _cross(a[..., :3], b[..., 3:]) + _cross(a[..., 3:], b[..., :3])], axis=-1)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross product over last axes of three; `np.cross` takes several times as long on few vectors."""
+    a0, a1, a2 = a[..., 0], a[..., 1], a[..., 2]
+    b0, b1, b2 = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], axis=-1)

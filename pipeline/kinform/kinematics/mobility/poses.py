@@ -1,0 +1,129 @@
+"""A closed pose of a block of loops: its freedoms of first order, and which of them pass the second-order test.
+
+A freedom u is the beginning of a motion only if the curvature of the closure along u can be balanced,
+wᵀ F''(u, u) = 0 for every w with wᵀ J = 0 (Connelly and Whiteley 1996 for frameworks; Rico, Gallardo and
+Duffy 1999 and Müller 2014 for joints, by Lie brackets).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.kinematics.mobility.loop_system import LoopSystem
+from kinform.model.arrays import Array
+
+__all__ = [
+    "BALANCED", "CLOSED", "TURNS", "UNBALANCED", "Pose", "complement", "first_order", "independent",
+    "second_order", "units",
+]  # fmt: skip
+
+
+CLOSED = 1e-7
+"""Relative: loops that miss by less than this per unit of step close, as in the first-order count."""
+BALANCED, UNBALANCED = 1e-6, 1e-4
+"""Curvature (of unit freedoms) that is rounding, and one that is not."""
+MOST = 40
+"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+TURNS = 60
+"""Gauss–Newton iterations where convergence is linear: halving, at a simple singularity."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A closed configuration with its first-order freedoms."""
+
+    q: Array
+    columns: Array
+    rank: int
+    free: Array
+    """(freedoms, n) orthonormal rates that close the loops."""
+    reach: Array
+    """(rows, rank) orthonormal: what rates change in the closure."""
+    system: LoopSystem
+
+    @staticmethod
+    def at(system: LoopSystem, q: Array, tolerance: float = CLOSED) -> Pose:
+        """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
+        closed = system.close(q[None])
+        rows, columns = closed.jacobian[0].shape
+        # all right vectors, and no left ones without need
+        left, values, right = np.linalg.svd(closed.jacobian[0], full_matrices=rows < columns)
+        rank = int(np.count_nonzero(values > tolerance * max(values.max(initial=0.0), 1e-300)))
+        return Pose(q, closed.columns[0], rank, right[rank:], left[:, :rank], system)
+
+    @property
+    def freedoms(self) -> int:
+        """Of first order."""
+        return len(self.free)
+
+    def obstruction(self, rates: Array) -> Array:
+        """(D, rows) curvature of the closure along rates (D, n) that no further rates balance."""
+        bent = self.system.curvature(self.columns, rates)
+        left: Array = bent - (bent @ self.reach) @ self.reach.T
+        return left
+
+
+def first_order(system: LoopSystem) -> int:
+    """Freedoms of first order at the reference pose."""
+    return Pose.at(system, np.zeros(system.coordinates)).freedoms
+
+
+def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
+    """What the second-order test says, and first-order freedoms (D, n) that pass it.
+
+    The forms wᵀ F''(u, u) are looked for common zeros on the unit sphere by Gauss–Newton from random starts.
+    """
+    count = pose.freedoms
+    none = np.zeros((0, pose.free.shape[1]))
+    if count > MOST:
+        bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
+        return ("extends" if bends.max() < BALANCED else "", none)
+    i, j = np.triu_indices(count)
+    bent = pose.obstruction(np.concatenate([pose.free[i] + pose.free[j], pose.free[i] - pose.free[j]]))
+    flat = 0.25 * (bent[: len(i)] - bent[len(i) :])
+    # fewer forms with the same zeros
+    _, values, right = np.linalg.svd(flat.T, full_matrices=False)
+    flat = (values[:, None] * right)[values > BALANCED]
+    if not len(flat):
+        return "extends", none
+    forms = np.zeros((len(flat), count, count))
+    forms[:, i, j] = forms[:, j, i] = flat
+    if len(forms) == 1:
+        values = np.linalg.eigvalsh(forms[0])
+        if values[0] > BALANCED or values[-1] < -BALANCED:
+            return "obstructed", none
+    u = units(rng.normal(size=(8 + 4 * count, count)))
+    for _ in range(TURNS):
+        value = np.einsum("pij,di,dj->dp", forms, u, u)
+        slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
+        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=1e-9), value))
+    left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
+    passing = u[left < BALANCED]
+    if not len(passing):
+        return "obstructed", none
+    distinct: list[Array] = []
+    for one in passing:
+        if len(distinct) < 12 and all(abs(float(one @ other)) < 0.999 for other in distinct):
+            distinct.append(one)
+    return "partly", np.array(distinct) @ pose.free
+
+
+def independent(twists: Array) -> Array:
+    """Orthonormal basis (r, m) of what the rows (n, m) span."""
+    _, values, right = np.linalg.svd(twists, full_matrices=False)
+    return right[: int(np.count_nonzero(values > CLOSED * values.max(initial=0.0)))]
+
+
+def complement(space: Array, part: Array) -> Array:
+    """Orthonormal rates of `space` (k, n) that are orthogonal to `part` (m, n) of it."""
+    if not len(part):
+        return space
+    _, values, right = np.linalg.svd(part @ space.T)
+    return right[int(np.count_nonzero(values > 1e-6)) :] @ space
+
+
+def units(vectors: Array) -> Array:
+    out: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+    return out

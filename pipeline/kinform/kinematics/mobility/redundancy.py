@@ -1,0 +1,206 @@
+"""Redundant constraints: which joints, or contacts of one joint, hold something that is held already, and why.
+
+A constraint is redundant where the joints can be under load without any load from outside (a self-stress: the left
+null space of the closure equations). A loop on its own has the wrenches that none of its joints gives way to; what
+several loops have only together is told apart by minimal sets of joints that bear it (Calladine 1978 for self-stress;
+the sets are circuits of the matroid of constraints).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.algebra.displacements import cross_matrix
+from kinform.foundation.algebra.screws import Frame, cross, scaled, span
+from kinform.foundation.graphs.cycles import Cycle
+from kinform.kinematics.mobility.closure import Closure
+from kinform.kinematics.mobility.loops import CLOSED, FEW, Block, axes_frame, loop_matrix
+from kinform.kinematics.wording import Locked, axis_word, locked, locked_text, rows_too_many
+from kinform.model.arrays import Array
+from kinform.model.kinematics import Joint, Redundancy
+
+__all__ = ["redundancies_of_loops"]
+
+
+EXACT = 1e-6
+MANY = 60
+"""Up to so many loops in a block, what they hold together is told apart."""
+NAMED = 12
+"""So many bodies or joints are named in a text."""
+
+
+def redundancies_of_loops(
+    joints: Sequence[Joint], edges: Sequence[tuple[int, int]], closure: Closure, size: float
+) -> tuple[Redundancy, ...]:
+    """What is held more than once in the loops, block by block. `edges`: bodies of the joints; `size` (m)."""
+    free = np.bincount([b for b in closure.block_of if b >= 0], minlength=len(closure.blocks))
+    out: list[Redundancy] = []
+    for block, mobility in zip(closure.blocks, free, strict=True):
+        own = [joints[k] for k in block.edges]
+        count = 6 * len(block.cycles) - sum(j.freedoms for j in own) + int(mobility)
+        if count <= 0:
+            continue
+        found = [_of_loop(own, cycle, size) for cycle in block.cycles]
+        alone = [one for one in found if one is not None]
+        rest = count - sum(one.rows for one in alone)
+        if rest < 0:
+            out.append(_of_block(own, count))
+            continue
+        out += alone
+        if rest and len(block.cycles) <= MANY and sum(j.freedoms for j in own) <= FEW:
+            out += _together(own, block, count, rest)
+        elif rest:
+            out.append(_of_block(own, rest))
+    return tuple(out)
+
+
+def _of_loop(joints: Sequence[Joint], cycle: Cycle, size: float) -> Redundancy | None:
+    """What the joints of one loop do not give way to."""
+    members = [joints[k] for k, _ in cycle]
+    spaces = [joint.twists for joint in members]
+    frame = axes_frame(spaces, size)
+    columns = np.hstack([scaled(s.T, frame) for s in spaces])
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    if columns.shape[1] > 6:
+        columns = np.asarray(np.linalg.qr(columns.T, mode="r")).T
+    left, values, _ = np.linalg.svd(columns, full_matrices=True)
+    rank = int(np.count_nonzero(values > CLOSED * values[0])) if len(values) else 0
+    if rank == 6:
+        return None
+    space = locked(left[:, rank:].T)
+    bodies = _walked(joints, cycle)
+    why = _reason(space, frame)
+    text = f"loop {_joined(bodies)}{why}: {rows_too_many(6 - rank)}: {locked_text([word for word, _ in space])}"
+    return _made("loop", text, 6 - rank, members, space, frame)
+
+
+def _walked(joints: Sequence[Joint], cycle: Cycle) -> list[str]:
+    """Bodies of the loop in the order of walking."""
+    return [joints[k].bodies[0 if sign > 0 else 1] for k, sign in cycle]
+
+
+def _joined(names: Sequence[str]) -> str:
+    if len(names) <= NAMED:
+        return "-".join(names)
+    return "-".join(names[: NAMED - 1]) + f"-… ({len(names)} bodies)"
+
+
+def _reason(space: Sequence[Locked], frame: Frame) -> str:
+    """Why the loop holds too much, from the wrenches that it can lock in."""
+    words = [word for word, _ in space]
+    wrenches = np.array([wrench for _, wrench in space])
+    forces = wrenches[[not w.startswith("moment") for w in words]]
+    moments = wrenches[[w.startswith("moment") for w in words]][:, :3]
+    if len(space) == 6:
+        return " gives way to nothing"
+    if len(moments) == 3:
+        return " cannot turn" if not len(forces) else " only slides"
+    if len(forces) == 1 and len(moments) == 2 and np.abs(moments @ forces[0, 3:]).max() < EXACT:
+        return f" is planar, normal to {axis_word(forces[0, 3:])}"
+    if len(forces) == 3 and not len(moments) and _concurrent(forces):
+        return " is spherical: its axes meet in one point"
+    if len(forces) == 3 and len(moments) == 2:
+        return f" turns about one axis along {axis_word(cross(moments[0], moments[1]))}"
+    if len(forces) == 2 and len(moments) == 2:
+        return f" turns about and slides along {axis_word(cross(moments[0], moments[1]))}"
+    return ""
+
+
+def _concurrent(forces: Array) -> bool:
+    """Do the three forces (3, 6) have one point in common?"""
+    matrix = np.vstack([-cross_matrix(f) for f in forces[:, 3:]])
+    right = forces[:, :3].ravel()
+    point = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return bool(np.abs(matrix @ point - right).max() < 10.0 * EXACT)
+
+
+def _together(joints: Sequence[Joint], block: Block, count: int, rest: int) -> list[Redundancy]:
+    """Self-stresses, `count` in all, that no loop of the basis has alone (`rest`), in minimal sets of joints."""
+    spaces = [joint.twists for joint in joints]
+    norms = np.concatenate([np.linalg.norm(scaled(s.T, block.frame), axis=0) for s in spaces])
+    matrix = loop_matrix(spaces, block.cycles, block.frame, norms)
+    left = np.linalg.svd(matrix, full_matrices=True)[0]
+    stress = left[:, len(left) - count :].T.reshape(count, len(block.cycles), 6)
+    bears = [np.zeros((count, 6)) for _ in joints]
+    for row, cycle in enumerate(block.cycles):
+        for k, sign in cycle:
+            bears[k] += sign * stress[:, row]
+    known = np.zeros((count, 0))
+    for row in range(len(block.cycles)):
+        others = np.delete(stress, row, axis=1).reshape(count, -1)
+        known = span(np.hstack([known, _vanishing(np.eye(count), others)]), EXACT)
+    if known.shape[1] != count - rest:
+        return [_of_block(joints, rest)]
+    out = []
+    while known.shape[1] < count:
+        chosen = np.eye(count)
+        for k in reversed(range(len(joints))):
+            fewer = _vanishing(chosen, bears[k])
+            if fewer.shape[1] and np.abs(fewer - known @ (known.T @ fewer)).max() > EXACT:
+                chosen = fewer
+        members = [k for k in range(len(joints)) if np.abs(chosen.T @ bears[k]).max() > EXACT]
+        new = _beyond(chosen, known)
+        known = span(np.hstack([known, chosen]), EXACT)
+        out.append(_circuit([joints[k] for k in members], bears[members[0]].T @ new, new.shape[1], block.frame))
+    return out
+
+
+def _vanishing(space: Array, bears: Array) -> Array:
+    """(r, k) what of the column space (r, n) bears nothing: columns z with zᵀ bears = 0."""
+    if not space.shape[1]:
+        return space
+    left, values, _ = np.linalg.svd(space.T @ bears, full_matrices=True)
+    rank = int(np.count_nonzero(values > EXACT))
+    rest: Array = space @ left[:, rank:]
+    return rest
+
+
+def _beyond(space: Array, known: Array) -> Array:
+    """Orthonormal basis of what the columns span beyond those that are known."""
+    rest = space - known @ (known.T @ space)
+    left, values, _ = np.linalg.svd(rest, full_matrices=False)
+    basis: Array = left[:, values > EXACT]
+    return basis
+
+
+def _circuit(joints: Sequence[Joint], first: Array, rows: int, frame: Frame) -> Redundancy:
+    """`first` (6, rows): what the first of the joints bears."""
+    values = np.linalg.svd(first, compute_uv=False)
+    full = len(values) == rows and bool(values.min() > EXACT)
+    space = locked(first.T) if full else []
+    names = [str(joint.name) for joint in joints]
+    which = f": {locked_text([word for word, _ in space])}, as {names[0]} bears it" if full else ""
+    text = f"joints {_named(names)} hold each other: {rows_too_many(rows)}{which}"
+    return _made("loops", text, rows, joints, space, frame)
+
+
+def _of_block(joints: Sequence[Joint], rows: int) -> Redundancy:
+    names = [str(joint.name) for joint in joints]
+    text = f"joints {_named(names)} hold each other in many loops: {rows_too_many(rows)}, not told apart"
+    return _made("block", text, rows, joints, [], Frame(np.zeros(3), 1.0))
+
+
+def _named(names: Sequence[str]) -> str:
+    if len(names) <= NAMED:
+        return ", ".join(names)
+    return ", ".join(names[: NAMED - 1]) + f", … ({len(names)} joints)"
+
+
+def _made(
+    kind: str, text: str, rows: int, joints: Sequence[Joint], space: Sequence[Locked], frame: Frame
+) -> Redundancy:
+    patches = sorted({index for joint in joints for index in joint.patches})
+    wrenches = np.array([wrench for _, wrench in space]).reshape(-1, 6)
+    # from (τ_c / L; f) to (τ at the origin; f)
+    moment = wrenches[:, :3] * frame.length + cross(frame.centre, wrenches[:, 3:])
+    return Redundancy(
+        kind=kind,
+        text=text,
+        rows=rows,
+        joints=tuple(joint.name for joint in joints),
+        patches=tuple(patches),
+        directions=tuple(word for word, _ in space),
+        wrenches=np.hstack([moment, wrenches[:, 3:]]),
+    )

@@ -1,0 +1,126 @@
+"""Contacts of one joint that lie apart, and what they hold more than once: the four hinges of a door.
+
+Patches that lie close together make one site, such as a journal with its thrust faces. Each site on its own holds so
+many directions; what their sum exceeds the joint's is redundant, however rigid both bodies are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame, cross, rows, scaled, span
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.pair.evidence import COAXIAL
+from kinform.kinematics.wording import Locked, locked, locked_text, rows_too_many
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Joint, Redundancy
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["redundancy_within", "sites"]
+
+
+ROUGHLY = 0.02
+"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
+APART = 0.25
+"""Patches whose gap is below this share of the radius of the smaller one belong together."""
+
+
+def redundancy_within(joint: Joint, patches: Sequence[Patch], tolerances: Tolerances) -> Redundancy | None:
+    """What the separate contacts of one joint hold more than once; None where there is one, or nothing is."""
+    if len(joint.patches) < 2:
+        return None
+    own = [patches[k] for k in joint.patches]
+    groups = sites(own)
+    if len(groups) < 2:
+        return None
+    frame = Frame.of(np.concatenate([p.points for p in own]))
+    spaces = [_held([own[k] for k in group], joint, frame, tolerances) for group in groups]
+    each = [space.shape[1] for space in spaces]
+    needed = 6 - joint.freedoms
+    excess = sum(each) - needed
+    if excess <= 0:
+        return None
+    twice = _twice(spaces)
+    named = twice if len(twice) == excess else []
+    plain = list(dict.fromkeys(word.removesuffix(" with a moment about it") for word, _ in named))
+    which = f": {locked_text(plain)}" if named else ""
+    held = str(each[0]) + " each" if len(set(each)) == 1 else " + ".join(map(str, each))
+    text = (
+        f"{len(groups)} {_noun(joint, own)} {joint.name} hold {held} where {needed} would do: "
+        f"{rows_too_many(excess)}{which}{'; but the joint is ambiguous' if joint.status == 'ambiguous' else ''}"
+    )
+    wrenches = np.array([wrench for _, wrench in named]).reshape(-1, 6)
+    moment = wrenches[:, :3] * frame.length + cross(frame.centre, wrenches[:, 3:])
+    return Redundancy(
+        kind="pair",
+        text=text,
+        rows=excess,
+        joints=(joint.name,),
+        patches=joint.patches,
+        directions=tuple(word for word, _ in named),
+        wrenches=np.hstack([moment, wrenches[:, 3:]]),
+    )
+
+
+def sites(patches: Sequence[Patch]) -> list[list[int]]:
+    """Indices of patches that lie together, by their first."""
+    sets = UnionFind(len(patches))
+    centres = [p.points.mean(axis=0) for p in patches]
+    radii = [float(np.linalg.norm(p.points - c, axis=1).max()) for p, c in zip(patches, centres, strict=True)]
+    for k in range(len(patches)):
+        for n in range(k):
+            if sets.find(k) == sets.find(n):
+                continue
+            near = APART * min(radii[k], radii[n])
+            if float(np.linalg.norm(centres[k] - centres[n])) - radii[k] - radii[n] > near:
+                continue
+            if _distance(patches[k].points - centres[k], patches[n].points - centres[k]) <= near:
+                sets.union(k, n)
+    groups: dict[int, list[int]] = {}
+    for k in range(len(patches)):
+        groups.setdefault(sets.find(k), []).append(k)
+    return list(groups.values())
+
+
+def _distance(a: Array, b: Array) -> float:
+    """Least distance between points (n, 3) and (m, 3) near to the origin."""
+    square = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * (a @ b.T)
+    return float(np.sqrt(max(float(square.min()), 0.0)))
+
+
+def _held(patches: Sequence[Patch], joint: Joint, frame: Frame, tolerances: Tolerances) -> Array:
+    """(6, r) orthonormal wrenches, scaled in `frame`, that a site on its own holds."""
+    points = np.concatenate([p.points for p in patches])
+    own = Frame.of(points)
+    share = np.concatenate([np.sqrt(p.area) * p.weights / p.weights.sum() for p in patches])
+    weighted = rows(points, np.concatenate([p.normals for p in patches]), own) * np.sqrt(share / share.sum())[:, None]
+    free = span(scaled(joint.twists.T, own))
+    weighted = weighted - (weighted @ free) @ free.T
+    _, values, right = np.linalg.svd(weighted, full_matrices=False)
+    wrenches = right[values > tolerances.held]
+    # (τ about own centre over own length; f) in the common frame
+    force = wrenches[:, 3:]
+    moment = wrenches[:, :3] * own.length + cross(own.centre - frame.centre, force)
+    return span(np.hstack([moment / frame.length, force]).T)
+
+
+def _twice(spaces: Sequence[Array]) -> list[Locked]:
+    """What each site holds that those before it hold together."""
+    found: list[Locked] = []
+    before = spaces[0]
+    for space in spaces[1:]:
+        left, cosines, _ = np.linalg.svd(space.T @ before, full_matrices=False)
+        both = space @ left[:, cosines > 1.0 - 1e-9]
+        if both.shape[1]:
+            found += locked(both.T, ROUGHLY)
+        before = span(np.hstack([before, space]))
+    return found
+
+
+def _noun(joint: Joint, patches: Sequence[Patch]) -> str:
+    if joint.type in ("revolute", "cylindrical", "screw") and all(p.kind in (*COAXIAL, "plane") for p in patches):
+        return "coaxial hinges of" if joint.type == "revolute" else "coaxial journals of"
+    return "separate contacts of"

@@ -1,0 +1,310 @@
+"""Teeth that keep a constant ratio: counted on both outlines, and rolled on each other while one tooth passes.
+
+Known here: plane sections of two parts that turn or slide in one plane. As many teeth of one side pass as of the
+other, so over whole pitches the ratio is that of the pitches, whatever the flanks are; how far the motion departs
+from it in between (the transmission error) and the play are read from the sections, one on the other, pose by pose
+(Litvin & Fuentes, Gear Geometry and Applied Theory, 2004, chapters 4 and 9). Nothing is known of skew or crossing
+axes, and of teeth that do not come at even distances.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import cross
+from kinform.model.arrays import Array
+from kinform.model.assembly import Mesh
+from kinform.model.kinematics import Meshing
+
+__all__ = ["Side", "meshing"]
+
+
+EVEN = 0.03
+"""Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
+tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
+FEWEST = 5
+"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
+POSES = 24
+"""Poses in which the sections are held against each other while one tooth passes."""
+SKEW = 1e-3
+"""rad: axes that are parallel or perpendicular to this lie in one plane."""
+AGREE = 0.01
+"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One of the two parts, and how it moves when the value of its joint grows."""
+
+    mesh: Mesh
+    X_WP: Array
+    twist: Array
+    """(6,) at the world's origin, relative to the body that carries both joints."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Outline:
+    """The section of one side in its own coordinates: `level` stays, `along` grows with the motion."""
+
+    edges: Array
+    """(n, 2, 2) m, material to the left, in the plane."""
+    centre: Array
+    """(2,) m of a turn; a point of a slide."""
+    along: Array
+    """(2,) unit of a slide; zero of a turn."""
+    sense: float
+    """±1: along grows, or falls, with the value of the joint."""
+
+    @property
+    def turns(self) -> bool:
+        return not self.along.any()
+
+    def coordinates(self, points: Array) -> tuple[Array, Array]:
+        """(level, along) of points (n, 2): radius and angle, or offset and distance."""
+        arm = points - self.centre
+        if self.turns:
+            return np.hypot(arm[:, 0], arm[:, 1]), np.arctan2(arm[:, 1], arm[:, 0])
+        return arm @ np.array([-self.along[1], self.along[0]]), arm @ self.along
+
+    def moved(self, points: Array, by: float) -> Array:
+        """Points (…, 2) after a motion of `by` along."""
+        if not self.turns:
+            return np.asarray(points + by * self.along)
+        c, s = math.cos(by), math.sin(by)
+        return np.asarray((points - self.centre) @ np.array([[c, s], [-s, c]]) + self.centre)
+
+    def apart(self, one: Array, two: Array) -> Array:
+        """Distance along from one to the other; of turns within half a turn."""
+        return np.asarray(np.remainder(two - one + math.pi, 2.0 * math.pi) - math.pi if self.turns else two - one)
+
+    def crossings(self, levels: Array, edges: Array) -> tuple[Array, Array]:
+        """(m, 2n) along where edges (n, 2, 2) cross each level (m,), nan where they do not; and whether the material
+        lies behind, so that a motion forwards brings this side of it against others."""
+        first, step = edges[:, 0] - self.centre, edges[:, 1] - edges[:, 0]
+        if self.turns:
+            a, b = np.einsum("ij,ij->i", step, step), np.einsum("ij,ij->i", first, step)
+            c = np.einsum("ij,ij->i", first, first) - levels[:, None] ** 2
+            root = np.sqrt(np.where(b * b - a * c > 0.0, b * b - a * c, np.nan))
+            t = np.concatenate([(-b - root) / a, (-b + root) / a], axis=1)
+        else:
+            across = np.array([-self.along[1], self.along[0]])
+            with np.errstate(divide="ignore", invalid="ignore"):
+                t = (levels[:, None] - first @ across) / (step @ across)
+        number = np.tile(np.arange(len(edges)), t.shape[1] // max(len(edges), 1))
+        t = np.where((t >= 0.0) & (t < 1.0), t, np.nan)
+        at = first[number] + t[..., None] * step[number]
+        outward = np.stack([step[number, 1], -step[number, 0]], axis=1)
+        if self.turns:
+            along = np.arctan2(at[..., 1], at[..., 0])
+            ahead = at[..., 0] * outward[:, 1] - at[..., 1] * outward[:, 0]
+        else:
+            along, ahead = at @ self.along, np.broadcast_to(outward @ self.along, t.shape)
+        return along, ahead > 0.0
+
+
+def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, ratio: float) -> Meshing | str:
+    """What the teeth of two sides that touch at `place` (3,) do, or why they keep no ratio.
+
+    `axis` (3,): unit, across the section; `normal` (3,): unit, of the contact, into the second side; `ratio`: of the
+    values at this pose, as the normals give it. "" as a reason where the section says nothing.
+    """
+    plane = np.stack(_basis(axis))
+    outlines = []
+    for side in sides:
+        outline = _outline(side, axis, place, plane)
+        if outline is None:
+            return ""
+        outlines.append(outline)
+    first, second = outlines
+    # at the pitch point both sides have teeth, where the contact itself may be at their tips
+    touch = _pitch_point(first, second, ratio)
+    rows = [_teeth(outline, touch) for outline in outlines]
+    for row in rows:
+        if isinstance(row, str):
+            return row
+    one, two = (row for row in rows if not isinstance(row, str))
+    mean = math.copysign(one.pitch / two.pitch, ratio)
+    if abs(ratio / mean - 1.0) > AGREE:
+        return f"the ratio at this pose is {ratio:.5g}, that of {one.count} and {two.count} teeth {mean:.5g}"
+    ahead, behind = _rolled(first, second, one.pitch, first.sense * second.sense / mean)
+    if not (np.isfinite(ahead).all() and np.isfinite(behind).all()):
+        return "the teeth let go of each other before the next ones meet"
+    error = float(max(np.ptp(ahead), np.ptp(behind)))
+    if error > EVEN * two.pitch:
+        return f"while one tooth passes the motion departs by {error / two.pitch:.2g} of a pitch from a constant ratio"
+    lower, upper = _reach(first, one, touch)
+    other = [abs(mean) * value for value in _reach(second, two, touch)]
+    if mean < 0.0:
+        other = [-other[1], -other[0]]
+    return Meshing(
+        ratio=mean,
+        teeth=(one.count, two.count),
+        pitches=(one.pitch, two.pitch),
+        deviation=abs(mean) * error,
+        play=abs(mean) * max(0.0, float((ahead + behind).min())),
+        reach=(max(lower, other[0]), min(upper, other[1])),
+        place=_pitch_point(first, second, mean) @ plane + float(axis @ place) * axis,
+        normals=np.stack([normal, _mirrored(first, second, plane, normal)]),
+    )
+
+
+def _basis(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors that are right-handed with the axis."""
+    u = cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    u /= np.linalg.norm(u)
+    return u, cross(axis, u)
+
+
+def _outline(side: Side, axis: Array, place: Array, plane: Array) -> _Outline | None:
+    """The section across the axis at the place; None where the side does not move in this plane."""
+    omega, v = side.twist[:3], side.twist[3:]
+    edges = _section(side.mesh, side.X_WP, axis, place, plane)
+    size = float(np.linalg.norm(omega))
+    if size > 0.0:
+        if float(np.linalg.norm(cross(omega, axis))) > SKEW * size:
+            return None
+        centre = plane @ (cross(omega, v) / size**2)
+        return _Outline(edges, centre, np.zeros(2), math.copysign(1.0, float(omega @ axis)))
+    along = plane @ v
+    if float(np.linalg.norm(along)) < (1.0 - SKEW**2) * float(np.linalg.norm(v)):
+        return None
+    return _Outline(edges, plane @ place, along / np.linalg.norm(along), 1.0)
+
+
+def _section(mesh: Mesh, X_WP: Array, axis: Array, place: Array, plane: Array) -> Array:
+    """(n, 2, 2) m: edges of the section of a mesh through a place, the material to their left."""
+    points = mesh.vertices @ X_WP[:3, :3].T + X_WP[:3, 3]
+    above = (points - place) @ axis > 0.0
+    faces = mesh.faces[above[mesh.faces].any(axis=1) & ~above[mesh.faces].all(axis=1)]
+    # turned so that the corner that is alone on its side comes first
+    alone = above[faces] == (above[faces].sum(axis=1) == 1)[:, None]
+    turn = (np.argmax(alone, axis=1)[:, None] + np.arange(3)) % 3
+    corners = points[np.take_along_axis(faces, turn, axis=1)]
+    height = (corners - place) @ axis
+    share = height[:, :1] / (height[:, :1] - height[:, 1:])
+    cut = corners[:, :1] + share[..., None] * (corners[:, 1:] - corners[:, :1])
+    edges = cut @ plane.T
+    edges = np.where((height[:, 0] > 0.0)[:, None, None], edges, edges[:, ::-1])
+    return np.asarray(edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) > 0.0])
+
+
+@dataclass(frozen=True)
+class _Row:
+    """Evenly spaced teeth through the place of contact."""
+
+    count: int
+    pitch: float
+    """rad or m."""
+    first: float
+    """along of the middle of the first and of the last; -inf and inf of a whole wheel."""
+    last: float
+
+
+def _teeth(outline: _Outline, touch: Array) -> _Row | str:
+    """The teeth at the level of the contact."""
+    levels, places = outline.coordinates(touch[None])
+    along, leading = outline.crossings(levels, outline.edges)
+    known = np.isfinite(along[0])
+    along, leading = along[0][known], leading[0][known]
+    # the side that leads of each tooth: they come once a tooth
+    starts = np.sort(outline.apart(places[0], along[leading]))
+    if len(starts) < FEWEST or 2 * len(starts) != len(along):
+        return f"one side has only {len(starts)} at the contact where teeth would be" if len(starts) < FEWEST else ""
+    gaps = np.diff(starts)
+    if outline.turns:
+        gaps = np.append(gaps, starts[0] + 2.0 * math.pi - starts[-1])
+        pitch = 2.0 * math.pi / len(starts)
+        if np.abs(starts - starts[0] - pitch * np.arange(len(starts))).max() <= EVEN * pitch:
+            return _Row(len(starts), pitch, -math.inf, math.inf)
+    middle = int(np.argmin(np.abs(starts)))
+    pitch = float(np.median(gaps[max(0, middle - 2) : middle + 2]))
+    low, high = middle, middle
+    while low > 0 and abs(starts[low] - starts[low - 1] - pitch) <= EVEN * pitch:
+        low -= 1
+    while high + 1 < len(starts) and abs(starts[high + 1] - starts[high] - pitch) <= EVEN * pitch:
+        high += 1
+    if high - low + 1 < FEWEST:
+        return "the teeth at the contact do not come at even distances"
+    pitch = float(starts[high] - starts[low]) / (high - low)
+    ends = np.sort(outline.apart(places[0], along[~leading]))
+    half = 0.5 * float(np.median(np.mod(starts - ends, pitch))) if len(ends) == len(starts) else 0.25 * pitch
+    return _Row(high - low + 1, pitch, float(starts[low]) - half, float(starts[high]) - half)
+
+
+def _rolled(first: _Outline, second: _Outline, pitch: float, follow: float) -> tuple[Array, Array]:
+    """(POSES,) how far the second side can go forwards and backwards (along) while the first passes one pitch and the
+    second follows in the constant ratio `follow` (along over along); nan where nothing stops it."""
+    ends = [_near(first, second), _near(second, first)]
+    out = np.full((2, POSES), np.nan)
+    for k, share in enumerate(np.linspace(0.0, 1.0, POSES, endpoint=False)):
+        own = first.moved(ends[0], share * pitch)
+        other = second.moved(ends[1], share * pitch * follow)
+        out[:, k] = _stops(second, own, other)
+    return out[0], out[1]
+
+
+def _near(outline: _Outline, other: _Outline) -> Array:
+    """Edges of an outline that come where the other can reach while one tooth passes."""
+    if other.turns:
+        level = other.coordinates(other.edges.reshape(-1, 2))[0]
+        mine = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
+        return np.asarray(outline.edges[(mine <= 1.02 * level.max()).any(axis=1)])
+    level = other.coordinates(other.edges.reshape(-1, 2))[0]
+    mine = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
+    return np.asarray(outline.edges[((mine >= level.min()) & (mine <= level.max())).any(axis=1)])
+
+
+def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]:
+    """How far `moving` edges can go forwards and backwards until they meet `still` ones; negative where they overlap."""
+    forwards: list[float] = []
+    backwards: list[float] = []
+    for corners, edges, sign in ((still, moving, 1.0), (moving, still, -1.0)):
+        level, place = motion.coordinates(corners[:, 0])
+        along, leading = motion.crossings(level, edges)
+        # of the edges as seen from the corner
+        away = motion.apart(place[:, None], along)
+        behind = np.where(away <= 0.0, away, -np.inf)
+        ahead = np.where(away > 0.0, away, np.inf)
+        below, above = np.nanmax(behind, axis=1, initial=-np.inf), np.nanmin(ahead, axis=1, initial=np.inf)
+        index = np.arange(len(level))
+        ends_below = leading[index, np.nanargmax(np.where(np.isnan(behind), -np.inf, behind), axis=1)]
+        ends_above = ~leading[index, np.nanargmin(np.where(np.isnan(ahead), np.inf, ahead), axis=1)]
+        # outside: free from the end of material below to its beginning above; inside: the nearer side is passed
+        inside = np.isfinite(below) & np.isfinite(above) & ~ends_below & ~ends_above
+        nearer = above < -below
+        gap_below = np.where(np.isfinite(below) & ends_below, -below, np.where(inside & nearer, -above, np.inf))
+        gap_above = np.where(np.isfinite(above) & ends_above, above, np.where(inside & ~nearer, below, np.inf))
+        (forwards if sign > 0.0 else backwards).append(gap_below.min(initial=np.inf))
+        (backwards if sign > 0.0 else forwards).append(gap_above.min(initial=np.inf))
+    forward, backward = (value if math.isfinite(value) else math.nan for value in (min(forwards), min(backwards)))
+    return forward, backward
+
+
+def _reach(outline: _Outline, row: _Row, touch: Array) -> tuple[float, float]:
+    """Values of the joint between which the teeth are where the contact is."""
+    lower, upper = -(row.last + 0.5 * row.pitch), -(row.first - 0.5 * row.pitch)
+    return (lower, upper) if outline.sense > 0.0 else (-upper, -lower)
+
+
+def _pitch_point(first: _Outline, second: _Outline, ratio: float) -> Array:
+    """(2,) where both sides have the same velocity."""
+    one, two = first.sense * ratio, second.sense
+    if first.turns and second.turns:
+        return np.asarray((one * first.centre - two * second.centre) / (one - two))
+    wheel, slide, share = (first, second, two / one) if first.turns else (second, first, one / two)
+    return np.asarray(wheel.centre + share * np.array([slide.along[1], -slide.along[0]]))
+
+
+def _mirrored(first: _Outline, second: _Outline, plane: Array, normal: Array) -> Array:
+    """The normal of the other flank: the mirror image across the line of centres, or across the way of a slide."""
+    if first.turns and second.turns:
+        line = second.centre - first.centre
+        across = np.array([-line[1], line[0]]) / max(float(np.linalg.norm(line)), 1e-300)
+    else:
+        across = first.along + second.along
+        across /= max(float(np.linalg.norm(across)), 1e-300)
+    t = across @ plane
+    return np.asarray(normal - 2.0 * float(normal @ t) * t)

@@ -1,0 +1,1 @@
+"""The joint of a pair of bodies, from the contact between them."""

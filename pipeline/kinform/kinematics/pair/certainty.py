@@ -1,0 +1,196 @@
+"""How sure the answer of a decision is: what in the evidence makes it doubtful, in words.
+
+A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a singular value between free
+and held; facets of no known surface, lines and points that alone hold something (where they touch next is
+not known); axes that nearly agree, which a designer means as one; and touches too small or too far apart
+to be meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.kinematics.pair.evidence import COAXIAL, FAR, Evidence, Item
+from kinform.kinematics.pair.freedoms import fits, freedoms
+from kinform.kinematics.pair.subspace import name_space
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["TOUCHING", "certainty", "meets", "momentary"]
+
+
+TOUCHING = ("point", "line")
+"""Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
+HIGHER = (*TOUCHING, "freeform", "other")
+"""Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
+MISSED = 0.5
+"""Axes that miss each other by less than this share of the contact tolerance are meant to be one."""
+TILTED = 4.0
+"""So are axes within this many times the alignment."""
+APART = 2e-3
+"""Gaps below this share of the size of the smaller body are as good as none."""
+ROUND = 0.02
+"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
+STRAY = (5e-4, 2e-2)
+"""Share of the squared size of the smaller body below which a one-directional contact may be a stray: where
+it touches, and where it does not."""
+MOST_LINES, SECTORS = 4, 8
+"""Axes about which threads are suspected, and parts of a turn of which nearly all must lean alike."""
+LEAN, BETTER = 5e-3, 0.75
+"""Advance a radian, in radii, and share of the squared speeds that a screw may leave, of what leans like a thread."""
+SPREAD = 0.15
+"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims."""
+
+
+def certainty(
+    evidence: Evidence, twists: Array, basis: Array, values: Array, tolerances: Tolerances
+) -> tuple[str, str]:
+    """Status and reason of the freedoms `basis` (6, k) with singular values (6,), found among `twists` (6, n)."""
+    count = basis.shape[1]
+    if count < 6 and values[count] < tolerances.held:
+        return "ambiguous", (
+            f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
+            f"and held (> {tolerances.held:g})"
+        )
+    touching = momentary(evidence, basis) or (
+        name_space(basis, evidence.frame).type == "general" and meets([item.patch for item in evidence.items])
+    )
+    doubt = "" if touching else _loose(evidence, twists, count, tolerances) or _stray(evidence)
+    doubt = doubt or _nearly_one(evidence, twists, count, tolerances) or _threaded(evidence, basis)
+    if doubt:
+        return "ambiguous", doubt
+    weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
+    return "determined", f"the contact leaves {count} freedom{'' if count == 1 else 's'}{weakest}"
+
+
+def meets(patches: Sequence[Patch]) -> bool:
+    """Whether all contact is along points and lines, beside nothing but planes across the lines: a cam that rubs."""
+    lines = [patch.axis for patch in patches if patch.kind == "line"]
+    return any(patch.kind in TOUCHING for patch in patches) and all(
+        patch.kind in TOUCHING
+        or (patch.kind == "plane" and lines and all(np.linalg.norm(cross(patch.axis, d)) < 1e-3 for d in lines))
+        for patch in patches
+    )
+
+
+def momentary(evidence: Evidence, basis: Array) -> bool:
+    """Whether points and lines alone leave a turn that takes the surfaces off each other: that of two gears about
+    their pitch line, while a roller in a groove turns about its own axis."""
+    if not meets([item.patch for item in evidence.items]):
+        return False
+    form = name_space(basis, evidence.frame)
+    if form.type not in ("revolute", "cylindrical", "screw", "spherical") or form.point is None:
+        return False
+    for item in evidence.items:
+        if item.patch.kind not in TOUCHING:
+            continue
+        arm = item.points - form.point
+        if form.axis is not None:
+            arm = arm - np.outer(arm @ form.axis, form.axis)
+        away = np.linalg.norm(arm, axis=1)
+        if all(
+            (np.abs(away - radius) > ROUND * max(radius, ROUND * evidence.frame.length)).any()
+            for radius in item.patch.radii
+        ):
+            return True
+    return False
+
+
+def _count(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], tolerances: Tolerances) -> int:
+    preserved = fits(evidence, twists, evidence.rows @ twists)
+    return int(freedoms(evidence, twists, preserved, keep, tolerances)[0].shape[1])
+
+
+def _loose(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+    """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
+    only by surfaces that are known on both sides."""
+    firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
+    if count == 0:
+        firm &= [not item.patch.one_sided for item in evidence.items]
+    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
+        return ""
+    kinds = sorted({item.patch.kind for item, good in zip(evidence.items, firm, strict=True) if not good})
+    return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
+
+
+def _nearly_one(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+    """Are bodies fixed only by axes or centres that miss each other by a little?"""
+    if count:
+        return ""
+    curved = [item.patch.kind in (*COAXIAL, "sphere") and not item.patch.one_sided for item in evidence.items]
+    wide = np.repeat(curved, np.diff(evidence.start))
+    widened = replace(
+        evidence,
+        angle=np.where(wide, np.maximum(evidence.angle, TILTED * tolerances.alignment), evidence.angle),
+        position=evidence.position + np.where(wide, MISSED * evidence.contact, 0.0),
+    )
+    found = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
+    if found == 0:
+        return ""
+    return f"axes that miss each other by little hold the bodies: as one axis they would leave {found} of 6 freedoms"
+
+
+def _threaded(evidence: Evidence, basis: Array) -> str:
+    """Do facets all round an axis lean like those of a thread, without a thread that was found to mate there?"""
+    form = name_space(basis, evidence.frame)
+    if form.type == "screw" or basis.shape[1] > 2:
+        return ""
+    coaxial = sorted((i for i in evidence.items if i.patch.kind in COAXIAL), key=lambda i: (-i.area, i.index))
+    lines = [(item.patch.axis, item.patch.point) for item in coaxial[:MOST_LINES]]
+    if form.axis is not None and form.point is not None:
+        lines.append((form.axis, form.point))
+    for axis, point in lines:
+        advance = _advance(evidence, axis, point)
+        if advance:
+            return (
+                f"facets lean like those of a thread of about {2e3 * np.pi * advance:.3g} mm a turn, "
+                "but no two threads of one pitch were found"
+            )
+    return ""
+
+
+def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
+    """m a radian of the screw about a line that leaves what touches besides surfaces of revolution about it much
+    more nearly free than the turn does; 0 where there is none."""
+    own = [i for i in evidence.items if i.patch.kind not in COAXIAL or i.patch.one_sided or not _about(i, axis)]
+    if all(i.patch.kind == "plane" and _about(i, axis) for i in own):
+        return 0.0
+    points, normals = np.concatenate([i.points for i in own]), np.concatenate([i.normals for i in own])
+    weights = np.concatenate([i.weights for i in own])
+    arm = points - point
+    radial = arm - (arm @ axis)[:, None] * axis
+    radius = float(weights @ np.linalg.norm(radial, axis=1) / weights.sum())
+    turning, sliding = np.einsum("ij,ij->i", normals, cross(axis, arm)), normals @ axis
+    u, v = perpendicular(axis)
+    sector = np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * SECTORS).astype(int) % SECTORS
+    share = np.bincount(sector, weights=weights, minlength=SECTORS) / weights.sum()
+    if np.count_nonzero(share > 0.02) < SECTORS - 1 or weights @ sliding**2 < 0.01 * weights.sum():
+        return 0.0
+    advance = -float(weights @ (turning * sliding) / (weights @ sliding**2))
+    rest = float(weights @ (turning + advance * sliding) ** 2)
+    lean = abs(advance) > LEAN * radius and rest < BETTER * float(weights @ turning**2)
+    return advance if lean else 0.0
+
+
+def _about(item: Item, axis: Array) -> bool:
+    return float(np.linalg.norm(cross(item.patch.axis, axis))) < 0.01
+
+
+def _stray(evidence: Evidence) -> str:
+    """Is all of the contact on one side, and so small, or so far apart, that it may not be meant?"""
+    normals = evidence.rows[:, 3:]
+    if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():
+        return ""
+    area = sum(item.patch.area for item in evidence.items)
+    least = max(FAR * evidence.contact, APART * evidence.size)
+    apart = all(item.patch.gap > least for item in evidence.items)
+    if area >= STRAY[apart] * evidence.size**2 or evidence.frame.length > SPREAD * evidence.size:
+        return ""
+    what = "they pass each other without touching" if apart else "they touch"
+    return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

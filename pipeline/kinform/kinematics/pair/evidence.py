@@ -1,0 +1,155 @@
+"""The contact evidence between two bodies, as arrays: patches, samples, rows and their weights.
+
+Every patch counts with the square root of its area, shared over its samples, less where the gap is
+wide: in real joints a small journal decides beside a large thrust face, so neither equal nor area
+weights serve (design section 4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.screws import Frame, rows
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["COAXIAL", "FAR", "GUIDES", "PITCH", "Evidence", "Item", "gather"]
+
+
+COAXIAL = ("cylinder", "cone", "torus", "revolution", "helicoid")
+"""Kinds of patches with an axis that is a line."""
+GUIDES = (*COAXIAL, "sphere", "extrusion")
+"""Kinds of curved patches that slide on themselves in a way that both sides share."""
+GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
+"""(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
+PITCH = 5e-3
+"""Relative difference of pitches that are one."""
+FAR = GAP_BANDS[1][0]
+"""Gaps beyond this share of the contact tolerance have the least weight."""
+
+
+STRAY = 0.02
+"""Share of the contact area below which a one-sided patch counts only where it touches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Item:
+    """One patch as seen from the first body of the pair."""
+
+    index: int
+    """Into Contacts.patches."""
+    patch: Patch
+    points: Array
+    normals: Array
+    """(n, 3) out of the first body."""
+    weights: Array
+    """(n,) m², reduced by the gap bands."""
+    area: float
+    """m², reduced by the gap bands."""
+    angle: float
+    """rad: how far the direction of this patch may be off before it is a fact."""
+    position: float
+    """m: likewise for its line or centre."""
+    interferes: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """All patches between two bodies. Rows: relative twist of the second body, scaled in `frame`."""
+
+    items: tuple[Item, ...]
+    frame: Frame
+    rows: Array
+    """(n, 6)."""
+    share: Array
+    """(n,) weight of each row's square; sums to 1."""
+    start: NDArray[np.int64]
+    """(items + 1,) first row of each patch."""
+    angle: Array
+    """(n,) rad, of the patch."""
+    position: Array
+    """(n,) m, of the patch."""
+    arms: Array
+    """(n, 3) samples from the centre, over the length."""
+    contact: float
+    """m: the contact tolerance of the pair."""
+    size: float = 0.0
+    """m: diagonal of the smaller body; 0: not known."""
+
+    @property
+    def areas(self) -> Array:
+        """(items,) m²."""
+        return np.array([item.area for item in self.items])
+
+
+def gather(
+    patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float, size: float = 0.0
+) -> Evidence | None:
+    """Evidence of patches given as (index, patch, turned): turned when part a belongs to the second body.
+
+    `contact` is the contact tolerance (m), `size` the diagonal of the smaller body (m). None when no patch has
+    an area.
+    """
+    items = [
+        _item(index, patch, turned, tolerances, contact)
+        for index, patch, turned in patches
+        if patch.area > 0.0 and len(patch.points) > 0
+    ]
+    total = sum(item.area for item in items)
+    items = [item for item in items if not _stray(item, total, contact)]
+    if not items:
+        return None
+    points = np.concatenate([item.points for item in items])
+    frame = Frame.of(points)
+    counts = [len(item.points) for item in items]
+    patch_weight = np.sqrt([item.area for item in items])
+    patch_weight /= patch_weight.sum()
+    share = np.concatenate([w * item.weights / item.weights.sum() for w, item in zip(patch_weight, items, strict=True)])
+    return Evidence(
+        items=tuple(items),
+        frame=frame,
+        rows=rows(points, np.concatenate([item.normals for item in items]), frame),
+        share=share,
+        start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        angle=np.repeat([item.angle for item in items], counts),
+        position=np.repeat([item.position for item in items], counts),
+        arms=(points - frame.centre) / frame.length,
+        contact=contact,
+        size=size,
+    )
+
+
+def _stray(item: Item, total: float, contact: float) -> bool:
+    """Facets of no known surface that pass near a small bit of a surface without touching it say nothing."""
+    apart = item.patch.gap > GAP_BANDS[0][0] * contact
+    return item.patch.one_sided and apart and item.area < STRAY * total
+
+
+def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
+    band = np.empty(len(patch.points))
+    relative = np.abs(patch.gaps) / contact
+    for limit, weight in reversed(GAP_BANDS):
+        band[relative <= limit] = weight
+    weights = np.maximum(patch.weights, 1e-30) * band
+    coaxial = patch.kind in (*COAXIAL, "sphere")
+    clearance = max(patch.gap, 0.0) if coaxial else 0.0
+    # facets of no known surface have no axis of their own: how uneven the gap is says how far off it may be
+    offset = 0.5 * float(np.ptp(patch.gaps)) if patch.one_sided else 0.5 * patch.offset
+    direction, position = patch.uncertainty
+    loose = patch.one_sided and patch.kind not in ("plane", *GUIDES)
+    return Item(
+        index=index,
+        patch=patch,
+        points=patch.points,
+        normals=-patch.normals if turned else patch.normals,
+        weights=weights,
+        area=float(weights.sum()),
+        angle=0.2 if loose else tolerances.alignment + 3.0 * direction + 0.5 * patch.misalignment,
+        position=3.0 * position + clearance + offset if coaxial else 0.0,
+        interferes=patch.gap < -(patch.chord + 3.0 * position),
+    )

@@ -1,0 +1,121 @@
+"""Which motions the patches between two bodies leave free, and the singular values that say so.
+
+Each candidate motion is tested against each patch; the freedoms are the motions that every patch
+preserves, and the singular values of the rows, made exactly consistent with those, confirm that nothing
+else is free.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.screws import cross, span
+from kinform.kinematics.pair.evidence import PITCH, Evidence
+from kinform.kinematics.pair.subspace import name_space, nearest_pair
+from kinform.model.arrays import Array
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["INDEPENDENT", "fits", "freedoms"]
+
+
+INDEPENDENT = 0.03
+"""A motion adds a freedom when this much of its unit twist lies outside those already found."""
+CLEARLY = 0.5
+"""Above this share a further motion is not a variant of those already found."""
+RESIDUAL = 2.0
+"""What is left of a further motion may be off by this many times the tolerances: it is a difference."""
+
+
+def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> NDArray[np.bool_]:
+    """(items, motions): does the patch slide on itself, within `slack` times its tolerances?"""
+    length = evidence.frame.length
+    velocity = twists[3:].T[None] + cross(twists[:3].T[None], evidence.arms[:, None])
+    speed = np.linalg.norm(velocity, axis=2)
+    turning = np.linalg.norm(twists[:3], axis=0)
+    allowed = evidence.angle[:, None] * speed + evidence.position[:, None] / length * turning
+    for k, item in enumerate(evidence.items):
+        if item.patch.kind == "cone":
+            # the slope of a cone is a fact, not a misalignment: slides along it have no slack
+            own = slice(evidence.start[k], evidence.start[k + 1])
+            slides = turning < 1e-9
+            allowed[own, slides] = (3.0 * item.patch.uncertainty[0] + 1e-6) * speed[own, slides]
+    weight = evidence.share[:, None]
+    first = evidence.start[:-1]
+    found = np.add.reduceat(weight * speeds**2, first, axis=0)
+    limit = np.add.reduceat(weight * allowed**2, first, axis=0)
+    kept = np.asarray(found <= slack**2 * limit + 1e-24)
+    for k, item in enumerate(evidence.items):
+        if item.patch.kind == "helicoid":
+            kept[k] = _screws(evidence, k, twists, slack)
+    return kept
+
+
+def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> NDArray[np.bool_]:
+    """(motions,): is it the screw motion of this thread? Its slope is a fact, like that of a cone: however small,
+    no tolerance makes a turn or a slide of it. Only the axis may be off."""
+    item, frame = evidence.items[number], evidence.frame
+    row = int(evidence.start[number])
+    angular, linear = twists[:3] / frame.length, twists[3:]
+    square = np.einsum("ij,ij->j", angular, angular)
+    turning = square > (1e-3 / frame.length) ** 2
+    square = np.where(turning, square, 1.0)
+    advance = np.einsum("ij,ij->j", angular, linear) / square
+    foot = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
+    axis, middle = item.patch.axis, item.points.mean(axis=0)
+    direction = angular / np.sqrt(square)
+    tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
+    own = item.patch.point + axis * float(axis @ (middle - item.patch.point))
+    apart = own[:, None] - foot
+    apart = np.linalg.norm(apart - direction * np.einsum("ij,ij->j", direction, apart), axis=0)
+    angle, reach = float(evidence.angle[row]), float(np.linalg.norm(item.points - middle, axis=1).max())
+    wanted = item.patch.pitch / (2.0 * np.pi)
+    return np.asarray(
+        turning
+        & (tilt <= slack * angle)
+        & (apart <= slack * (float(evidence.position[row]) + angle * reach))
+        & (np.abs(advance - wanted) <= slack * PITCH * abs(wanted))
+    )
+
+
+def freedoms(
+    evidence: Evidence,
+    twists: Array,
+    preserved: NDArray[np.bool_],
+    keep: NDArray[np.bool_],
+    tolerances: Tolerances,
+) -> tuple[Array, Array]:
+    """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so.
+
+    `preserved` (items, motions) is what `fits` says of the candidate `twists` (6, motions).
+    A motion that differs from those already found by less than the patches can tell adds nothing.
+    """
+    basis = np.zeros((6, 0))
+    for twist in twists[:, preserved[keep].all(axis=0)].T:
+        rest = twist - basis @ (basis.T @ twist)
+        size = float(np.linalg.norm(rest))
+        if size > INDEPENDENT and (size > CLEARLY or _preserved(evidence, (rest / size)[:, None], keep, RESIDUAL)):
+            basis = np.column_stack([basis, rest / size])
+    chosen = np.repeat(keep, np.diff(evidence.start))
+    rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
+    basis, values = _completed(rows, basis, tolerances)
+    if name_space(basis, evidence.frame).type == "general":
+        rounded = nearest_pair(basis, evidence.frame)
+        if rounded is not None and _preserved(evidence, rounded, keep):
+            return _completed(rows, rounded, tolerances)
+    return basis, values
+
+
+def _completed(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array, Array]:
+    """The basis with whatever else the rows leave free, and the singular values (6,) ascending."""
+    rows = rows - (rows @ basis) @ basis.T
+    triangle = np.linalg.qr(rows, mode="r") if len(rows) >= 6 else rows
+    _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
+    values = values[:6][::-1]
+    null = right[:6][::-1][values < tolerances.free].T
+    return span(null), values
+
+
+def _preserved(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], slack: float = 1.0) -> bool:
+    """Does every kept patch slide on itself under each of the twists (6, n), within its tolerances?"""
+    return bool(fits(evidence, twists, evidence.rows @ twists, slack)[keep].all())

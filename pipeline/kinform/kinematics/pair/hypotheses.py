@@ -1,0 +1,247 @@
+"""Elementary motions that the surfaces of a pair suggest: turns and screws about axes, slides along directions.
+
+Every lower pair is spanned by such motions, so it is enough to test each of them against each patch.
+Axes that agree within what clearances and fits allow are one axis, fitted to all that support it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import canonical, cross, perpendicular, rotation, translation
+from kinform.kinematics.pair.evidence import COAXIAL, PITCH, Evidence, Item
+from kinform.model.arrays import Array
+
+__all__ = ["Line", "Motion", "describe", "motions"]
+
+
+MOST_DIRECTIONS = 24
+"""Directions tried, the best supported first: parts of real robots have hundreds of tiny planes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """An axis with the items that support it."""
+
+    axis: Array
+    point: Array
+    weight: float
+    items: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One candidate freedom: `turn` about an axis through a point, or a slide along it."""
+
+    turn: bool
+    twist: Array
+    """(6,) scaled, unit."""
+    axis: Array
+    point: Array
+    curved: bool
+    """Suggested by a cylinder, cone or sphere rather than by planes alone."""
+    pitch: float = 0.0
+    """m a turn; of a turn that advances, right-handed positive."""
+
+
+def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
+    """Candidate motions in a fixed order, best supported first."""
+    lines = _axes(evidence, alignment)
+    centres = _centres(evidence)
+    normals = _directions([(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"], alignment)
+    directions = _slides(evidence, lines, normals, alignment)
+    frame, out = evidence.frame, []
+    for line in lines:
+        out.append(Motion(True, rotation(line.axis, line.point, frame), line.axis, line.point, True))
+    for line in lines:
+        for pitch in _pitches(evidence, line):
+            twist = rotation(line.axis, line.point, frame, pitch)
+            out.append(Motion(True, twist, line.axis, line.point, True, pitch))
+    for centre in centres:
+        turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
+        turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > 1e-3 * frame.length]
+        out += [Motion(True, rotation(d, centre, frame), d, centre, True) for d in turns]
+    for direction, curved in directions:
+        out.append(Motion(False, translation(direction), direction, frame.centre, curved))
+    for normal, _ in normals:
+        centre = _middle(evidence, normal, alignment)
+        out.append(Motion(True, rotation(normal, centre, frame), normal, centre, False))
+    return tuple(out)
+
+
+def _pitches(evidence: Evidence, line: Line) -> list[float]:
+    """Pitches (m a turn) of the threads on a line; those that agree are one, by their areas."""
+    found: list[tuple[float, float]] = []
+    threads = [evidence.items[k] for k in line.items if evidence.items[k].patch.kind == "helicoid"]
+    for item in sorted(threads, key=lambda i: (-i.area, i.index)):
+        for n, (pitch, area) in enumerate(found):
+            if abs(item.patch.pitch - pitch) <= PITCH * abs(pitch):
+                total = area + item.area
+                found[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
+                break
+        else:
+            found.append((item.patch.pitch, item.area))
+    return [pitch for pitch, _ in found]
+
+
+def _axes(evidence: Evidence, alignment: float) -> list[Line]:
+    """Clusters of coaxial patches, each with the line fitted to its members."""
+    coaxial = [k for k, item in enumerate(evidence.items) if item.patch.kind in COAXIAL]
+    coaxial.sort(key=lambda k: (-evidence.items[k].area, k))
+    clusters: list[list[int]] = []
+    for k in coaxial:
+        item = evidence.items[k]
+        for cluster in clusters:
+            if _coaxial(evidence.items[cluster[0]], item, alignment):
+                cluster.append(k)
+                break
+        else:
+            clusters.append([k])
+    lines = [_fit_line([evidence.items[k] for k in c], c) for c in clusters]
+    return sorted(lines, key=lambda line: (-line.weight, line.items))
+
+
+def _coaxial(a: Item, b: Item, alignment: float) -> bool:
+    sine = float(np.linalg.norm(cross(a.patch.axis, b.patch.axis)))
+    if sine > np.sin(max(a.angle, b.angle, alignment)):
+        return False
+    middle = b.points.mean(axis=0)
+    foot = a.patch.point + a.patch.axis * float(a.patch.axis @ (middle - a.patch.point))
+    other = b.patch.point + b.patch.axis * float(b.patch.axis @ (middle - b.patch.point))
+    reach = float(np.linalg.norm(middle - a.points.mean(axis=0)))
+    return float(np.linalg.norm(foot - other)) <= a.position + b.position + a.angle * reach
+
+
+def _fit_line(items: list[Item], indices: list[int]) -> Line:
+    """Least squares line: each patch measures an offset at its place, and a direction."""
+    best = items[0]
+    axis = canonical(best.patch.axis)
+    if len(items) == 1:
+        middle = best.points.mean(axis=0)
+        foot = best.patch.point + axis * float(axis @ (middle - best.patch.point))
+        return Line(axis, foot, best.area, tuple(indices))
+    u, v = perpendicular(axis)
+    origin = np.average([i.points.mean(axis=0) for i in items], axis=0, weights=[i.area for i in items])
+    origin = best.patch.point + axis * float(axis @ (origin - best.patch.point))
+    normal_matrix, right = np.zeros((4, 4)), np.zeros(4)
+    for item in items:
+        own = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
+        z = float(axis @ (item.points.mean(axis=0) - origin))
+        foot = item.patch.point + own * ((z - float(axis @ (item.patch.point - origin))) / float(own @ axis))
+        length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
+        # what a patch does not know better than its fit and its clearance, it says less loudly
+        position = max(item.position, 1e-7 * length, 1e-12)
+        direction = max(item.patch.uncertainty[0], position / length)
+        for k, unit in enumerate((u, v)):
+            row = np.zeros(4)
+            row[k], row[2 + k] = 1.0, z
+            normal_matrix += np.outer(row, row) / position**2
+            right += row * float(unit @ (foot - origin)) / position**2
+            normal_matrix[2 + k, 2 + k] += 1.0 / direction**2
+            right[2 + k] += float(unit @ own) / direction**2
+    weight = np.sqrt(np.diag(normal_matrix))
+    solution = np.linalg.lstsq(normal_matrix / np.outer(weight, weight), right / weight, rcond=None)[0] / weight
+    fitted = canonical(axis + solution[2] * u + solution[3] * v)
+    return Line(fitted, origin + solution[0] * u + solution[1] * v, sum(i.area for i in items), tuple(indices))
+
+
+def _centres(evidence: Evidence) -> list[Array]:
+    """Centres of spherical patches, the largest first, those that agree merged."""
+    spheres = sorted(
+        (k for k, item in enumerate(evidence.items) if item.patch.kind == "sphere"),
+        key=lambda k: (-evidence.items[k].area, k),
+    )
+    centres: list[tuple[Array, float, float]] = []
+    for k in spheres:
+        item = evidence.items[k]
+        for n, (centre, area, slack) in enumerate(centres):
+            if np.linalg.norm(centre - item.patch.point) <= slack + item.position:
+                total = area + item.area
+                merged = (centre * area + item.patch.point * item.area) / total
+                centres[n] = (merged, total, max(slack, item.position))
+                break
+        else:
+            centres.append((item.patch.point, item.area, item.position + 1e-9 * evidence.frame.length))
+    return [centre for centre, _, _ in centres]
+
+
+def _directions(candidates: list[tuple[Array, float]], alignment: float) -> list[tuple[Array, float]]:
+    """Directions merged up to sign within `alignment`, weighted, the heaviest first."""
+    merged: list[tuple[Array, float]] = []
+    for axis, weight in sorted(candidates, key=lambda c: -c[1]):
+        for n, (other, total) in enumerate(merged):
+            if np.linalg.norm(cross(axis, other)) <= np.sin(alignment):
+                signed = axis if axis @ other > 0.0 else -axis
+                merged[n] = ((other * total + signed * weight) / (total + weight), total + weight)
+                merged[n] = (merged[n][0] / np.linalg.norm(merged[n][0]), merged[n][1])
+                break
+        else:
+            merged.append((canonical(axis), weight))
+    return sorted(merged, key=lambda m: -m[1])[:MOST_DIRECTIONS]
+
+
+def _slides(
+    evidence: Evidence, lines: list[Line], normals: list[tuple[Array, float]], alignment: float
+) -> list[tuple[Array, bool]]:
+    """Directions that surfaces leave free: axes, and lines in which two planes meet."""
+    planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
+    found: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
+    drawn = [(item.patch.axis, item.area) for item in evidence.items if item.patch.kind == "extrusion"]
+    for axis, _ in _directions(drawn, alignment):
+        if all(np.linalg.norm(cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+            found.append((axis, True))
+
+    def add(direction: Array, curved: bool) -> None:
+        direction = _refined(direction, planes, alignment)
+        if all(np.linalg.norm(cross(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
+            found.append((direction, curved))
+
+    heavy = normals[: MOST_DIRECTIONS // 2]
+    for k, (a, _) in enumerate(heavy):
+        for b, _ in heavy[:k]:
+            line_of_both = cross(a, b)
+            if np.linalg.norm(line_of_both) > 0.1:
+                add(canonical(line_of_both), False)
+    for normal, _ in heavy[:6]:
+        for axis in perpendicular(normal):
+            add(canonical(axis), False)
+        for line in lines:
+            across = cross(normal, line.axis)
+            if np.linalg.norm(across) > 0.1:
+                add(canonical(across), False)
+    return found[: 3 * MOST_DIRECTIONS]
+
+
+def _refined(direction: Array, planes: list[tuple[Array, float]], alignment: float) -> Array:
+    """The direction most perpendicular to all plane normals that are nearly so already."""
+    near = [(n, w) for n, w in planes if abs(float(n @ direction)) <= np.sin(alignment)]
+    if len(near) < 2:
+        return direction
+    normals = np.array([n for n, _ in near])
+    spread = normals.T @ (normals * np.array([w for _, w in near])[:, None])
+    values, vectors = np.linalg.eigh(spread)
+    if values[1] < 1e-3 * values[2]:
+        flat = direction - vectors[:, 2] * float(vectors[:, 2] @ direction)
+        return canonical(flat)
+    return canonical(vectors[:, 0])
+
+
+def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
+    """Area centroid of the plane patches with this normal."""
+    members = [
+        i
+        for i in evidence.items
+        if i.patch.kind == "plane" and np.linalg.norm(cross(i.patch.axis, normal)) <= np.sin(alignment)
+    ]
+    points = np.concatenate([i.points for i in members])
+    return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))
+
+
+def describe(motion: Motion) -> str:
+    """In words: "rotation about (0, 0, 1)"."""
+    axis = ", ".join(f"{x:.3g}" for x in np.where(np.abs(motion.axis) < 5e-4, 0.0, motion.axis))
+    if motion.pitch:
+        return f"screw motion about ({axis}), {1e3 * motion.pitch:.4g} mm a turn"
+    return f"{'rotation about' if motion.turn else 'translation along'} ({axis})"

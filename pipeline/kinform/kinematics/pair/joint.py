@@ -1,0 +1,158 @@
+"""Joints from decisions, from assumptions and from the stated function, in one form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import canonical, cross, perpendicular, twist_at_origin
+from kinform.kinematics.groups import in_words
+from kinform.kinematics.pair.decision import Decision
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence
+from kinform.kinematics.pair.hypotheses import describe
+from kinform.model.arrays import Array
+from kinform.model.kinematics import Blocker, Joint
+from kinform.model.names import BodyName, JointName
+
+__all__ = ["FREEDOMS", "joint_from_decision", "misalignment", "stated_joint", "twists_of"]
+
+
+FREEDOMS = {
+    "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
+    "spherical": 3, "planar": 3,
+}  # fmt: skip
+
+
+def twists_of(
+    kind: str,
+    axis: Array | None,
+    point: Array | None,
+    pitch: float | None = None,
+    axis2: Array | None = None,
+) -> Array:
+    """Basis (f, 6) of the twists (ω; v at the world's origin) that a joint of this type allows."""
+    zero = np.zeros(3)
+
+    def turn(about: Array, lead: float = 0.0) -> Array:
+        assert point is not None
+        return np.concatenate([about, cross(point, about) + lead * about])
+
+    if kind == "spherical":
+        return np.array([turn(e) for e in np.eye(3)])
+    if kind == "fixed" or axis is None:
+        return np.zeros((0, 6))
+    slide = np.concatenate([zero, axis])
+    if kind == "prismatic":
+        return slide[None]
+    if kind == "revolute":
+        return turn(axis)[None]
+    if kind == "screw":
+        return turn(axis, (pitch or 0.0) / (2.0 * np.pi))[None]
+    if kind == "cylindrical":
+        return np.array([turn(axis), slide])
+    if kind == "universal":
+        return np.array([turn(axis), turn(axis2 if axis2 is not None else perpendicular(axis)[0])])
+    u, v = perpendicular(axis)
+    return np.array([turn(axis), np.concatenate([zero, u]), np.concatenate([zero, v])])
+
+
+def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, decision: Decision) -> Joint:
+    """The joint between two bodies as their contact decides it."""
+    form, frame = decision.form, evidence.frame
+    kept = [evidence.items[k] for k in decision.kept]
+    point = form.point
+    if point is not None and form.axis is not None:
+        weights = np.concatenate([item.weights for item in kept])
+        middle = np.average(np.concatenate([i.points for i in kept]), axis=0, weights=weights)
+        if form.type in ("prismatic", "planar"):
+            point = middle
+        else:
+            point = point + form.axis * float(form.axis @ (middle - point))
+    if form.type == "general":
+        twists = twist_at_origin(decision.basis, frame).T
+    else:
+        twists = twists_of(form.type, form.axis, point, form.pitch)
+    total = float(evidence.areas.sum())
+    blockers = tuple(
+        Blocker(
+            parts=evidence.items[k].patch.parts,
+            patch=evidence.items[k].index,
+            area=evidence.items[k].patch.area,
+            share=evidence.items[k].area / total,
+            place=np.average(evidence.items[k].points, axis=0, weights=evidence.items[k].weights),
+            gap=evidence.items[k].patch.gap,
+            forbids=describe(motion),
+        )
+        for k, motion in decision.left_out
+    )
+    return Joint(
+        name=JointName(f"{bodies[0]}~{bodies[1]}"),
+        bodies=bodies,
+        type=form.type,
+        axis=form.axis,
+        point=point,
+        axis2=None,
+        pitch=form.pitch,
+        freedoms=decision.basis.shape[1],
+        twists=twists,
+        evidence=tuple(sorted({item.patch.kind for item in kept})),
+        status=decision.status,
+        reason=decision.reason,
+        patches=tuple(sorted(item.index for item in kept)),
+        blockers=blockers,
+        singular_values=decision.singular_values,
+        motion=in_words(decision.basis, frame),
+    )
+
+
+def stated_joint(
+    bodies: tuple[BodyName, BodyName],
+    kind: str,
+    axis: Array | None,
+    point: Array | None,
+    axis2: Array | None,
+    pitch: float | None,
+    *,
+    evidence: str,
+    reason: str,
+    patches: tuple[int, ...] = (),
+) -> Joint:
+    """A joint that somebody stated: an assumption, or the function of a stick body."""
+    direction = None if axis is None else canonical(axis)
+    centre = np.zeros(3) if point is None and kind in ("planar", "prismatic") else point
+    return Joint(
+        name=JointName(f"{bodies[0]}~{bodies[1]}"),
+        bodies=bodies,
+        type=kind,
+        axis=direction,
+        point=centre if kind != "fixed" else None,
+        axis2=None if axis2 is None else canonical(axis2),
+        pitch=pitch,
+        freedoms=FREEDOMS[kind],
+        twists=twists_of(kind, direction, centre, pitch, axis2),
+        evidence=(evidence,),
+        status="inferred",
+        reason=reason,
+        patches=patches,
+        blockers=(),
+        singular_values=np.full(6, np.nan),
+    )
+
+
+def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
+    """Greatest angle (rad) and offset (m) between the two sides of the kept patches, beyond what
+    their clearance and the uncertainty of the fits allow; 0 where there is none."""
+    angle = offset = 0.0
+    for k in decision.kept:
+        item = evidence.items[k]
+        patch = item.patch
+        if patch.one_sided:
+            continue
+        clearance = max(patch.gap, 0.0) if patch.kind in COAXIAL else 0.0
+        engaged = float(np.ptp(item.points @ patch.axis)) if patch.kind in COAXIAL else 0.0
+        allowed = 2.0 * clearance / engaged if engaged > 0.0 else 0.0
+        excess = patch.misalignment - allowed - 3.0 * patch.uncertainty[0]
+        angle = max(angle, excess if excess > 1e-4 else 0.0)
+        if patch.kind in (*COAXIAL, "sphere"):
+            far = patch.offset - max(patch.gap, 0.0) - 3.0 * patch.uncertainty[1] - patch.chord
+            offset = max(offset, far if far > 1e-4 * evidence.frame.length else 0.0)
+    return angle, offset

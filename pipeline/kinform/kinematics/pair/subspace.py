@@ -1,0 +1,134 @@
+"""Names a space of relative motions: which lower pair it is, with its axis, point and pitch.
+
+The lower pairs are the Lie subgroups that surfaces allow; a basis of the twist space is enough to
+tell them (Hervé 1978; Gelfand and Guibas 2004). Anything else is `general`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.displacements import cross_matrix
+from kinform.foundation.algebra.screws import Frame, canonical, cross, perpendicular, rotation, translation
+from kinform.model.arrays import Array
+
+__all__ = ["JointForm", "name_space", "nearest_pair"]
+
+
+EXACT = 1e-6
+"""Twist spaces come out of snapped rows: what is zero is zero to rounding."""
+
+NEAR = 0.02
+"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointForm:
+    """Type of a joint with its geometry in the world; None where the type has none."""
+
+    type: str
+    axis: Array | None = None
+    point: Array | None = None
+    pitch: float | None = None
+
+
+def name_space(basis: Array, frame: Frame) -> JointForm:
+    """The joint whose freedoms are the columns of `basis` (6, k), scaled twists in `frame`."""
+    freedoms = basis.shape[1]
+    if freedoms == 0:
+        return JointForm("fixed")
+    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+    turns = int(np.count_nonzero(values > EXACT))
+    mixed = basis @ right.T
+    if freedoms == 1:
+        return _one(mixed[:, 0], turns, frame)
+    slides = mixed[3:, turns:]
+    if turns == 1:
+        return _one_turn(mixed[:, 0], slides, frame)
+    if turns == 3 and freedoms == 3:
+        return _three_turns(basis, frame)
+    return JointForm("general")
+
+
+def nearest_pair(basis: Array, frame: Frame) -> Array | None:
+    """Orthonormal basis (6, k) of the lower pair that the space (6, k) nearly is; None if there is none.
+
+    Motions found patch by patch do not quite form a group: their directions differ by what the patches
+    tolerate. Whether the patches preserve the lower pair is for the caller to test.
+    """
+    freedoms = basis.shape[1]
+    if freedoms == 0:
+        return None
+    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+    turns = int(np.count_nonzero(values > NEAR))
+    mixed = basis @ right.T
+    if freedoms == 3 and turns == 3:
+        centre = _centre(basis, frame, NEAR)
+        return None if centre is None else _orthonormal([rotation(e, centre, frame) for e in np.eye(3)])
+    slides = mixed[3:, turns:]
+    if turns == 0 or turns > 1:
+        return None
+    axis, point, lead = _axis_of(mixed[:, 0], frame)
+    if freedoms == 1:
+        return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR * frame.length else None
+    if freedoms == 2 and np.linalg.norm(cross(axis, slides[:, 0])) < NEAR:
+        return _orthonormal([rotation(axis, point, frame), translation(axis)])
+    if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR:
+        normal = cross(slides[:, 0], slides[:, 1])
+        normal /= np.linalg.norm(normal)
+        u, v = perpendicular(normal)
+        return _orthonormal([rotation(normal, frame.centre, frame), translation(u), translation(v)])
+    return None
+
+
+def _orthonormal(twists: list[Array]) -> Array:
+    basis: Array = np.linalg.qr(np.array(twists).T)[0]
+    return basis
+
+
+def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
+    """Unit axis, its point nearest to the centre (m), and the slide per turn (m a radian)."""
+    omega, velocity = twist[:3] / frame.length, twist[3:]
+    square = float(omega @ omega)
+    point = frame.centre + cross(omega, velocity) / square
+    return omega / math.sqrt(square), point, float(omega @ velocity) / square
+
+
+def _one(twist: Array, turns: int, frame: Frame) -> JointForm:
+    if turns == 0:
+        return JointForm("prismatic", canonical(twist[3:]), frame.centre)
+    axis, point, lead = _axis_of(twist, frame)
+    if abs(lead) < EXACT * frame.length:
+        return JointForm("revolute", canonical(axis), point)
+    return JointForm("screw", canonical(axis), point, 2.0 * math.pi * lead)
+
+
+def _one_turn(turn: Array, slides: Array, frame: Frame) -> JointForm:
+    axis = turn[:3] / np.linalg.norm(turn[:3])
+    along = np.linalg.norm(axis @ slides)
+    if slides.shape[1] == 1 and along > 1.0 - EXACT:
+        _, point, _ = _axis_of(turn, frame)
+        return JointForm("cylindrical", canonical(axis), point)
+    if slides.shape[1] == 2 and along < EXACT:
+        return JointForm("planar", canonical(axis), frame.centre)
+    return JointForm("general")
+
+
+def _three_turns(basis: Array, frame: Frame) -> JointForm:
+    """Spherical when one point rests under all three turns: v = ω × (c − o) for a single o."""
+    centre = _centre(basis, frame, 10.0 * EXACT)
+    return JointForm("general") if centre is None else JointForm("spherical", None, centre)
+
+
+def _centre(basis: Array, frame: Frame, tolerance: float) -> Array | None:
+    """The point (m) that rests under all three turns, or None if they miss it by more than `tolerance`."""
+    matrix = np.vstack([cross_matrix(basis[:3, k]) for k in range(3)])
+    right = np.concatenate([basis[3:, k] for k in range(3)])
+    offset, *_ = np.linalg.lstsq(matrix, right, rcond=None)
+    if float(np.abs(matrix @ offset - right).max()) > tolerance:
+        return None
+    centre: Array = frame.centre - frame.length * offset
+    return centre

@@ -1,0 +1,1 @@
+"""Questions of users about freedoms and joints."""

@@ -1,0 +1,102 @@
+"""Every intended joint of [function] as queries: are the freedoms there that the designer wants?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.design import Design
+from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.kinematics.questions.query import QueryAnswer, ask
+from kinform.model.arrays import Array
+from kinform.model.function import IntendedJoint
+
+__all__ = ["IntendedAnswer", "IntendedMotion", "intended_answers"]
+
+
+@dataclass(frozen=True, eq=False)
+class IntendedMotion:
+    """One freedom of an intended joint: turn, slide or screw by the twist (ω; v at the world's origin)."""
+
+    kind: str
+    twist: Array
+    answer: QueryAnswer
+
+
+@dataclass(frozen=True, eq=False)
+class IntendedAnswer:
+    """Are the freedoms of an intended joint there? `free` is None where the function does not say which they are."""
+
+    joint: IntendedJoint
+    free: bool | None
+    motions: tuple[IntendedMotion, ...]
+    text: str
+
+
+def intended_answers(design: Design) -> tuple[IntendedAnswer, ...]:
+    """The answer for each joint of [function], in the order of the manifest."""
+    return tuple(_answer(design, joint) for joint in design.assembly.function.joints)
+
+
+def _answer(design: Design, joint: IntendedJoint) -> IntendedAnswer:
+    assert design.kinematics is not None
+    bodies = [design.kinematics.body_of(design.assembly.parts_of(name)[0]).name for name in joint.between]
+    if joint.type == "fixed":
+        return _fixed(design, joint, bodies)
+    wanted = _motions(joint)
+    if not wanted:
+        return IntendedAnswer(joint, None, (), f"the {joint.type} joint states no axis or point")
+    asked = tuple(IntendedMotion(kind, twist, ask(design, *joint.between, twist, kind)) for kind, twist in wanted)
+    missing = [item for item in asked if not item.answer.free_in_assembly]
+    if not missing:
+        return IntendedAnswer(joint, True, asked, "every freedom is there, in the whole assembly")
+    if bodies[0] == bodies[1]:
+        return IntendedAnswer(joint, False, asked, "both sides are one body")
+    return IntendedAnswer(joint, False, asked, f"of {len(asked)} freedoms {len(missing)} not there, or one way only")
+
+
+def _fixed(design: Design, joint: IntendedJoint, bodies: Sequence[str]) -> IntendedAnswer:
+    assert design.kinematics is not None
+    if bodies[0] == bodies[1]:
+        return IntendedAnswer(joint, True, (), "both sides are one body")
+    index = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
+    freedoms = design.kinematics.mobility.freedoms
+    relative = freedoms[:, index[bodies[1]]] - freedoms[:, index[bodies[0]]]
+    moves = bool(len(relative)) and float(np.abs(relative).max()) > 1e-9
+    text = (
+        "they move relative to each other" if moves else "they are two bodies that do not move relative to each other"
+    )
+    return IntendedAnswer(joint, not moves, (), text)
+
+
+def _motions(joint: IntendedJoint) -> list[tuple[str, Array]]:
+    """The freedoms that the joint has, as the designer states them; none where axis or point are missing."""
+    axis, axis2, point = joint.axis, joint.axis2, joint.point
+    if joint.type == "spherical":
+        return [] if point is None else [_turn(e, point) for e in np.eye(3)]
+    if axis is None or (joint.type not in ("prismatic", "planar") and point is None):
+        return []
+    if joint.type == "prismatic":
+        return [_slide(axis)]
+    if joint.type == "planar":
+        return [*([] if point is None else [_turn(axis, point)]), *(_slide(d) for d in perpendicular(axis))]
+    assert point is not None
+    if joint.type == "cylindrical":
+        return [_turn(axis, point), _slide(axis)]
+    if joint.type == "screw":
+        _, twist = _turn(axis, point)
+        lead = (joint.pitch or 0.0) / (2.0 * np.pi)
+        return [("screw", twist + np.concatenate([np.zeros(3), lead * axis]))]
+    if joint.type == "universal":
+        return [] if axis2 is None else [_turn(axis, point), _turn(axis2, point)]
+    return [_turn(axis, point)]
+
+
+def _turn(axis: Array, point: Array) -> tuple[str, Array]:
+    return "turn", np.concatenate([axis, cross(point, axis)])
+
+
+def _slide(direction: Array) -> tuple[str, Array]:
+    return "slide", np.concatenate([np.zeros(3), direction])

@@ -1,0 +1,72 @@
+"""What two bodies may do relative to each other when loose parts between them take part.
+
+A pin, a bearing or a screw that the function does not name carries a joint between two bodies that
+it does name. The relative motion is then decided by all of them: the closure of the two bodies, their
+direct contact and the helpers that connect them, everything else left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.pair.subspace import JointForm, name_space
+from kinform.model.kinematics import Joint, Kinematics
+
+__all__ = ["Relative", "relative"]
+
+
+@dataclass(frozen=True, eq=False)
+class Relative:
+    """Relative motion of two bodies through helpers."""
+
+    form: JointForm
+    freedoms: int
+    helpers: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    """All that take part, in the order of the kinematics."""
+
+
+def relative(kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]) -> Relative | None:
+    """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
+    no such body connects the two."""
+    fixed = {body.name for body in kinematics.bodies if body.ground}
+    helpers = [b.name for b in kinematics.bodies if b.name not in named | fixed | {first, second}]
+    used = _connecting(kinematics.joints, first, second, set(helpers))
+    if not used:
+        return None
+    nodes = [first, second, *(name for name in helpers if name in used)]
+    index = {name: k for k, name in enumerate(nodes)}
+    joints = [j for j in kinematics.joints if j.bodies[0] in index and j.bodies[1] in index]
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
+    spaces = [j.twists for j in joints]
+    twists = body_twists(close(len(nodes), edges, spaces, 0), edges, spaces)[:, 1, :]
+    points = np.array([j.point for j in joints if j.point is not None])
+    frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
+    basis = span(scaled(twists.T, frame))
+    names = tuple(sorted(used))
+    return Relative(name_space(basis, frame), basis.shape[1], names, tuple(joints))
+
+
+def _connecting(joints: tuple[Joint, ...], first: str, second: str, helpers: set[str]) -> set[str]:
+    """Helpers reached from `first` over helpers alone, if `second` is reached too; else none."""
+    near: dict[str, set[str]] = {}
+    for joint in joints:
+        a, b = joint.bodies
+        near.setdefault(a, set()).add(b)
+        near.setdefault(b, set()).add(a)
+    reached: set[str] = set()
+    queue = sorted(near.get(first, set()) & helpers)
+    arrived = False
+    while queue:
+        name = queue.pop()
+        if name in reached:
+            continue
+        reached.add(name)
+        arrived = arrived or second in near[name]
+        queue.extend(sorted(near[name] & helpers - reached))
+    return reached if arrived else set()

@@ -1,0 +1,1 @@
+"""What comes apart: contact pushes and does not pull."""

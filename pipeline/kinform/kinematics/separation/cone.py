@@ -1,0 +1,239 @@
+"""The cone {V : R V ≥ 0} of motions that unilateral contacts allow: is it more than its null space, and how.
+
+V is a scaled twist, R has a row for each extreme sample. The null space of R is the contact-preserving
+motion; what else the cone holds breaks contact (Sinha, Gupta, Paredis, Khosla 2002). By Stiemke's
+lemma there is nothing else exactly when some λ > 0 has Rᵀλ = 0. That certificate is looked for with
+Newton's method on Σ exp(−R V), for all pairs at once; only where it is not found a linear program decides.
+Extreme directions come from the double description method (Motzkin et al. 1953). This module knows no
+bodies and no patches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.model.arrays import Array
+
+__all__ = [
+    "Opening",
+    "extreme_rays",
+    "grams",
+    "held_for_certain",
+    "opening",
+    "reduced",
+    "unit_rows",
+    "unit_rows_of",
+    "within",
+]
+
+
+FREE = 1e-4
+"""Speeds over the size of a unit twist below which rows do not move: rounding of meshes and of HiGHS."""
+HELD = 2e-3
+"""Speeds above which they do; in between nobody knows."""
+EQUAL = 1e-6
+"""A row counts as tight below this, and two rows as one."""
+MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
+"""Odd factors by which rows that are not equal hardly ever sum up to the same."""
+CERTAIN = 1e-6
+"""Least λ over the greatest of a certificate."""
+STEPS = 25
+"""Newton steps; certificates are found within a few."""
+FAR = 40.0
+"""Exponent at which the sum has evidently no minimum."""
+MOST_RAYS = 48
+"""Rays at an intermediate step beyond which there are too many to list."""
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """What the linear program says: `held` is None where rows open by more than rounding and less than a fact."""
+
+    held: bool | None
+    motion: Array
+    """(6,) scaled twist that opens the contact most; zero where held."""
+    speed: float
+    """Of the row that opens fastest, for components of the motion up to 1."""
+
+
+def unit_rows(rows: Array) -> Array:
+    """The rows (n, 6) scaled to length 1, without those that say nothing and those that say the same twice."""
+    return unit_rows_of(rows, np.zeros(len(rows), dtype=np.int64))[0]
+
+
+def unit_rows_of(rows: Array, group: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
+    size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
+    long = size > 1e-3
+    rows, group = rows[long] / size[long, None], group[long]
+    if len(rows) < 2:
+        return rows, group
+    keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL)
+    order = (keys @ MIX[: keys.shape[1]]).argsort(kind="stable")
+    ordered = keys[order]
+    again = (ordered[1:] == ordered[:-1]).all(axis=1)
+    if not again.any():
+        return rows, group
+    kept = np.ones(len(rows), dtype=np.bool_)
+    kept[order[1:][again]] = False
+    return rows[kept], group[kept]
+
+
+def within(rows: Array, fixed: Array) -> Array:
+    """Unit rows as they are seen by twists that the orthonormal rows `fixed` (k, 6) do not see."""
+    return unit_rows(rows - (rows @ fixed.T) @ fixed) if len(fixed) else rows
+
+
+def reduced(rows: Array) -> tuple[Array, Array]:
+    """Bases (d, c) of the directions that unit rows (n, d) oppose and (d, d − c) of those they preserve."""
+    if not len(rows):
+        return np.zeros((rows.shape[1], 0)), np.eye(rows.shape[1])
+    values, vectors = np.linalg.eigh(rows.T @ rows)
+    moved = values > FREE**2 * len(rows)
+    return vectors[:, moved], vectors[:, ~moved]
+
+
+def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
+    """For each pair of bodies with unit rows (n, 6): is there λ > 0 with Rᵀλ = 0, so that nothing can leave?
+
+    True is proven. False says only that no such λ was found.
+    """
+    found = np.zeros(len(pairs), dtype=bool)
+    active = np.array([k for k, rows in enumerate(pairs) if len(rows) > 1], dtype=np.int64)
+    if not len(active):
+        return found
+    rows = np.concatenate([pairs[k] for k in active])
+    counts = np.array([len(pairs[k]) for k in active])
+    values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
+    loose = values < FREE**2 * counts[:, None]
+    still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
+    at = np.zeros((len(active), 6))
+    for _ in range(STEPS):
+        exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
+        weight = np.exp(-np.clip(exponent, -FAR, FAR))
+        start = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
+        pull -= np.einsum("pij,pj->pi", still, pull)
+        system = grams(rows, weight, counts)
+        scale = np.trace(system, axis1=1, axis2=2)[:, None, None]
+        step = np.linalg.solve(system + scale * (still + 1e-15 * np.eye(6)), pull[:, :, None])[:, :, 0]
+        change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
+        certificate = weight * (1.0 - change)
+        # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
+        proven = np.minimum.reduceat(certificate, start) > CERTAIN * np.maximum.reduceat(weight, start)
+        found[active[proven]] = True
+        longest = np.maximum.reduceat(np.abs(change), start)
+        at = at + step * np.minimum(1.0, 2.0 / np.maximum(longest, 1e-300))[:, None]
+        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR)
+        if not keep.any():
+            break
+        chosen = np.repeat(keep, counts)
+        rows, counts, active, at, still = rows[chosen], counts[keep], active[keep], at[keep], still[keep]
+    return found
+
+
+def grams(rows: Array, weight: Array, counts: NDArray[np.int64]) -> Array:
+    """(pairs, 6, 6) Σ w r rᵀ of each pair's rows, one pair's after the other's and at least one of each."""
+    start = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    products = weight[:, None, None] * rows[:, :, None] * rows[:, None, :]
+    return np.asarray(np.add.reduceat(products, start, axis=0))
+
+
+def opening(rows: Array) -> Opening:
+    """Primal: max 1ᵀRV/n with RV ≥ 0, |V|∞ ≤ 1; "held" must be confirmed by the dual Rᵀλ = 0, λ ≥ 1.
+
+    `rows` (n, 6), unit.
+    """
+    from scipy.optimize import linprog
+
+    basis, _ = reduced(rows)
+    if basis.shape[1] == 0:
+        return Opening(True, np.zeros(6), 0.0)
+    inner = rows @ basis
+    found = linprog(-inner.mean(axis=0), A_ub=-inner, b_ub=np.zeros(len(inner)), bounds=(-1.0, 1.0), method="highs")
+    if found.status != 0:
+        return Opening(None, np.zeros(6), 0.0)
+    speed = float((inner @ found.x).max())
+    if speed > HELD:
+        return Opening(False, basis @ found.x, speed)
+    if speed >= FREE:
+        return Opening(None, basis @ found.x, speed)
+    dual = linprog(np.ones(len(inner)), A_eq=inner.T, b_eq=np.zeros(inner.shape[1]), bounds=(1.0, None), method="highs")
+    return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
+
+
+def extreme_rays(rows: Array) -> Array | None:
+    """Extreme rays (k, d), unit, of {x : rows x ≥ 0} without its lineality; None where they are too many.
+
+    `rows` (n, d), unit. The rays are perpendicular to the lineality. Rows tight within rounding count as tight.
+    """
+    if len(rows) == 1:
+        return rows
+    basis, _ = reduced(rows)
+    inner = rows @ basis
+    size = inner.shape[1]
+    if size == 0:
+        return np.zeros((0, rows.shape[1]))
+    first = _independent(inner)
+    corner = np.linalg.inv(inner[first]).T
+    rays = np.asarray(corner / np.linalg.norm(corner, axis=1)[:, None], dtype=np.float64)
+    done = list(first)
+    rest = [k for k in range(len(inner)) if k not in set(first)]
+    while rest:
+        # the row that most rays violate cuts most away
+        speeds = rays @ inner[rest].T
+        broken = (speeds < -EQUAL).sum(axis=0)
+        done += [k for k, n in zip(rest, broken, strict=True) if n == 0]
+        rest = [k for k, n in zip(rest, broken, strict=True) if n > 0]
+        if not rest:
+            break
+        broken = broken[broken > 0]
+        chosen = rest.pop(int(np.argmax(broken)))
+        cut = _cut(rays, inner, done, inner[chosen])
+        if cut is None:
+            return None
+        rays = cut
+        done.append(chosen)
+        if not len(rays):
+            break
+    return rays @ basis.T
+
+
+def _independent(inner: Array) -> list[int]:
+    """Indices of rows that span their space, each as far as possible from those before."""
+    left, chosen = inner.copy(), []
+    for _ in range(inner.shape[1]):
+        size = np.linalg.norm(left, axis=1)
+        best = int(np.argmax(np.round(size, 9)))
+        chosen.append(best)
+        unit = left[best] / size[best]
+        left = left - np.outer(left @ unit, unit)
+    return chosen
+
+
+def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | None:
+    """The rays after one more row: those inside, and where edges of the cone cross it."""
+    speed = rays @ row
+    inside, outside = np.flatnonzero(speed > EQUAL), np.flatnonzero(speed < -EQUAL)
+    kept = rays[speed >= -EQUAL]
+    if not len(inside):
+        return kept
+    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL
+    common = (tight[inside][:, None] & tight[outside][None]).reshape(-1, tight.shape[1])
+    a, b = (x.ravel() for x in np.meshgrid(inside, outside, indexing="ij"))
+    enough = common.sum(axis=1) >= rays.shape[1] - 2
+    a, b, common = a[enough], b[enough], common[enough]
+    # neighbours: no third ray is tight wherever both are
+    shared = common.astype(np.float32) @ (~tight).astype(np.float32).T == 0.0
+    neighbours = shared.sum(axis=1) == 2
+    a, b = a[neighbours], b[neighbours]
+    new = rays[b] * speed[a][:, None] - rays[a] * speed[b][:, None]
+    new /= np.maximum(np.linalg.norm(new, axis=1), 1e-300)[:, None]
+    if len(kept) + len(new) > MOST_RAYS:
+        return None
+    return np.vstack([kept, new])

@@ -1,0 +1,314 @@
+"""What can leave the assembly, ground held: one linear program a block of the graph of contacts.
+
+In a block each pair that contact holds is bilateral; each other pair j may open, by JV ≥ 0, and opens by s_j.
+Maximising Σ s_j with s_j ≤ 1 over a cone opens every pair that can open at once: what opens is known from a
+single solution, for a sum of motions in the cone is in the cone. Bodies that stay together after all that
+opens are gone make a set; it leaves alone where its own contacts with the rest have a cone, else together with
+its neighbours. Blocks know nothing of each other, as in the closure of loops.
+
+Contact that fuses bodies is looked at too: a block in a corner has no freedom, and is not held.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.screws import Frame, cross, scaled, twist_at_origin
+from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.kinematics.pair.answer import Answers, ask
+from kinform.kinematics.separation.cone import HELD, reduced, unit_rows, within
+from kinform.kinematics.separation.contact_rows import Cone, ContactRows, stated
+from kinform.kinematics.separation.releases import certainly_held, cone_of, released
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Body, Joint, Release, Separation
+from kinform.model.names import BodyName, JointName
+
+__all__ = ["Link", "links_between", "separations"]
+
+
+MOST_ROWS = 12_000
+"""Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
+MOST_TOGETHER = 8
+"""Bodies up to which those are told that leave together."""
+LARGEST = 1.0 / HELD
+"""Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """Two bodies in contact. `cone` is None where nothing opens: then `twists` (f, 6) are its freedoms."""
+
+    name: JointName
+    ends: tuple[int, int]
+    cone: Cone | None
+    twists: Array
+    slides: tuple[Release, ...] | None = None
+    """In which the second leaves the first; None where not known yet."""
+
+
+def links_between(
+    clusters: Sequence[Body],
+    bodies: Sequence[Body],
+    joints: Sequence[Joint],
+    patches: Sequence[Patch],
+    rows: ContactRows,
+) -> list[Link]:
+    """Links of contact between clusters (bodies, or parts that contact alone fuses), and of stated joints."""
+    cluster = {part: k for k, item in enumerate(clusters) for part in item.parts}
+    body = {part: item.name for item in bodies for part in item.parts}
+    owner = {joint.bodies: joint for joint in joints}
+    carried = {joint.bodies: {*joint.patches, *(b.patch for b in joint.blockers)} for joint in joints}
+    members: dict[tuple[int, int], list[tuple[int, bool]]] = defaultdict(list)
+    for k, patch in enumerate(patches):
+        a, b = (cluster[part] for part in patch.parts)
+        pair = tuple(sorted(body[part] for part in patch.parts))
+        used = pair[0] == pair[1] or (pair in carried and not stated(owner[pair]) and k in carried[pair])
+        if a != b and used and len(patch.points):
+            members[(a, b) if a < b else (b, a)].append((k, a > b))
+    pairs = sorted(members)
+    cones = rows.cones([members[pair] for pair in pairs])
+    certain = iter(certainly_held([cone for cone in cones if cone is not None]))
+    slides = {joint.name: tuple(way for way in joint.releases if way.kind == "slide") for joint in joints}
+    out = []
+    for (a, b), cone in zip(pairs, cones, strict=True):
+        if cone is None:
+            continue
+        name = JointName(f"{clusters[a].name}~{clusters[b].name}")
+        kept = twist_at_origin(cone.preserved, cone.frame).T
+        out.append(Link(name, (a, b), None if next(certain) else cone, kept, slides.get(name)))
+    for joint in joints:
+        if stated(joint):
+            ends = [min(cluster[p] for p in rows.parts_of(name)) for name in joint.bodies]
+            out.append(Link(joint.name, (ends[0], ends[1]), None, joint.twists))
+    return out
+
+
+def separations(
+    names: Sequence[BodyName], ground: int, links: Sequence[Link], answers: Answers | None = None
+) -> tuple[tuple[Separation, ...], str]:
+    """What can leave, and why it is not known of the rest ("" where it is)."""
+    opened: set[int] = set()
+    reason = ""
+    for block in blocks(len(names), [link.ends for link in links]):
+        loose = [k for k in block if links[k].cone is not None]
+        if not loose:
+            continue
+        if len(block) == 1:
+            opened.update(loose)
+            continue
+        own = [links[k] for k in block]
+        given = [(link.ends, link.cone, link.twists) for link in own]
+        solved = ask(answers, "opened", given, partial(_opened, own))
+        if solved is None:
+            reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
+            continue
+        opened.update(block[k] for k in solved)
+    found, missing = _sets(names, ground, links, opened)
+    if missing:
+        more = f"{missing} more can move out of contact, but only together with many others, or while these move too"
+        reason = f"{reason}; {more}" if reason else more
+    return found, reason
+
+
+def _opened(links: Sequence[Link]) -> tuple[int, ...] | None:
+    """Indices of the links of one block that can open together; None where the program is too large or fails."""
+    from scipy.optimize import linprog
+    from scipy.sparse import coo_matrix
+
+    nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
+    loose = [k for k, link in enumerate(links) if link.cone is not None]
+    frame = _common([link.cone.frame for link in links if link.cone is not None])
+    turned = [_in_frame(link, frame) for link in links]
+    if sum(map(len, turned)) > MOST_ROWS:
+        return None
+    width = 6 * (len(nodes) - 1)
+    less: list[tuple[Array, int, int, int]] = []
+    equal: list[tuple[Array, int, int, int]] = []
+    for k, link in enumerate(links):
+        a, b = (6 * (nodes[n] - 1) for n in link.ends)
+        if link.cone is None:
+            equal.append((turned[k], a, b, -1))
+        else:
+            equal.append((moved_rows(link.cone.fixed, link.cone.frame, frame), a, b, -1))
+            less.append((-turned[k], a, b, -1))
+            less.append((-turned[k].mean(axis=0, keepdims=True), a, b, width + loose.index(k)))
+
+    def stacked(items: list[tuple[Array, int, int, int]]) -> tuple[coo_matrix | None, NDArray[np.float64]]:
+        data, i, j, at = [], [], [], 0
+        for rows, a, b, slack in items:
+            own = np.arange(at, at + len(rows))
+            for sign, column in ((-1.0, a), (1.0, b)):
+                if column >= 0:
+                    data.append((sign * rows).ravel())
+                    i.append(np.repeat(own, 6))
+                    j.append(np.tile(np.arange(column, column + 6), len(rows)))
+            if slack >= 0:
+                data.append(np.ones(len(rows)))
+                i.append(own)
+                j.append(np.full(len(rows), slack))
+            at += len(rows)
+        if not at:
+            return None, np.zeros(0)
+        shape = (at, width + len(loose))
+        return coo_matrix((np.concatenate(data), (np.concatenate(i), np.concatenate(j))), shape).tocsr(), np.zeros(at)
+
+    upper, zero = stacked(less)
+    fixed, none = stacked(equal)
+    bound = np.concatenate([np.full(width, LARGEST), np.ones(len(loose))])
+    lowest = np.concatenate([np.full(width, -LARGEST), np.zeros(len(loose))])
+    aim = np.concatenate([np.zeros(width), -np.ones(len(loose))])
+    found = linprog(
+        aim, A_ub=upper, b_ub=zero, A_eq=fixed, b_eq=none if fixed is not None else None,
+        bounds=np.stack([lowest, bound], axis=1), method="highs",
+    )  # fmt: skip
+    if found.status != 0:
+        return None
+    return tuple(loose[k] for k in np.flatnonzero(found.x[width:] > 0.5))
+
+
+def _common(frames: Sequence[Frame]) -> Frame:
+    centres = np.array([frame.centre for frame in frames])
+    whole = Frame.of(centres)
+    length = whole.length if len(frames) > 1 and np.ptp(centres, axis=0).any() else 0.0
+    return Frame(whole.centre, max(length, *(frame.length for frame in frames)))
+
+
+def _in_frame(link: Link, frame: Frame) -> Array:
+    """Unit rows (n, 6) of a link against twists scaled in `frame`: what opens, or what is held."""
+    if link.cone is None:
+        free = scaled(link.twists.T, frame)
+        held, _ = np.linalg.qr(free, mode="complete") if free.shape[1] else (np.eye(6), None)
+        rows: Array = held[:, free.shape[1] :].T
+        return rows
+    return moved_rows(link.cone.rows, link.cone.frame, frame)
+
+
+def moved_rows(rows: Array, own: Frame, frame: Frame) -> Array:
+    """Rows (n, 6) against twists scaled in `own` as rows against twists scaled in `frame`."""
+    normals = rows[:, 3:]
+    moments = rows[:, :3] * own.length + cross(own.centre - frame.centre, normals)
+    return np.hstack([moments / frame.length, normals])
+
+
+def _sets(
+    names: Sequence[BodyName], ground: int, links: Sequence[Link], opened: set[int]
+) -> tuple[tuple[Separation, ...], int]:
+    """The sets of bodies between opened links, how each leaves the rest, and how many need too many others."""
+    together = UnionFind(len(names))
+    for k, link in enumerate(links):
+        if k not in opened:
+            together.union(*link.ends)
+    members: dict[int, list[int]] = defaultdict(list)
+    for n in range(len(names)):
+        members[together.find(n)].append(n)
+    sides = _sides(links, sorted(opened), together)
+    out: dict[tuple[BodyName, ...], Separation] = {}
+    missing = 0
+    for start in sorted(sides):
+        if start == together.find(ground):
+            continue
+        group = _smallest(start, together.find(ground), sides)
+        ways = _ways(group, sides)
+        if not ways:
+            missing += 1
+            continue
+        bodies = tuple(sorted(names[n] for g in group for n in members[g]))
+        border = {side.name for g in group for side in sides[g] if side.other not in group}
+        out[bodies] = Separation(bodies, tuple(sorted(border)), ways)
+    return tuple(out[key] for key in sorted(out)), missing
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """An opened link as one of its ends sees it."""
+
+    name: JointName
+    other: int
+    cone: Cone
+    sign: float
+    """1 where this end is the second body of the link."""
+    slides: Array
+    """(k, 3) unit directions in which this end leaves the other."""
+    extreme: bool
+    """Whether these are all extreme ones."""
+
+
+def _sides(links: Sequence[Link], opened: Sequence[int], together: UnionFind) -> dict[int, list[_Side]]:
+    out: dict[int, list[_Side]] = defaultdict(list)
+    for k in opened:
+        link = links[k]
+        assert link.cone is not None
+        first, second = (together.find(end) for end in link.ends)
+        ways = link.slides
+        if ways is None:
+            ways = tuple(way for way in cone_of(link.cone, turns=False).releases if way.kind == "slide")
+        slides = np.array([way.direction for way in ways]).reshape(-1, 3)
+        extreme = all(way.extreme for way in ways)
+        out[first].append(_Side(link.name, second, link.cone, -1.0, -slides, extreme))
+        out[second].append(_Side(link.name, first, link.cone, 1.0, slides, extreme))
+    return out
+
+
+def _smallest(start: int, rest: int, sides: dict[int, list[_Side]]) -> set[int]:
+    """The smallest set with `start` that slides off along a direction in which one of its contacts opens."""
+    best: set[int] | None = None
+    tried: list[Array] = []
+    for side in sides[start]:
+        for direction in side.slides:
+            if any(np.linalg.norm(direction - other) < 1e-3 for other in tried):
+                continue
+            tried.append(direction)
+            group = _pushed(start, rest, sides, direction)
+            if group is not None and (best is None or len(group) < len(best)):
+                best = group
+    return best or {start}
+
+
+def _pushed(start: int, rest: int, sides: dict[int, list[_Side]], direction: Array) -> set[int] | None:
+    """All that moves when `start` slides along the direction; None where the rest is in the way, or too many move."""
+    group, queue = {start}, [start]
+    while queue:
+        for side in sides[queue.pop()]:
+            if side.other in group or not _in_the_way(side, direction):
+                continue
+            if side.other == rest or len(group) == MOST_TOGETHER:
+                return None
+            group.add(side.other)
+            queue.append(side.other)
+    return group
+
+
+def _in_the_way(side: _Side, direction: Array) -> bool:
+    cone = side.cone
+    if len(cone.fixed) and float(np.abs(cone.fixed[:, 3:] @ direction).max()) > HELD:
+        return True
+    return bool((side.sign * (cone.rows[:, 3:] @ direction)).min() < -HELD)
+
+
+def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]:
+    """How the group, as one body, leaves what it touches."""
+    border = [side for g in sorted(group) for side in sides[g] if side.other not in group]
+    if not border:
+        return ()
+    if len(border) == 1 and len(border[0].slides):  # what it does by this contact alone is known
+        slides = border[0].slides + 0.0
+        order = np.lexsort(np.round(slides, 6).T)[::-1]
+        return tuple(
+            released(np.concatenate([np.zeros(3), slide]), border[0].cone.frame, extreme=border[0].extreme)
+            for slide in slides[order]
+        )
+    frame = border[0].cone.frame if len(border) == 1 else _common([side.cone.frame for side in border])
+    fixed = [moved_rows(side.cone.fixed, side.cone.frame, frame) for side in border]
+    rows = [side.sign * moved_rows(side.cone.rows, side.cone.frame, frame) for side in border]
+    held = reduced(unit_rows(np.concatenate(fixed)))[0].T
+    cone = Cone(held, within(unit_rows(np.concatenate(rows)), held), frame)
+    if certainly_held([cone])[0]:
+        return ()
+    return cone_of(cone, turns=False).releases

@@ -1,0 +1,79 @@
+"""The method, one line a stage: form → surfaces and contacts → joints → mass → motion → findings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from kinform import stages
+from kinform.api import Outcome
+from kinform.design import Design
+from kinform.errors import InputError, Problem
+from kinform.reuse.ledger import Ledger
+
+__all__ = ["Progress", "run"]
+
+Progress = Callable[[str, int, int], None]
+"""Called with the name of the stage, its steps done, and its steps in all."""
+
+
+def run(
+    manifest: str | Path | Sequence[str | Path],
+    output: str | Path | None = None,
+    *,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    allow_outside: bool = False,
+    units: str | None = None,
+    say: Callable[[str], None] | None = None,
+    ranges: bool | None = None,
+    changed: bool = False,
+) -> Outcome:
+    """Everything about a design, from its manifest to the findings.
+
+    `manifest` is a TOML file, or one or several mesh files, which need `units`. With `output` the results
+    are written there in one step, and what is still valid in an earlier file is reused; the result is the
+    same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
+    manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
+    each joint goes; None: where the function states ranges or requirements. `changed`: whether it is known that an earlier
+    file is not what a run would give, and need not be asked.
+
+    Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
+    """
+    plain = units is None and ranges is None and not changed
+    if output is not None and plain and isinstance(manifest, str | Path):
+        unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
+        if unchanged is not None:
+            return unchanged
+    ledger = Ledger.of(output)
+    design = _import(manifest, units, allow_outside, ledger)
+    design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
+    design = stages.joints(design, jobs=jobs, ledger=ledger)
+    design = stages.mass(design, ledger=ledger)
+    design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
+    design = stages.check(design, ledger=ledger)
+    account = ledger.account(design.fingerprints.files)
+    if output is not None:
+        from kinform import results
+
+        ledger.close()
+        results.write(design, output)
+    return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
+
+
+def _import(
+    manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool, ledger: Ledger
+) -> Design:
+    """The assembly of a manifest, or of meshes in place of one."""
+    paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
+    if units is not None:
+        return stages.import_meshes(paths, units=units)
+    if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj"):
+        problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
+        raise InputError([problem])
+    return stages.import_(paths[0], allow_outside=allow_outside, ledger=ledger)
+
+
+def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:
+    """The progress of one stage, as the stage reports it."""
+    return None if progress is None else lambda done, total: progress(stage, done, total)

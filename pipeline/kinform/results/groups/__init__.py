@@ -1,0 +1,1 @@
+"""Groups of the results file, one a module."""

@@ -1,0 +1,1 @@
+"""Reuse of earlier results under one promise: the bytes of a run from nothing."""

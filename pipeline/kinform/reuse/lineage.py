@@ -1,0 +1,69 @@
+"""Whether a results file is what a run would give, told from the files alone: no mesh is parsed, no stage imported.
+
+The lineage of a result is a hash of the files of the design, and of the settings and the versions of the code of its
+stage and of all before it. It says less than a fingerprint, which sees through changes that do not matter, but is had
+at the cost of reading the files once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from kinform.reuse import fingerprints
+from kinform.reuse.digest import digest
+from kinform.version import __version__
+
+__all__ = ["STAGES", "current", "following", "of_files"]
+
+STAGES = ("assembly", "contacts", "joints", "mass", "simulation", "findings")
+_CODE = {stage: (stage,) for stage in STAGES} | {"contacts": ("surfaces", "contacts")}
+
+
+def of_files(manifest: str, files: Mapping[str, str]) -> str:
+    """The lineage of the assembly that a manifest describes; "" where not every file is known."""
+    if manifest not in files:
+        return ""
+    return digest("assembly", __version__, fingerprints.versions_of("assembly"), manifest, dict(files))
+
+
+def following(stage: str, previous: str, level: str | None = None) -> str:
+    """The lineage of a stage's result, from that of the stage before; "" where that is not known."""
+    versions = [fingerprints.versions_of(part) for part in _CODE[stage]]
+    return digest(stage, versions, level, previous) if previous else ""
+
+
+def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
+    """Whether every file has the content that it had. What was written last is looked at first: it is what changed, if
+    anything did."""
+    root = os.path.join(os.path.realpath(top), "")
+    folders: dict[str, str] = {}
+    try:
+        times = {name: os.stat(os.path.join(top, name)).st_mtime_ns for name in files}
+        for name in sorted(files, key=lambda name: -times[name]):
+            path = os.path.join(top, name)
+            if not allow_outside:
+                folder, base = os.path.split(path)
+                if folder not in folders:
+                    folders[folder] = os.path.realpath(folder)
+                whole = os.path.realpath(path) if os.path.islink(path) else os.path.join(folders[folder], base)
+                if not whole.startswith(root):
+                    return False
+            with open(path, "rb") as stream:
+                if hashlib.file_digest(stream, "sha256").hexdigest() != files[name]:
+                    return False
+    except OSError:
+        return False
+    return True
+
+
+def current(manifest: Path, files: Mapping[str, str], *, allow_outside: bool) -> str:
+    """The lineage that the findings of a run would have now, if it read the same files as before; "" otherwise."""
+    if manifest.name not in files or not _same(manifest.parent, files, allow_outside=allow_outside):
+        return ""
+    found = of_files(manifest.name, files)
+    for stage in STAGES[1:]:
+        found = following(stage, found)
+    return found

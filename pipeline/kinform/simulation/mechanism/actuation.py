@@ -1,0 +1,221 @@
+"""What acts on the mechanism: prescribed joints, drives and springs on shafts, loads, stops."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.behaviour.components import (
+    Controller,
+    Damper,
+    DcMotor,
+    EffortDrive,
+    EndStop,
+    MotionDrive,
+    Servo,
+    Spring,
+    System,
+    VoltageSource,
+)
+from kinform.behaviour.shafts import Actor
+from kinform.behaviour.signals import Signal, Spline, smooth
+from kinform.model.arrays import Array, Ints
+from kinform.simulation.kernel import layout
+from kinform.simulation.mechanism.mechanism import Mechanism, Slot
+
+__all__ = ["Acts", "Actuation", "Between", "Push", "Stop"]
+
+
+@dataclass(frozen=True, eq=False)
+class Acts:
+    """A drive, spring or motor on the shaft of a joint, as the kernel takes it."""
+
+    name: str
+    joint: str
+    q: int
+    v: int
+    does: int
+    signal: Signal | None
+    numbers: tuple[float, ...]
+    """In the order of the kernel; see `kernel.forces.drive`."""
+    states: tuple[bool, bool] = (False, False)
+    """Whether it has a first and a second state: current, integral."""
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A load: force and torque at a point of a link, about the mechanism's centre."""
+
+    link: int
+    force: Array
+    torque: Array
+    point: Array
+    turning: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Between:
+    """A spring and damper between points of two links, about the mechanism's centre."""
+
+    first: int
+    second: int
+    point: Array
+    other: Array
+    stiffness: float
+    damping: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A joint's value may not pass `limit` in the direction of `sense` (1 or −1)."""
+
+    joint: str
+    q: int
+    v: int
+    sense: int
+    limit: float
+
+
+class Actuation:
+    """Drives and loads with the rates and links that they act on."""
+
+    def __init__(self, mechanism: Mechanism, system: System, *, with_mass: bool):
+        """`with_mass`: prescribed tables are smoothed, so that finite efforts can follow."""
+        self.notes: list[str] = []
+        self.conflicts: list[tuple[str, str]] = []
+        self.actors: list[Acts] = []
+        self.stops: list[Stop] = []
+        self._led: list[tuple[int, int, Signal, str]] = []
+        self.springs: list[Between] = []
+        self._with_mass = with_mass
+        slots = {slot.name: slot for slot in mechanism.slots}
+        for joint in system.joints:
+            for actor in system.actors(joint.name):
+                self._take(system, slots[joint.subject], actor)
+        self.led_q: Ints = np.array([q for q, _, _, _ in self._led], dtype=np.int64)
+        self.led: Ints = np.array([v for _, v, _, _ in self._led], dtype=np.int64)
+        self.free: Ints = np.setdiff1d(np.arange(mechanism.rates), self.led)
+        self.signals = [signal for _, _, signal, _ in self._led]
+        link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
+        self.loads = [
+            Push(
+                int(link_of[system.body_at(load.name, "frame").subject]),
+                load.force, load.torque, load.point - mechanism.centre, load.turning,
+            )
+            for load in system.loads
+        ]  # fmt: skip
+        for spring in system.springs:
+            first, second = (int(link_of[system.body_at(spring.name, port).subject]) for port in ("a", "b"))
+            ends = spring.point - mechanism.centre, spring.other - mechanism.centre
+            self.springs.append(Between(first, second, *ends, spring.stiffness, spring.damping, spring.rest))
+        self.first_state = len(mechanism.start) + mechanism.rates
+
+    def _take(self, system: System, slot: Slot, actor: Actor) -> None:
+        """Add what acts on the shaft of a joint."""
+        q, v = slot.q.start, slot.v.start
+        if isinstance(actor, MotionDrive):
+            if self._led and self._led[-1][0] == q:
+                self.conflicts.append((slot.name, "two drives prescribe its motion"))
+                return
+            signal = self._followed(actor, slot.kind.coordinates[0][1]) if self._with_mass else actor.signal
+            self._led.append((q, v, signal, actor.name))
+        elif isinstance(actor, EndStop):
+            for sense, limit in ((-1, actor.lower), (1, actor.upper)):
+                if np.isfinite(limit):
+                    self.stops.append(Stop(slot.name, q, v, sense, limit))
+        else:
+            self.actors.append(_acts(system, slot.name, q, v, actor))
+
+    def _followed(self, actor: MotionDrive, turns: bool) -> Signal:
+        """The signal as a body with mass can follow it."""
+        signal = smooth(actor.signal)
+        if isinstance(signal, Spline):
+            deviation = signal.deviation
+            words = f"{math.degrees(deviation):.3g}°" if turns else f"{1e3 * deviation:.3g} mm"
+            curve = "monotone cubic curve" if signal.monotone else "cubic spline"
+            self.notes.append(
+                f"the table that drives {actor.subject} is followed by a {curve} at rest at its ends, "
+                f"within {words} of the table's straight lines"
+            )
+        return signal
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Times at which a signal is not smooth, ascending."""
+        signals = [*self.signals, *(actor.signal for actor in self.actors if actor.signal is not None)]
+        return tuple(sorted({knot for signal in signals for knot in signal.knots}))
+
+    def led_values(self, t: float) -> Array:
+        """(k,) prescribed positions."""
+        return np.array([signal.value(t) for signal in self.signals])
+
+    def led_rates(self, t: float) -> Array:
+        """(k,) prescribed rates."""
+        return np.array([signal.rate(t) for signal in self.signals])
+
+    def led_accelerations(self, t: float) -> Array:
+        """(k,) prescribed accelerations."""
+        return np.array([signal.acceleration(t) for signal in self.signals])
+
+    def held(self, stop: Stop, signal: Signal) -> Actuation:
+        """The same with the joint of the stop held on the signal."""
+        return self._with_led([*self._led, (stop.q, stop.v, signal, stop.joint)])
+
+    def released(self, stop: Stop) -> Actuation:
+        """The same with the joint of the stop free again."""
+        return self._with_led([led for led in self._led if led[1] != stop.v])
+
+    def _with_led(self, led: list[tuple[int, int, Signal, str]]) -> Actuation:
+        out = object.__new__(Actuation)
+        out.__dict__.update(self.__dict__)
+        rates = len(self.free) + len(self.led)
+        out._led = led
+        out.led_q = np.array([q for q, _, _, _ in led], dtype=np.int64)
+        out.led = np.array([v for _, v, _, _ in led], dtype=np.int64)
+        out.free = np.setdiff1d(np.arange(rates), out.led)
+        out.signals = [signal for _, _, signal, _ in led]
+        return out
+
+    def stored(self, q: Array, X: Array) -> Array:
+        """(T,) energy in the springs (J) at positions (T, nq) and poses (T, L, 4, 4)."""
+        total = np.zeros(len(q))
+        for actor in self.actors:
+            if actor.does == layout.SPRING:
+                stiffness, rest = actor.numbers
+                total += 0.5 * stiffness * (q[:, actor.q] - rest) ** 2
+        for spring in self.springs:
+            ends = [
+                X[:, link, :3, :3] @ point + X[:, link, :3, 3]
+                for link, point in ((spring.first, spring.point), (spring.second, spring.other))
+            ]
+            length = np.linalg.norm(ends[1] - ends[0], axis=1)
+            total += 0.5 * spring.stiffness * (length - spring.rest) ** 2
+        return total
+
+
+def _acts(system: System, joint: str, q: int, v: int, actor: Actor) -> Acts:
+    """The actor as the kernel takes it."""
+    name = actor.name
+    if isinstance(actor, EffortDrive):
+        return Acts(name, joint, q, v, layout.EFFORT, actor.signal, ())
+    if isinstance(actor, Spring):
+        return Acts(name, joint, q, v, layout.SPRING, None, (actor.stiffness, actor.rest))
+    if isinstance(actor, Damper):
+        return Acts(name, joint, q, v, layout.DAMPER, None, (actor.damping,))
+    if isinstance(actor, Servo):
+        gains = _gains(actor.controller)
+        return Acts(name, joint, q, v, layout.SERVO, actor.target, gains, (actor.controller.ki != 0.0, False))
+    assert isinstance(actor, DcMotor)
+    motor = (actor.resistance, actor.inductance, actor.constant, actor.gear)
+    supply, current = system.supply(name), actor.inductance > 0.0
+    if isinstance(supply, VoltageSource):
+        return Acts(name, joint, q, v, layout.MOTOR, supply.signal, motor, (current, False))
+    numbers = (*motor, *_gains(supply.controller))
+    return Acts(name, joint, q, v, layout.CONTROLLED, supply.target, numbers, (current, supply.controller.ki != 0.0))
+
+
+def _gains(controller: Controller) -> tuple[float, float, float, float]:
+    return controller.kp, controller.ki, controller.kd, controller.limit

@@ -1,0 +1,90 @@
+"""Closes loops: Newton steps on the positions, and rates that keep them closed.
+
+Redundant loops have dependent rows. How many are independent is decided once, at the start; every solve
+afterwards uses so many singular values, never a tolerance of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.model.arrays import Array, Ints
+from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.solver.settings import SolverSettings
+
+__all__ = ["Factor", "factor", "rank_of", "settle"]
+
+
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """Singular value decomposition of closure rows for some of the rates, cut at a rank."""
+
+    left: Array
+    """(m, r)."""
+    values: Array
+    """(r,) descending."""
+    right: Array
+    """(r, k)."""
+    null: Array
+    """(k, k − r) basis, in rates, of the motions that keep the loops closed."""
+    scale: Array
+    """(k,)."""
+
+    def solve(self, gap: Array) -> Array:
+        """(k,) rates with rows · rates = gap, the smallest in scaled rates."""
+        return np.asarray(self.scale * ((gap @ self.left / self.values) @ self.right))
+
+    def multipliers(self, forces: Array) -> Array:
+        """(m,) smallest λ with rowsᵀ λ = forces (k,), as far as the rank allows."""
+        return np.asarray(self.left @ ((self.right @ (self.scale * forces)) / self.values))
+
+    @property
+    def margin(self) -> float:
+        """Smallest singular value that counts over the largest; 1 without rows."""
+        return float(self.values[-1] / self.values[0]) if len(self.values) else 1.0
+
+
+def factor(rows: Array, scale: Array, rank: int) -> Factor:
+    """Decompose rows (m, k) of rates with these scales at the given rank."""
+    left, values, right = np.linalg.svd(rows * scale, full_matrices=True)
+    if rank and values[rank - 1] <= 0.0:
+        values = np.maximum(values, 1e-300)
+    return Factor(left[:, :rank], values[:rank], right[:rank], scale[:, None] * right[rank:].T, scale)
+
+
+def rank_of(rows: Array, scale: Array, free: float) -> int:
+    """How many rows (m, k) are independent: singular values above `free` times the largest."""
+    if rows.size == 0:
+        return 0
+    values = np.linalg.svd(rows * scale, compute_uv=False)
+    return int(np.count_nonzero(values > free * values[0])) if values[0] > 0.0 else 0
+
+
+def settle(
+    mechanism: Mechanism, q: Array, unknown: Ints, rank: int, settings: SolverSettings
+) -> tuple[Array, float, float]:
+    """Close the loops by moving the `unknown` rates: (positions, gap left, how far they moved).
+
+    Gauss and Newton with steps of least size; stops when closed or when the gap shrinks no more.
+    """
+    scale = mechanism.scale[unknown]
+    moved = np.zeros(len(unknown))
+    best, before = q, np.inf
+    for _ in range(settings.newton):
+        X = mechanism.poses(q)
+        gap = mechanism.gap(X, q)
+        size = float(np.abs(gap).max(initial=0.0))
+        if not size < before:
+            break
+        best, before = q, size
+        if size < settings.closed or rank == 0:
+            break
+        rows = mechanism.closure(mechanism.screws(X))[:, unknown]
+        step = -factor(rows, scale, rank).solve(gap)
+        moved = moved + step / scale
+        whole = np.zeros(mechanism.rates)
+        whole[unknown] = step
+        q = mechanism.advance(q, whole)
+    return best, before, float(np.abs(moved).max(initial=0.0))

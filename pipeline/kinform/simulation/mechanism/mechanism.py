@@ -1,0 +1,201 @@
+"""The mechanism in joint coordinates: a tree of primitive motions, and pairs of links that must coincide.
+
+Everything is in world axes about `centre`. Link 0 is the ground; each primitive motion of a joint makes
+a link. A joint that closes a loop grows a branch without mass from its first body, whose last link must
+coincide with the second body: its coordinates are unknowns like all others, so that closure is one
+condition for every kind of joint (product of exponentials; Park, Bobrow and Ploen 1995).
+
+Positions q hold four numbers for a ball, rates v three; otherwise they agree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.behaviour.joints import JointKind
+from kinform.behaviour.primitives import OneFreedom
+from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
+from kinform.model.arrays import Array, Ints
+
+__all__ = ["BallLink", "Mechanism", "Slot"]
+
+
+IDENTITY = np.eye(4)
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Where the coordinates of one joint are."""
+
+    name: str
+    kind: JointKind
+    q: slice
+    v: slice
+
+    @property
+    def has_ball(self) -> bool:
+        """Whether its positions are a quaternion."""
+        return bool(self.q.stop - self.q.start > self.v.stop - self.v.start)
+
+
+@dataclass(frozen=True, eq=False)
+class BallLink:
+    """A link that turns about a point."""
+
+    link: int
+    q: int
+    v: int
+    point: Array
+    forward: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Constants of the mechanism; n rates, L links."""
+
+    centre: Array
+    """(3,) m."""
+    length: float
+    """m: what makes metres comparable with radians."""
+    bodies: tuple[str, ...]
+    link_of: Ints
+    """(B,) link of each body; 0 for ground and for bodies that nothing connects."""
+    slots: tuple[Slot, ...]
+    """Joints in order."""
+    parent: Ints
+    """(L,) link nearer to the ground; parents come first."""
+    screw_link: Ints
+    """(P,) links that move along a screw."""
+    screw_q: Ints
+    screw_terms: Array
+    """(P, 3, 4, 4): E₁, E₂, E₃ of the exponential."""
+    screw_primitives: tuple[OneFreedom, ...]
+    """(P,) the same, from the parent's side to the link's."""
+    balls: tuple[BallLink, ...]
+    column: Array
+    """(n, 6) twist of each rate at the zero pose."""
+    column_frame: Ints
+    """(n,) link that carries the twist along."""
+    column_link: Ints
+    """(n,) link that the rate moves first."""
+    moves: Array
+    """(L, n) 1 where the rate moves the link."""
+    scale: Array
+    """(n,) 1 for turns, `length` for slides: a rate of one moves points about one length."""
+    closures: Ints
+    """(C, 2) links that must coincide."""
+    gear_v: Array
+    """(G, n) rows of couplings on rates."""
+    gear_q: Array
+    """(G, nq) the same on positions."""
+
+    @property
+    def rates(self) -> int:
+        """Number of rates n."""
+        return len(self.column)
+
+    @property
+    def start(self) -> Array:
+        """Positions at the pose of the meshes."""
+        q = np.zeros(self.gear_q.shape[1])
+        for slot in self.slots:
+            if slot.has_ball:
+                q[slot.q.start] = 1.0
+        return q
+
+    @property
+    def closed(self) -> bool:
+        """Whether there is anything to close."""
+        return len(self.closures) + len(self.gear_v) > 0
+
+    def poses(self, q: Array) -> Array:
+        """(L, 4, 4) displacement of each link from the zero pose."""
+        values = q[self.screw_q]
+        factors = np.empty((len(values), 1, 3))
+        factors[:, 0, 0], factors[:, 0, 1], factors[:, 0, 2] = values, np.sin(values), 1.0 - np.cos(values)
+        motions = IDENTITY + (factors @ self.screw_terms.reshape(-1, 3, 16)).reshape(-1, 4, 4)
+        own: list[Array] = [IDENTITY] * len(self.parent)
+        for link, motion in zip(self.screw_link, motions, strict=True):
+            own[link] = motion
+        for ball in self.balls:
+            own[ball.link] = _ball_motion(ball, q)
+        X = np.empty((len(self.parent), 4, 4))
+        X[0] = IDENTITY
+        for link in range(1, len(self.parent)):
+            np.matmul(X[self.parent[link]], own[link], out=X[link])
+        return X
+
+    def screws(self, X: Array) -> Array:
+        """(n, 6) twist of each rate at the poses X."""
+        return along_motion(X[self.column_frame], self.column)
+
+    def twists(self, screws: Array, v: Array) -> Array:
+        """(L, 6) twist of each link."""
+        return np.asarray((self.moves * v) @ screws)
+
+    def q_rates(self, q: Array, v: Array) -> Array:
+        """Rates of change of the positions."""
+        if len(q) == len(v):
+            return v.copy()
+        out = np.zeros_like(q)
+        for slot in self.slots:
+            if slot.has_ball:
+                out[slot.q] = 0.5 * multiply(np.concatenate([[0.0], v[slot.v]]), q[slot.q])
+            else:
+                out[slot.q] = v[slot.v]
+        return out
+
+    def advance(self, q: Array, step: Array) -> Array:
+        """Positions after the displacement `step` (n,), a rate times a time."""
+        out = q.copy()
+        for slot in self.slots:
+            if slot.has_ball:
+                out[slot.q] = _turned(q[slot.q], step[slot.v])
+            else:
+                out[slot.q] += step[slot.v]
+        return out
+
+    def gap(self, X: Array, q: Array) -> Array:
+        """(6C + G,) what keeps the loops from closing: rotation (rad), displacement over `length`."""
+        if len(self.closures) == 0:
+            return np.asarray(self.gear_q @ q)
+        ends, targets = X[self.closures[:, 0]], X[self.closures[:, 1]]
+        R = targets[:, :3, :3] @ ends[:, :3, :3].transpose(0, 2, 1)
+        p = targets[:, :3, 3] - (R @ ends[:, :3, 3, None])[..., 0]
+        loops = np.concatenate([rotation_vector(R), p / self.length], axis=1)
+        return np.concatenate([loops.ravel(), self.gear_q @ q])
+
+    def closure(self, screws: Array) -> Array:
+        """(6C + G, n) derivative of the gap by the rates, about the centre."""
+        if len(self.closures) == 0:
+            return self.gear_v
+        difference = self.moves[self.closures[:, 1]] - self.moves[self.closures[:, 0]]
+        rows = difference[:, None, :] * (screws / self._row_scale).T[None]
+        return np.concatenate([rows.reshape(-1, self.rates), self.gear_v])
+
+    def closure_bias(self, accelerations: Array) -> Array:
+        """(6C + G,) what the loops gain in acceleration from the links' (L, 6) at rates held fixed."""
+        loops = (accelerations[self.closures[:, 1]] - accelerations[self.closures[:, 0]]) / self._row_scale
+        return np.concatenate([loops.ravel(), np.zeros(len(self.gear_v))])
+
+    @property
+    def _row_scale(self) -> Array:
+        return np.array([1.0, 1.0, 1.0, self.length, self.length, self.length])
+
+
+def _ball_motion(ball: BallLink, q: Array) -> Array:
+    R = to_matrix(q[ball.q : ball.q + 4])
+    X = np.eye(4)
+    X[:3, :3] = R if ball.forward else R.T
+    X[:3, 3] = ball.point - X[:3, :3] @ ball.point
+    return X
+
+
+def _turned(q: Array, step: Array) -> Array:
+    """Quaternion after a turn by the rotation vector `step` in the axes of the first body."""
+    angle = float(np.linalg.norm(step))
+    half = 0.5 * step * np.sinc(0.5 * angle / np.pi)
+    turned = multiply(np.concatenate([[np.cos(0.5 * angle)], half]), q)
+    return np.asarray(turned / np.linalg.norm(turned))

@@ -1,0 +1,79 @@
+"""What each drive did in a dynamic run: effort, its root mean square, power. For motion drives this is
+the inverse dynamics: what a motor must give."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.model.arrays import Array
+from kinform.model.simulation import DriveUse
+from kinform.simulation.kernel import layout
+from kinform.simulation.mechanism.actuation import Acts
+from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.outcome.record import Record
+
+__all__ = ["uses"]
+
+
+_KINDS = {
+    layout.EFFORT: "effort", layout.SPRING: "spring", layout.DAMPER: "damper", layout.SERVO: "servo",
+    layout.MOTOR: "dc_motor", layout.CONTROLLED: "dc_motor",
+}  # fmt: skip
+
+
+def uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
+    """What the drives did at the output times, prescribed motions first."""
+    if not len(record.time):
+        return ()
+    actuation, slots = dynamics.actuation, {slot.v.start: slot.name for slot in dynamics.mechanism.slots}
+    out = []
+    stops = {stop.v for stop in actuation.stops}
+    for v in sorted({*actuation.led.tolist(), *stops}):
+        kind = "stop" if v in stops and v not in actuation.led else "motion"
+        out.append(_use(record.time, slots[v], kind, record.needed[:, v], record.v[:, v]))
+    states = 0
+    for actor in actuation.actors:
+        own = [record.extra[:, states + sum(actor.states[:k])] if has else None for k, has in enumerate(actor.states)]
+        states += sum(actor.states)
+        effort = _effort(actor, record, own)
+        out.append(_use(record.time, actor.joint, _KINDS[actor.does], effort, record.v[:, actor.v]))
+    return tuple(out)
+
+
+def _use(time: Array, joint: str, kind: str, effort: Array, rate: Array) -> DriveUse:
+    power = effort * rate
+    span = float(time[-1] - time[0])
+    with np.errstate(over="ignore"):  # of a run that overflows
+        mean = float(np.trapezoid(effort**2, time)) / span if span > 0.0 else float(effort[0] ** 2)
+    return DriveUse(
+        joint, kind, float(np.abs(effort).max()), float(np.sqrt(mean)), float(power.max()),
+        float(np.trapezoid(power, time)),
+    )  # fmt: skip
+
+
+def _effort(actor: Acts, record: Record, states: list[Array | None]) -> Array:
+    """(T,) effort of an actor on its shaft."""
+    q, v, numbers = record.q[:, actor.q], record.v[:, actor.v], actor.numbers
+    if actor.does == layout.SPRING:
+        return np.asarray(numbers[0] * (numbers[1] - q))
+    if actor.does == layout.DAMPER:
+        return np.asarray(-numbers[0] * v)
+    assert actor.signal is not None
+    level = np.array([actor.signal.value(float(t)) for t in record.time])
+    if actor.does == layout.EFFORT:
+        return level
+    rate = np.array([actor.signal.rate(float(t)) for t in record.time])
+
+    def controlled(gains: tuple[float, ...], integral: Array | None) -> Array:
+        kp, ki, kd, limit = gains
+        wanted = kp * (level - q) + kd * (rate - v) + (0.0 if integral is None else ki * integral)
+        return np.asarray(np.clip(wanted, -limit, limit))
+
+    if actor.does == layout.SERVO:
+        return controlled(numbers, states[0])
+    resistance, _, constant, gear = numbers[:4]
+    current = states[0]
+    if current is None:
+        voltage = level if actor.does == layout.MOTOR else controlled(numbers[4:], states[1])
+        current = (voltage - constant * gear * v) / resistance
+    return np.asarray(constant * gear * current)

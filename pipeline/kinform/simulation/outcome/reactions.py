@@ -1,0 +1,270 @@
+"""Wrenches in the joints, from motion already known: Newton and Euler for every body, backwards.
+
+A tree of joints carries what its bodies need; joints left over close loops, and their wrenches λ are
+unknown. Every joint transmits along its freedoms what acts on its shaft: linear conditions on λ. Where
+redundancy leaves λ a choice, taken is the one with the least Σ(|f|² + |τ|²/L²) over all joints, about
+their points, which does not depend on which joints were left over (Haug, Computer Aided Kinematics and
+Dynamics, 1989, section 6.6, for the reactions; the choice is that of the pseudoinverse).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinform.foundation.algebra.spatial import cross_force
+from kinform.model.arrays import Array
+from kinform.simulation.mechanism.closure import rank_of
+from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.states import States
+from kinform.simulation.mechanism.topology import arrange
+from kinform.simulation.outcome.gear_forces import Transmitted, toothed, transmitted
+
+__all__ = ["Network", "Reactions", "along_rates", "applied", "joint_points", "needs", "reactions"]
+
+
+OPEN = 1e-6
+"""A component that the choice of λ changes by more than this share of itself is not determined."""
+CHUNK = 128
+"""Times solved at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reactions:
+    """T times, J joints in the order of the system; world axes, about `points`."""
+
+    on_second: Array
+    """(T, J, 6) wrench (τ; f) on the second body of each joint; on the first it is the opposite."""
+    points: Array
+    """(T, J, 3) m, about the mechanism's centre: each joint's point as its first body carries it."""
+    undetermined: NDArray[np.bool_]
+    """(J, 6)."""
+    gears: Transmitted | None = None
+    """What gears pass on; None without any."""
+
+
+def reactions(dynamics: Dynamics, states: States, effort: Array, free: float) -> Reactions:
+    """Wrenches of all joints for the efforts (T, n) on their shafts; `free` decides the rank of the loops."""
+    network = Network(dynamics)
+    needed = network.spread(needs(dynamics, states))
+    points = joint_points(dynamics, states)
+    found = _in_chunks(network, dynamics, states, needed, points, effort, free)
+    if not len(network.gears):
+        return found
+    given = transmitted(dynamics, states, network.sign, along_rates(network, states, found) - effort)
+    teeth = toothed(dynamics.system)
+    if teeth.any():
+        network.gears = network.gears[~teeth]
+        found = _in_chunks(network, dynamics, states, needed - given.wrenches, points, effort, free)
+    return replace(found, gears=given)
+
+
+def along_rates(network: Network, states: States, found: Reactions) -> Array:
+    """(T, n) what the joints transmit along their rates."""
+    about = found.on_second[:, network.owner].copy()
+    about[..., :3] += np.cross(found.points[:, network.owner], about[..., 3:])
+    return np.asarray(np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about))
+
+
+def _in_chunks(
+    network: Network, dynamics: Dynamics, states: States, needed: Array, points: Array, effort: Array, free: float
+) -> Reactions:
+    """The wrenches for what the bodies need; shafts pass efforts on by the gears of the network."""
+    parts = []
+    rank = _rank(dynamics, states, network.gears, free) if network.closing else 0
+    for first in range(0, len(effort), CHUNK):
+        some = slice(first, first + CHUNK)
+        parts.append(_solve(network, states.screws[some], needed[some], points[some], effort[some], rank))
+    if not parts:
+        none = np.zeros((0, len(network.first), 6))
+        return Reactions(none, points, np.zeros(none.shape[1:], dtype=np.bool_))
+    wrenches = np.concatenate([wrench for wrench, _ in parts])
+    return Reactions(wrenches, points, np.any([loose for _, loose in parts], axis=0))
+
+
+def needs(dynamics: Dynamics, states: States) -> Array:
+    """(T, B, 6) wrench about the centre that the joints must give each body with mass: momentum's rate
+    less gravity, loads and springs between bodies."""
+    links = dynamics.body_links
+    X, V, A = states.poses[:, links], states.twists[:, links], states.accelerations[:, links].copy()
+    R, p = X[..., :3, :3], X[..., :3, 3]
+    com = (R @ dynamics.com[:, :, None])[..., 0] + p
+    A[..., 3:] -= dynamics.gravity
+    tensor = R @ dynamics.inertia @ R.swapaxes(-1, -2)
+
+    def momentum(twist: Array) -> Array:
+        linear = dynamics.mass[:, None] * (twist[..., 3:] + np.cross(twist[..., :3], com))
+        return np.concatenate([(tensor @ twist[..., :3, None])[..., 0] + np.cross(com, linear), linear], axis=-1)
+
+    carried = cross_force(V.reshape(-1, 6), momentum(V).reshape(-1, 6)).reshape(V.shape)
+    return np.asarray(momentum(A) + carried - applied(dynamics, states))
+
+
+def applied(dynamics: Dynamics, states: States) -> Array:
+    """(T, B, 6) wrench about the centre of loads and springs between bodies on each body with mass."""
+    out = np.zeros((len(states.poses), len(dynamics.body_links), 6))
+    # What acts on a link of several bodies acts on one of them: fixed joints pass it on.
+    first = {int(link): k for k, link in reversed(list(enumerate(dynamics.body_links)))}
+    actuation, system = dynamics.actuation, dynamics.system
+    subjects = [dynamics.mechanism.bodies[k] for k in dynamics.body_index]
+
+    def push(body: str, link: int, point: Array, force: Array) -> None:
+        if link in first:
+            k = subjects.index(body) if body in subjects else first[link]
+            out[:, k] += np.concatenate([np.cross(point, force), force], axis=1)
+
+    for load, component in zip(actuation.loads, system.loads, strict=True):
+        X = states.poses[:, load.link]
+        R = X[:, :3, :3] if load.turning else np.broadcast_to(np.eye(3), (len(X), 3, 3))
+        body = system.body_at(component.name, "frame").subject
+        push(body, load.link, X[:, :3, :3] @ load.point + X[:, :3, 3], R @ load.force)
+        if body in subjects:
+            out[:, subjects.index(body), :3] += R @ load.torque
+    for spring, between in zip(actuation.springs, system.springs, strict=True):
+        ends, speeds = [], []
+        for link, point in ((spring.first, spring.point), (spring.second, spring.other)):
+            X, V = states.poses[:, link], states.twists[:, link]
+            ends.append(X[:, :3, :3] @ point + X[:, :3, 3])
+            speeds.append(V[:, 3:] + np.cross(V[:, :3], ends[-1]))
+        line = ends[1] - ends[0]
+        length = np.linalg.norm(line, axis=1, keepdims=True)
+        along = line / np.where(length > 0.0, length, 1.0)
+        speed = ((speeds[1] - speeds[0]) * along).sum(axis=1, keepdims=True)
+        pull = (spring.stiffness * (length - spring.rest) + spring.damping * speed) * along
+        names = [system.body_at(between.name, port).subject for port in ("a", "b")]
+        push(names[0], spring.first, ends[0], pull)
+        push(names[1], spring.second, ends[1], -pull)
+    return out
+
+
+def joint_points(dynamics: Dynamics, states: States) -> Array:
+    """(T, J, 3) points of the joints as their first bodies carry them, about the centre."""
+    mechanism, system = dynamics.mechanism, dynamics.system
+    link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
+    out = np.zeros((len(states.poses), len(system.joints), 3))
+    for k, joint in enumerate(system.joints):
+        X = states.poses[:, link_of[system.body_at(joint.name, "a").subject]]
+        point = joint.geometry.point
+        at = np.zeros(3) if point is None or not np.all(np.isfinite(point)) else point
+        out[:, k] = X[:, :3, :3] @ (at - mechanism.centre) + X[:, :3, 3]
+    return out
+
+
+class Network:
+    """Bodies joined by all joints, fixed ones too: a tree, and joints left over."""
+
+    def __init__(self, dynamics: Dynamics):
+        mechanism, system = dynamics.mechanism, dynamics.system
+        index = {body.name: k for k, body in enumerate(system.bodies)}
+        ends = [[index[system.body_at(j.name, port).name] for j in system.joints] for port in ("a", "b")]
+        self.first, self.second = (np.array(side, dtype=np.int64) for side in ends)
+        pairs = [(int(a), int(b)) for a, b in zip(self.first, self.second, strict=True)]
+        tree = arrange(len(index), pairs, [False] * len(pairs), index[system.ground.name])
+        self.closing = list(tree.closing)
+        self._bodies = dynamics.body_index, len(index)
+        self._node_of = tree.node_of
+        nodes = len(tree.carried) + 1
+        below = np.eye(nodes)
+        for step in reversed(tree.carried):
+            below[step.parent] += below[step.node]
+        self.by_needs = np.zeros((len(pairs), len(index)))
+        """(J, B) wrench on the second body of each joint from what each body needs."""
+        node = np.array(tree.node_of)
+        for step in tree.carried:
+            sign = 1.0 if step.forward else -1.0
+            self.by_needs[step.joint] = np.where(node >= 0, sign * below[step.node][node], 0.0)
+        self.by_loops = np.zeros((len(pairs), len(self.closing)))
+        """(J, C) and from the wrenches on the second bodies of the joints left over."""
+        for column, joint in enumerate(self.closing):
+            self.by_loops[:, column] = self.by_needs[:, self.first[joint]] - self.by_needs[:, self.second[joint]]
+            self.by_loops[joint, column] = 1.0
+        self.length, self.scale, self.gears = mechanism.length, mechanism.scale, mechanism.gear_v
+        links = mechanism.link_of
+        self.owner = np.zeros(mechanism.rates, dtype=np.int64)
+        """(n,) joint of each rate."""
+        self.sign = np.ones(mechanism.rates)
+        """(n,) −1 where the mechanism counts a rate's twist of the first body relative to the second."""
+        for k, slot in enumerate(mechanism.slots):
+            self.owner[slot.v] = k
+            a, b = links[self.first[k]], links[self.second[k]]
+            for v in range(slot.v.start, slot.v.stop):
+                if mechanism.moves[a, v] > mechanism.moves[b, v]:
+                    self.sign[v] = -1.0
+
+    def spread(self, needed: Array) -> Array:
+        """(T, B, 6) over all bodies, from those with mass."""
+        out = np.zeros((len(needed), self._bodies[1], 6))
+        out[:, self._bodies[0]] = needed
+        return out
+
+
+def _rank(dynamics: Dynamics, states: States, gears: Array, free: float) -> int:
+    """Rank of the loops and these gears for all rates, fixed joints left over included, decided once."""
+    from kinform.simulation.outcome.record import closure_rows
+
+    mechanism = dynamics.mechanism
+    some = States(*(getattr(states, name)[:1] for name in States.__dataclass_fields__))
+    rows = closure_rows(mechanism, some)[0]
+    rows = np.concatenate([rows[: len(rows) - len(mechanism.gear_v)], gears])
+    return rank_of(rows, mechanism.scale, free)
+
+
+def _solve(
+    network: Network, screws: Array, needed: Array, points: Array, effort: Array, rank: int
+) -> tuple[Array, NDArray[np.bool_]]:
+    """(T, J, 6) wrenches on the second bodies about the joints' points, and (J, 6) what is not determined."""
+    count, joints = len(needed), len(network.first)
+    carried = np.einsum("jb,tbk->tjk", network.by_needs, needed)
+    loose = np.zeros((joints, 6), dtype=np.bool_)
+    loops = len(network.closing)
+    if loops == 0:
+        return _about(carried, points), loose
+    length = network.length
+    unit = np.array([length, length, length, 1.0, 1.0, 1.0])
+    # λ is sought about the points of its joints, torques over the length.
+    lever = np.zeros((count, loops, 6, 6))
+    lever[:] = np.diag(unit)
+    lever[..., :3, 3:] = _skew(points[:, network.closing])
+    # Conditions: along every freedom, what acts on the shaft; gears pass efforts on among theirs.
+    S = screws * network.sign[:, None] / network.scale[:, None]
+    passed = np.einsum("nc,tnk,tckl->tncl", network.by_loops[network.owner], S, lever).reshape(count, -1, 6 * loops)
+    rest = effort / network.scale - np.einsum("tnk,tnk->tn", S, carried[:, network.owner])
+    if len(network.gears):
+        _, _, right = np.linalg.svd(network.gears / network.scale)
+        keep = right[len(network.gears) :]
+        passed, rest = keep @ passed, rest @ keep.T
+        rank -= len(network.gears)
+    left, values, right = np.linalg.svd(passed)
+    chosen = np.einsum("tmr,tm->tr", left[:, :, :rank], rest) / np.maximum(values[:, :rank], 1e-300)
+    special = np.einsum("trl,tr->tl", right[:, :rank], chosen)
+    open_ = right[:, rank:].transpose(0, 2, 1)
+    # All wrenches about their points, torques over the length: known part, and what each λ adds.
+    known = _about(carried, points) / unit
+    adds = np.einsum("jc,tckl->tjkcl", network.by_loops, lever).reshape(count, joints, 6, 6 * loops)
+    adds[:, :, :3] -= _skew(points) @ adds[:, :, 3:]
+    adds = (adds / unit[:, None]).reshape(count, 6 * joints, 6 * loops)
+    known = known.reshape(count, -1) + np.einsum("tml,tl->tm", adds, special)
+    freedom = adds @ open_
+    if open_.shape[2]:
+        inner = freedom.transpose(0, 2, 1) @ freedom
+        answer = np.linalg.solve(inner, np.einsum("tmz,tm->tz", freedom, known)[..., None])
+        known = known - (freedom @ answer)[..., 0]
+        loose = (np.abs(freedom).max(axis=(0, 2)) > OPEN).reshape(joints, 6)
+    return known.reshape(count, joints, 6) * unit, loose
+
+
+def _about(wrenches: Array, points: Array) -> Array:
+    """Wrenches (T, J, 6) about the centre taken to points (T, J, 3)."""
+    out = wrenches.copy()
+    out[..., :3] -= np.cross(points, wrenches[..., 3:])
+    return out
+
+
+def _skew(p: Array) -> Array:
+    """(…, 3, 3) matrices of p × … ."""
+    out = np.zeros((*p.shape, 3))
+    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -p[..., 2], p[..., 1], -p[..., 0]
+    out[..., 1, 0], out[..., 2, 0], out[..., 2, 1] = p[..., 2], -p[..., 1], p[..., 0]
+    return out

@@ -1,0 +1,1 @@
+"""Kinds of surfaces, one a file."""

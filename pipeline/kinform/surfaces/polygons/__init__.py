@@ -1,0 +1,1 @@
+"""Facets, edges and coplanar polygons of a mesh."""

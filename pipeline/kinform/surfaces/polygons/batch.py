@@ -1,0 +1,125 @@
+"""Arithmetic over many small groups at once: ragged rows, grouped sums, grouped least squares.
+
+Knows nothing of geometry. Groups are runs of consecutive rows, given by their starts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.model.arrays import Array, Flags, Ints
+
+__all__ = [
+    "Array",
+    "Flags",
+    "Ints",
+    "Ragged",
+    "counted",
+    "distinct",
+    "group_sum",
+    "normal_equations",
+    "ordered_quantile",
+    "quantile",
+    "solve_normal",
+    "starts_of",
+]
+
+
+class Ragged:
+    """Rows of different length: the items of row i are items[starts[i]:starts[i + 1]]."""
+
+    def __init__(self, rows: Ints, items: Ints, count: int):
+        order = np.argsort(rows, kind="stable")
+        self.items: Ints = items[order]
+        self.starts: Ints = np.searchsorted(rows[order], np.arange(count + 1)).astype(np.int64)
+
+    def lengths(self, rows: Ints) -> Ints:
+        """Number of items of each of these rows."""
+        return self.starts[rows + 1] - self.starts[rows]
+
+    def expand(self, rows: Ints) -> tuple[Ints, Ints]:
+        """(position in `rows`, item) for every item of every row asked for, in order."""
+        lengths = self.lengths(rows)
+        owner = np.repeat(np.arange(len(rows)), lengths)
+        first = np.cumsum(lengths) - lengths
+        within = np.arange(len(owner)) - first[owner]
+        return owner, self.items[self.starts[rows][owner] + within]
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross products of rows (n, 3): numpy's own spends most of its time on moving axes about."""
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return out
+
+
+def starts_of(groups: Ints, count: int) -> Ints:
+    """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
+    return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
+
+
+def distinct(keys: Ints) -> Ints:
+    """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
+    ordered = np.sort(keys)
+    return ordered[np.r_[True, ordered[1:] != ordered[:-1]]] if len(ordered) else ordered
+
+
+def counted(keys: Ints) -> tuple[Ints, Ints]:
+    """The distinct keys, ascending, and how often each occurs."""
+    ordered = np.sort(keys)
+    heads = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]]) if len(ordered) else np.zeros(0, np.int64)
+    return ordered[heads], np.diff(np.r_[heads, len(ordered)])
+
+
+def group_sum(groups: Ints, values: Array, count: int) -> Array:
+    """Sum of `values` (n, ...) for each group number: (count, ...)."""
+    flat = values.reshape(len(values), int(np.prod(values.shape[1:], dtype=int)))
+    out = np.empty((count, flat.shape[1]))
+    for k in range(flat.shape[1]):
+        out[:, k] = np.bincount(groups, flat[:, k], count)
+    return out.reshape((count, *values.shape[1:]))
+
+
+def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
+    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
+    k = jacobian.shape[1]
+    matrix: Array = np.empty((count, k, k))
+    for i in range(k):
+        for j in range(i, k):
+            matrix[:, i, j] = np.bincount(groups, jacobian[:, i] * jacobian[:, j], count)
+            matrix[:, j, i] = matrix[:, i, j]
+    right: Array = np.stack(
+        [np.bincount(groups, jacobian[:, i] * residual, count).astype(float) for i in range(k)], axis=1
+    )
+    return matrix, right
+
+
+def solve_normal(matrix: Array, right: Array, damping: float = 1e-12) -> Array:
+    """Solutions (count, k) of scaled, slightly damped symmetric systems; never raises."""
+    diagonal = np.einsum("gii->gi", matrix)
+    scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-300))
+    scaled = matrix * scale[:, :, None] * scale[:, None, :]
+    scaled = scaled + damping * np.eye(matrix.shape[1])
+    # the damping keeps every matrix regular that is finite
+    scaled[~np.isfinite(scaled).all(axis=(1, 2))] = np.eye(matrix.shape[1])
+    solution = np.linalg.solve(scaled, np.nan_to_num(right * scale)[:, :, None])[:, :, 0]
+    return np.asarray(solution * scale)
+
+
+def quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
+    """The lower `share` quantile of the values of each group; 0 for empty groups."""
+    order = np.lexsort((values, groups))
+    return ordered_quantile(groups[order], values[order], count, share)
+
+
+def ordered_quantile(groups: Ints, values: Array, count: int, share: float) -> Array:
+    """`quantile` of values that are sorted by group, then by size."""
+    starts = starts_of(groups, count)
+    size = np.diff(starts)
+    at = starts[:-1] + np.floor(share * np.maximum(size - 1, 0)).astype(np.int64)
+    out = np.zeros(count)
+    filled = size > 0
+    out[filled] = values[at[filled]]
+    return out

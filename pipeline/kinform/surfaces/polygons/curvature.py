@@ -1,0 +1,120 @@
+"""Curvature of every polygon from the turning across its edges, and what it says of tangent surfaces.
+
+Method: normal cycles (Cohen-Steiner and Morvan 2003): an edge of length l, direction t and turning θ adds
+θ l t tᵀ, half to each polygon; divided by the area, eigenvectors are directions and eigenvalues the
+curvature *across* them. A cylinder has one, along its generators. It is an estimate that guides the search;
+whether polygons belong to a surface is decided by their vertices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.polygons.patchwork import Patchwork
+
+__all__ = ["ALIKE", "Curvature", "Links", "continues", "curvature", "links"]
+
+ALIKE = 3.0
+"""Ratio of widths up to which neighbours look like facets of one surface."""
+
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class Links:
+    """Smooth edges (L,) between polygons, and which of them join polygons of like width."""
+
+    edge: Ints
+    a: Ints
+    b: Ints
+    alike: Flags
+
+
+@dataclass(frozen=True, eq=False)
+class Curvature:
+    """Of each polygon (P,), in unit coordinates."""
+
+    strong: Array
+    """The larger principal curvature by size, positive where convex."""
+    weak: Array
+    """The other one."""
+    along: Array
+    """(P, 3) direction across which the strong one bends: that of a cylinder's generators."""
+
+    @property
+    def ratio(self) -> Array:
+        """|weak| / |strong|: 0 on cylinders and cones, 1 on spheres; 1 where nothing bends."""
+        strong = np.abs(self.strong)
+        return np.where(strong > 0, np.abs(self.weak) / np.maximum(strong, 1e-300), 1.0)
+
+
+def links(work: Patchwork, free: Flags) -> Links:
+    """Smooth edges between free polygons."""
+    edge = np.flatnonzero(work.smooth)
+    edge = edge[free[work.a[edge]] & free[work.b[edge]]]
+    a, b = work.a[edge], work.b[edge]
+    key = np.minimum(a, b) * np.int64(work.count) + np.maximum(a, b)
+    order = np.argsort(key, kind="stable")
+    first = np.r_[True, np.diff(key[order]) != 0] if len(key) else np.zeros(0, bool)
+    number = np.empty(len(key), np.int64)
+    number[order] = np.cumsum(first) - 1
+    shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
+    wide = np.maximum(work.area[a], work.area[b]) / shared
+    narrow = np.minimum(work.area[a], work.area[b]) / shared
+    return Links(edge, a, b, wide < ALIKE * narrow)
+
+
+def curvature(work: Patchwork, link: Links) -> Curvature:
+    """Curvature of every polygon, averaged over it and its neighbours of like width."""
+    edge, a, b = link.edge, link.a, link.b
+    along = work.vertices[work.ends[edge, 1]] - work.vertices[work.ends[edge, 0]]
+    amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], 1e-300) / 2
+    near_a, near_b = a[link.alike], b[link.alike]
+
+    def spread(own: Array) -> Array:
+        return own + np.bincount(near_a, own[near_b], work.count) + np.bincount(near_b, own[near_a], work.count)
+
+    area = np.maximum(spread(work.area.astype(float)), 1e-300)
+    tensor: Array = np.empty((work.count, 3, 3))
+    for i, j in _PAIRS:
+        term = amount * along[:, i] * along[:, j]
+        own: Array = (np.bincount(a, term, work.count) + np.bincount(b, term, work.count)).astype(float)
+        tensor[:, i, j] = tensor[:, j, i] = spread(own) / area
+    values, vectors = np.linalg.eigh(tensor)
+    order = np.argsort(-np.abs(values), axis=1, kind="stable")
+    rows = np.arange(work.count)
+    return Curvature(
+        strong=values[rows, order[:, 0]],
+        weak=values[rows, order[:, 1]],
+        along=np.ascontiguousarray(vectors[rows, :, order[:, 0]]),
+    )
+
+
+def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
+    """Whether the two polygons of each link seem to lie on one surface: like curvatures, and directions
+    that turn no more than the normals do when going across, and not at all when going along."""
+    a, b = link.a, link.b
+    strong_a, strong_b = bent.strong[a], bent.strong[b]
+    larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
+    like = (np.abs(strong_a - strong_b) <= 0.35 * larger) & (np.abs(bent.weak[a] - bent.weak[b]) <= 0.3 * larger)
+    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < 0.12
+    cosine = np.abs(np.einsum("ij,ij->i", bent.along[a], bent.along[b]))
+    step = work.centre[b] - work.centre[a]
+    size = np.maximum(np.linalg.norm(step, axis=1), 1e-300)
+    going = (
+        np.abs(
+            np.einsum(
+                "ij,ij->i",
+                step,
+                bent.along[a] + bent.along[b] * np.sign(np.einsum("ij,ij->i", bent.along[a], bent.along[b]))[:, None],
+            )
+        )
+        / 2
+        / size
+    )
+    turn = np.arccos(np.clip(cosine, 0.0, 1.0))
+    allowed = np.where(going > 0.7, 0.03, 0.03 + work.angle[link.edge])
+    return np.asarray(like & (~simple | (turn <= allowed)))

@@ -1,0 +1,1 @@
+"""Which polygons belong to which surface."""

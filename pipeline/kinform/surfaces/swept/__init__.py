@@ -1,0 +1,1 @@
+"""Surfaces that a motion sweeps: helicoids, revolutions, extrusions."""

@@ -1,0 +1,364 @@
+"""Threads: helicoids found by the helices that a tessellated thread has as edges.
+
+Facets of a thread are too coarse to say what their pitch is, and its flanks fall apart in pieces that look like
+planes or nothing. But whatever the tessellation, the borders of its flanks are polylines with every vertex on a true
+helix: edges along which the distance from the axis stays and the height grows with the angle, all by one amount.
+Candidates for the axis are those of coaxial cylinders (crests, roots, shanks) and of the linear line complex of
+what is left (Pottmann and Randrup 1998); a least squares over the polylines then gives axis and pitch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.describe import COVERAGE, Description, canonical, freeform
+from kinform.surfaces.polygons.batch import cross
+from kinform.surfaces.polygons.patchwork import Patchwork, Scale
+
+__all__ = ["threads"]
+
+LEAST = 24
+"""Polygons of a thread, at least."""
+MOST_LINES = 6
+"""Axes tried, the best supported first."""
+MOST_PIECES = 4
+"""Pieces of what no surface explains that suggest an axis."""
+ROUNDS = 6
+"""Of reweighing, until what is no thread counts little."""
+SAME = 1e-3
+"""Lines (rad, and of the mesh's diagonal) that are one axis."""
+LEVEL = 2e-3
+"""Share of its length by which an edge along a helix may change its distance from the axis."""
+WIDE = (8.0, 4.0, 2.0, 1.0, 1.0)
+"""How much wider helices are looked for while axis and advance are refined."""
+STEP = 0.85
+"""rad: greatest angle of an edge about the axis: a thread has eight vertices a turn, at least."""
+STEEP = (2e-3, 4.0)
+"""Range of the advance a radian, in radii, of what is a thread."""
+ALIKE = 5e-3
+"""Relative spread of the advance along edges of one thread, besides what rounding makes of each."""
+TURNED = 0.7
+"""Turns of helix, counted along all polylines of a thread, at least."""
+LONGEST = 0.4
+"""Turns of the longest of them, at least."""
+TILT = 0.12
+"""Root mean square of the normals' share of the screw's speed, of facets that belong to a thread."""
+LOPSIDED = 0.6
+"""The same of a single facet between two helices: skew triangles lean far to either side in turn."""
+BENT = 1.0
+"""rad: facets of one flank make no greater angle."""
+LEAN = 0.3
+"""Mean of that, as a share of the slope of the helix: beyond, the facets are as well a ring, or a helix of another pitch."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Screw:
+    axis: Array
+    point: Array
+    advance: float
+    """Along the axis a radian, right-handed positive."""
+
+    def polar(self, points: Array) -> tuple[Array, Array, Array]:
+        """Height, distance and azimuth of points (n, 3)."""
+        u = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
+        u /= np.linalg.norm(u)
+        arm = points - self.point
+        x, y = arm @ u, arm @ np.cross(self.axis, u)
+        return arm @ self.axis, np.hypot(x, y), np.arctan2(y, x)
+
+    def lean(self, centres: Array, normals: Array) -> tuple[Array, Array]:
+        """Share (n,) of the screw's speed along the normals there, and the slope (n,) of the helices."""
+        turning = cross(np.broadcast_to(self.axis, centres.shape), centres - self.point)
+        velocity = turning + self.advance * self.axis
+        size = np.maximum(np.linalg.norm(velocity, axis=1), 1e-300)
+        return np.einsum("ij,ij->i", normals, velocity) / size, np.abs(self.advance) / size
+
+
+@dataclass(frozen=True, eq=False)
+class _Helices:
+    """Edges (vertices, (m, 2)) that run along the helices of one screw, and their polylines."""
+
+    ends: Ints
+    polyline: Ints
+    """(m,) of each edge."""
+    turn: Array
+    """(m,) rad."""
+
+
+def threads(work: Patchwork, loose: Flags, known: Sequence[Description], scale: Scale) -> list[Description]:
+    """Helicoids among the loose polygons (P,), each with all its flanks; `known` surfaces suggest axes."""
+    free = loose.copy()
+    out: list[Description] = []
+    if int(free.sum()) < LEAST:
+        return out
+    for axis, point in _lines(work, free, known):
+        if int(free.sum()) < LEAST:
+            break
+        found = _about(work, free, axis, point, scale)
+        if found is not None:
+            out.append(found)
+            free[found.polygons] = False
+    return out
+
+
+def _lines(work: Patchwork, free: Flags, known: Sequence[Description]) -> list[tuple[Array, Array]]:
+    """Axes and points on them: of cylinders, the largest first, and those about which pieces of what is free turn."""
+    cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(known) if item.kind == "cylinder"]
+    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * MOST_LINES]
+    lines = _distinct([(known[k].axis, known[k].point) for _, k in largest])[:MOST_LINES]
+    return _distinct([*lines, *_turning(work, free)])
+
+
+def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
+    """The lines without those that nearly are an earlier one."""
+    lines: list[tuple[Array, Array]] = []
+    for axis, point in candidates:
+        for other, through in lines:
+            if np.linalg.norm(np.cross(axis, other)) < SAME and np.linalg.norm(np.cross(point - through, other)) < SAME:
+                break
+        else:
+            lines.append((axis, point))
+    return lines
+
+
+def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
+    """Axes of the motions under which the largest connected pieces of free polygons slide best."""
+    use = (work.b >= 0) & free[work.a]
+    use[use] &= free[work.b[use]]
+    label = components(work.a[use], work.b[use], work.count)
+    area, size = np.bincount(label, work.area * free), np.bincount(label, free)
+    out = []
+    for piece in np.argsort(-area, kind="stable")[:MOST_PIECES]:
+        if size[piece] < LEAST:
+            continue
+        own = np.flatnonzero(free & (label == piece))
+        weight = work.area[own]
+        for _ in range(ROUNDS):
+            middle = weight @ work.centre[own] / weight.sum()
+            arm = work.centre[own] - middle
+            reach = max(float(np.sqrt(weight @ np.einsum("ij,ij->i", arm, arm) / weight.sum())), 1e-12)
+            rows = np.concatenate([cross(arm / reach, work.normal[own]), work.normal[own]], axis=1)
+            twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
+            speed = np.abs(rows @ twist)
+            weight = work.area[own] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
+        turn = float(np.linalg.norm(twist[:3]))
+        if turn > 0.1:
+            axis = twist[:3] / turn
+            out.append((axis, middle + np.cross(axis, twist[3:] / turn) * reach))
+    return out
+
+
+def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale) -> Description | None:
+    """The thread about a line, if there is one."""
+    edges = np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
+    if len(edges) < LEAST:
+        return None
+    start = _Screw(axis, point, 0.0)
+    best: tuple[float, _Screw, Ints] | None = None
+    for advance in _advances(work, edges, start, scale):
+        screw = _refined(work, edges, _Screw(axis, point, advance), scale)
+        if screw is None:
+            continue
+        helices = _helices(work, edges, screw, scale)
+        members = np.zeros(0, np.int64) if helices is None else _members(work, free, helices, screw)
+        if helices is None or len(members) < LEAST:
+            continue
+        # diagonals of a regular mesh make short helices of another pitch
+        score = float((np.bincount(helices.polyline, helices.turn) ** 2).sum())
+        if best is None or score > best[0]:
+            best = (score, screw, members)
+    if best is None:
+        return None
+    return _described(work, edges, best[1], best[2], scale)
+
+
+def _slopes(
+    work: Patchwork, ends: Ints, screw: _Screw, scale: Scale, wide: float = 1.0
+) -> tuple[Array, Array, Array, Flags]:
+    """Advance, its uncertainty and angle (m,) of edges, and which of them may run along a helix of an axis that is
+    known `wide` times less well than in the end."""
+    height, distance, azimuth = screw.polar(work.vertices[ends.ravel()])
+    rise, widening, turn = (np.diff(x.reshape(-1, 2), axis=1)[:, 0] for x in (height, distance, azimuth))
+    mean = distance.reshape(-1, 2).mean(axis=1)
+    turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
+    length = np.hypot(rise, mean * turn)
+    level = np.abs(widening) <= wide * LEVEL * length + 4 * scale.noise
+    turning = (np.abs(turn) < STEP) & (np.abs(turn) * mean > 0.05 * np.abs(rise)) & (np.abs(turn) > 1e-6)
+    advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
+    doubt = 3 * scale.noise / np.maximum(np.abs(turn), 1e-9)
+    steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
+    return advance, doubt, turn, level & turning & steep
+
+
+def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
+    """Advances that many edges have in common, the most turned first."""
+    advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, WIDE[0])
+    rows = np.flatnonzero(usable & (doubt < 0.3 * np.abs(advance)))
+    out: list[float] = []
+    for _ in range(4):
+        if len(rows) < LEAST // 2:
+            break
+        order = rows[np.argsort(advance[rows], kind="stable")]
+        values, weight = advance[order], np.abs(turn[order])
+        reach = ALIKE * np.abs(values) + np.median(doubt[order])
+        total = np.r_[0.0, np.cumsum(weight)]
+        low = np.searchsorted(values, values - reach)
+        high = np.searchsorted(values, values + reach, side="right")
+        held = total[high] - total[low]
+        best = int(np.argmax(held))
+        if held[best] < 2 * np.pi * TURNED:
+            break
+        inside = order[low[best] : high[best]]
+        out.append(float(np.median(advance[inside])))
+        rows = order[np.abs(values - out[-1]) > 2 * reach[best]]
+    return out
+
+
+def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: float = 1.0) -> _Helices | None:
+    """The edges along the screw's helices, joined to polylines, if they make enough of a thread."""
+    ends = work.ends[edges]
+    advance, doubt, turn, usable = _slopes(work, ends, screw, scale, wide)
+    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * ALIKE * abs(screw.advance) + doubt)
+    if not near.any():
+        return None
+    ends, turn = ends[near], np.abs(turn[near])
+    polyline = components(ends[:, 0], ends[:, 1], len(work.vertices))[ends[:, 0]]
+    _, polyline = np.unique(polyline, return_inverse=True)
+    turned = np.bincount(polyline, turn)
+    if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * LONGEST:
+        return None
+    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > 0.02 * turned.max())
+    return _Helices(ends[keep], np.unique(polyline[keep], return_inverse=True)[1], turn[keep])
+
+
+def _residuals(work: Patchwork, helices: _Helices, screw: _Screw, vertex: Ints, group: Ints) -> Array:
+    """Heights above their helices and distances from their cylinders, of the polylines' vertices."""
+    height, distance, azimuth = screw.polar(work.vertices[vertex])
+    count = int(group.max()) + 1
+    first = np.full(count, len(vertex))
+    np.minimum.at(first, group, np.arange(len(vertex)))
+    phase = height / screw.advance - azimuth
+    phase -= phase[first][group]
+    above = screw.advance * (phase - 2 * np.pi * np.round(phase / (2 * np.pi)))
+    size = np.bincount(group)
+    for values in (above, distance):
+        values -= (np.bincount(group, values) / size)[group]
+    return np.concatenate([above, distance])
+
+
+def _moved(screw: _Screw, change: Array) -> _Screw:
+    """The screw with its axis tilted and shifted, and its advance changed, by (5,)."""
+    u = np.cross(screw.axis, np.eye(3)[int(np.argmin(np.abs(screw.axis)))])
+    u /= np.linalg.norm(u)
+    v = np.cross(screw.axis, u)
+    axis = screw.axis + change[0] * u + change[1] * v
+    return _Screw(axis / np.linalg.norm(axis), screw.point + change[2] * u + change[3] * v, screw.advance + change[4])
+
+
+def _solved(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> tuple[_Screw, Array, float, float]:
+    """One robust step: the screw, the covariance factors (5, 5), the scatter and the extent along the axis."""
+    key = np.unique(np.repeat(helices.polyline, 2) * np.int64(len(work.vertices)) + helices.ends.ravel())
+    group, vertex = key // len(work.vertices), key % len(work.vertices)
+    height = screw.polar(work.vertices[vertex])[0]
+    middle = 0.5 * float(height.min() + height.max())
+    screw = _Screw(screw.axis, screw.point + middle * screw.axis, screw.advance)
+    step = 1e-6
+    base = _residuals(work, helices, screw, vertex, group)
+    columns = np.stack(
+        [(_residuals(work, helices, _moved(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
+    )
+    scatter = max(1.5 * float(np.median(np.abs(base))), scale.rounding)
+    weight = 1.0 / np.maximum(np.abs(base) / (3 * scatter), 1.0) ** 2
+    matrix = (columns * weight[:, None]).T @ columns
+    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=1e-12) / np.outer(size, size)
+    change = -inverse @ (columns.T @ (weight * base))
+    return _moved(screw, change), inverse, scatter, float(np.ptp(height))
+
+
+def _refined(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
+    """The screw through the polylines of its helices."""
+    for wide in WIDE:
+        helices = _helices(work, edges, screw, scale, wide)
+        if helices is None:
+            return None
+        moved = _solved(work, helices, screw, scale)[0]
+        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > 0.1 * abs(screw.advance):
+            return None
+        screw = moved
+    return screw
+
+
+def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> Ints:
+    """Free polygons on the thread: those between one helix and the next, and pieces that hang together, border
+    a helix, and lean neither way."""
+    total = np.int64(len(work.vertices))
+    line = np.full(len(work.vertices), -1)
+    line[helices.ends] = helices.polyline[:, None]
+    share, slope = screw.lean(work.centre, work.normal)
+    every = np.arange(work.count)
+    owner, vertex = work.corners.expand(every)
+    key = np.unique(owner * (total + 1) + line[vertex] + 1)
+    lines = np.bincount(key // (total + 1), key % (total + 1) > 0, work.count)
+    off = np.bincount(owner, line[vertex] < 0, work.count)
+    low, high = np.sort(helices.ends, axis=1).T
+    own = np.sort(work.ends, axis=1)
+    along = np.isin(own[:, 0] * total + own[:, 1], low * total + high)
+    sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
+    between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
+    fitting = free & (np.abs(share) < 3 * TILT)
+    use = work.smooth & fitting[work.a] & (work.b >= 0)
+    use[use] &= fitting[work.b[use]]
+    label = components(work.a[use], work.b[use], work.count)
+    area = np.where(fitting, work.area, 0.0)
+    whole = np.maximum(np.bincount(label, area, work.count), 1e-300)
+    mean = np.bincount(label, area * share, work.count) / whole
+    square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
+    steep = np.bincount(label, area * slope, work.count) / whole
+    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= 3
+    good = touched & (square < TILT) & (np.abs(mean) < LEAN * steep)
+    return np.flatnonzero(between | (fitting & good[label]))
+
+
+def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
+    """How far facets may stand off the thread, from the angles between them where they are not its corners."""
+    total = np.int64(len(work.vertices))
+    own, corner = np.sort(work.ends, axis=1), np.sort(helices.ends, axis=1)
+    inside = np.zeros(work.count, bool)
+    inside[members] = True
+    use = (work.b >= 0) & inside[work.a] & (work.angle < BENT)
+    use[use] &= inside[work.b[use]]
+    use &= ~np.isin(own[:, 0] * total + own[:, 1], corner[:, 0] * total + corner[:, 1])
+    return freeform(work, members, np.flatnonzero(use)).chord
+
+
+def _described(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, scale: Scale) -> Description | None:
+    helices = _helices(work, edges, screw, scale)
+    if helices is None:
+        return None
+    _, inverse, scatter, _ = _solved(work, helices, screw, scale)
+    spread = COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    weight, normal = work.area[members], work.normal[members]
+    height, _, _ = screw.polar(work.vertices[helices.ends.ravel()])
+    middle = 0.5 * float(height.min() + height.max())
+    point = screw.point + middle * screw.axis
+    axis = screw.axis * canonical(screw.axis)
+    arm = work.centre[members] - point
+    radial = arm - (arm @ axis)[:, None] * axis
+    distance = np.linalg.norm(radial, axis=1)
+    outward = float(np.einsum("ij,ij->i", normal, radial) / np.maximum(distance, 1e-300) @ weight)
+    _, vertex = work.corners.expand(members)
+    span = (work.vertices[vertex] - point) @ axis
+    return Description(
+        "helicoid", members, axis, point, radius=float(distance @ weight / weight.sum()),
+        side=1 if outward >= 0 else -1, extent=(float(span.min()), float(span.max())), residual=scatter,
+        axis_uncertainty=float(min(np.hypot(spread[0], spread[1]), np.pi / 2)),
+        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), 0.3 * scale.rounding)),
+        pitch=2 * np.pi * screw.advance,
+        chord=_chord(work, helices, members),
+    )  # fmt: skip
