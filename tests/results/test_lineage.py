@@ -13,7 +13,7 @@ from known import FIXTURES
 import kinform
 from kinform import results, stages
 from kinform.api import Outcome
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 
 
 @pytest.fixture(scope="module")

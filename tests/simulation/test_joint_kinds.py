@@ -9,8 +9,8 @@ from scipy.linalg import expm
 
 from kinform.behaviour import build
 from kinform.behaviour.joints import KINDS
-from kinform.foundation.algebra.screws import perpendicular
 from kinform.foundation.algebra.spatial import cross_motion, quaternions, rotation_vector, to_matrix
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.simulation.mechanism.assembly import assemble
 
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0

@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.collisions.course import Course
 from kinform.collisions.shapes import Shapes
-from kinform.foundation.meshes.index import fcl_distance, fcl_pose
+from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
 
 __all__ = ["Wholes"]

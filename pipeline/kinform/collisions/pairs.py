@@ -18,8 +18,8 @@ from kinform.collisions.crossing import crossings
 from kinform.collisions.entering import Probes, probes
 from kinform.collisions.mates import Mates, SurfacePair
 from kinform.collisions.shapes import Shapes
-from kinform.foundation.algebra.screws import perpendicular
-from kinform.foundation.meshes.index import fcl_distance, fcl_pose
+from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName

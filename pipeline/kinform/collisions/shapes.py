@@ -9,9 +9,10 @@ import fcl
 import numpy as np
 
 from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.boxes import together
-from kinform.foundation.meshes.index import MeshIndex, MeshStore, partial_model
+from kinform.foundation.meshes.fcl_adapter import partial_model
+from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts

@@ -16,7 +16,7 @@ from kinform.collisions.scan import first_crossing
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.sweeps import Profile, meeting
 from kinform.foundation.algebra.displacements import displacement
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.contacts import Patch

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinform.behaviour import JointComponent, MotionDrive
 from kinform.exports.model import ExportModel
 from kinform.exports.tree import Closing, Tree
-from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.closure import rank_of
 

@@ -22,8 +22,8 @@ from kinform.exports.text import number, render, vector
 from kinform.exports.tree import Tree, grow
 from kinform.exports.vhdl_drives import drives
 from kinform.exports.vhdl_structure import AXES, COUNT, Part, Writer
-from kinform.foundation.algebra.screws import perpendicular
 from kinform.foundation.algebra.spatial import to_matrix
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 
 __all__ = ["export"]

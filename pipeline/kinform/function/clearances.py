@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import fcl
 import numpy as np
 
-from kinform.foundation.meshes.index import MeshIndex, fcl_distance, fcl_model, fcl_pose
+from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
+from kinform.foundation.meshes.index import MeshIndex
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts

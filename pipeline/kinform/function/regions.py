@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 
 __all__ = ["Targets", "targets_of"]

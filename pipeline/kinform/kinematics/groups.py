@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, canonical, cross, perpendicular
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
 from kinform.model.arrays import Array
 
 __all__ = ["group_of", "in_words"]

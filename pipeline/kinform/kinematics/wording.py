@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import canonical, cross, perpendicular, span
+from kinform.foundation.algebra.screws import span
+from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
 from kinform.model.arrays import Array
 
 __all__ = ["Locked", "axis_word", "listed", "locked", "locked_text", "rows_too_many"]

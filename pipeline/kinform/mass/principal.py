@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import canonical, cross
+from kinform.foundation.algebra.vectors import canonical, cross
 from kinform.model.arrays import Array
 
 __all__ = ["impossible", "principal"]

@@ -6,7 +6,7 @@ from kinform.behaviour.joints.kind import JointGeometry, JointKind
 from kinform.behaviour.joints.prismatic import slide
 from kinform.behaviour.joints.revolute import turn
 from kinform.behaviour.primitives import OneFreedom
-from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.algebra.vectors import perpendicular
 
 __all__ = ["PLANAR"]
 

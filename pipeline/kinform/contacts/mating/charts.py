@@ -14,6 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra import vectors
 from kinform.model.arrays import Array
 
 __all__ = ["Chart", "ConeChart", "CylinderChart", "PlaneChart", "SphereChart", "perpendicular"]
@@ -59,8 +60,7 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
         length = float(np.linalg.norm(across))
         if length > 1e-6 * max(float(np.linalg.norm(hint)), 1e-300):
             return np.asarray(across / length)
-    across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    return np.asarray(across / np.linalg.norm(across))
+    return -vectors.perpendicular(axis)[0]
 
 
 def _unit_rows(vectors: Array) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.contacts.search.placed import PlacedPart
-from kinform.foundation.meshes.index import Hits
+from kinform.foundation.meshes.probes import Hits
 from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["Probes", "Verdict", "join", "verify"]

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.meshes.boxes import facet_boxes
-from kinform.foundation.meshes.index import MeshIndex, Region
+from kinform.foundation.meshes.index import MeshIndex
+from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Ints

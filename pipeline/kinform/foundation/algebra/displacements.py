@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["cross_matrix", "displacement", "twist_of"]
-
-
-def cross_matrix(w: Array) -> Array:
-    """(3, 3) matrix of w × (3,)."""
-    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
+__all__ = ["displacement", "twist_of"]
 
 
 def displacement(twist: Array) -> Array:

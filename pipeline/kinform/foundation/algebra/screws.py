@@ -1,4 +1,4 @@
-"""Screw algebra: twists and rows in scaled coordinates, canonical axes, motions of lines and points.
+"""Screw algebra: twists and rows in scaled coordinates, motions of lines and points.
 
 A twist is (ω; v), v the velocity of the point at the reference. The scaled twist of a `Frame` with
 centre c and length L is (L·ω; v_c): all six numbers are velocities, so that singular values of
@@ -11,22 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
 __all__ = [
     "Frame",
-    "canonical",
-    "cross",
-    "perpendicular",
     "rotation",
     "rows",
     "span",
     "translation",
     "twist_at_origin",
 ]
-
-
-_NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,33 +37,6 @@ class Frame:
         low, high = points.min(axis=0), points.max(axis=0)
         half = 0.5 * float(np.linalg.norm(high - low))
         return Frame(0.5 * (low + high), half if half > 0.0 else 1.0)
-
-
-def cross(a: Array, b: Array) -> Array:
-    """a × b along the last axis (…, 3), broadcast; numpy's own takes ten times as long for single vectors."""
-    if a.ndim == 1 and b.ndim == 1:
-        x, y, z = a.tolist()
-        u, v, w = b.tolist()
-        return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
-    out: Array = a.take(_NEXT, -1) * b.take(_AFTER, -1) - a.take(_AFTER, -1) * b.take(_NEXT, -1)
-    return out
-
-
-def canonical(axis: Array) -> Array:
-    """Unit vector along `axis` whose largest component is positive; among components within 1e-3 of
-    the largest the first of x, y, z decides."""
-    unit: Array = axis / np.linalg.norm(axis)
-    size = np.abs(unit)
-    first = int(np.flatnonzero(size >= size.max() - 1e-3)[0])
-    # adding zero turns −0 into 0
-    return (unit if unit[first] > 0.0 else -unit) + 0.0
-
-
-def perpendicular(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors that make a right-handed frame (u, v, axis) with the unit axis (3,)."""
-    u = cross(np.eye(3)[int(np.argmin(np.abs(axis)))], axis)
-    u /= np.linalg.norm(u)
-    return u, cross(axis, u)
 
 
 def rows(points: Array, normals: Array, frame: Frame) -> Array:

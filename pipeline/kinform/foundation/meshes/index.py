@@ -1,10 +1,4 @@
-"""Bounding volume hierarchies of meshes, one for each distinct mesh, and sliver probes against them.
-
-A contact list of FCL between two meshes is not usable as a patch: it misses facets that touch exactly
-and facets that penetrate in parallel. A thin triangle that stands across the surface does hit, whatever
-the gap, so every question here is put as one BVH of such slivers against the BVH of a mesh. Slivers are
-given in the mesh's own frame: the BVH never has to be built again for another pose.
-"""
+"""What is asked of the facets of one mesh: boxes, borders, shells, nearness, inside; made when first asked for."""
 
 from __future__ import annotations
 
@@ -14,8 +8,12 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.components import components
-from kinform.foundation.meshes.boxes import FacetBoxes, FlatBoxes, facet_boxes
+from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
+from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
+from kinform.foundation.meshes.parity import Ray
+from kinform.foundation.meshes.probes import Region
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
@@ -24,80 +22,13 @@ from kinform.model.surfaces import MeshSurfaces
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-__all__ = [
-    "Hits",
-    "MeshIndex",
-    "MeshStore",
-    "Region",
-    "cross",
-    "fcl_distance",
-    "fcl_model",
-    "fcl_pose",
-    "inner_weights",
-    "partial_model",
-]
+__all__ = ["MeshIndex", "MeshStore", "inner_weights"]
 
 
-_UNIT = 2.0**20
-"""What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
-2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
-_WIDTH = 1e-3
-"""Width of a sliver relative to its length: zero width misses most facets."""
 _BALL, _PARTS = 0.012, 6
 """Share of a mesh's diagonal that balls about its facets are as small as, and divisions of a facet's side for it at most."""
 _RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
 """Directions along which no designer lays an edge."""
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Cross products of rows (n, 3); numpy's own spends most of its time on moving axes about."""
-    out = np.empty_like(a)
-    out[:, 0] = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
-    out[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
-    out[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return out
-
-
-@dataclass(frozen=True, eq=False)
-class Hits:
-    """Facets that probes hit, ordered by probe, then by facet."""
-
-    probe: Ints
-    """(h,) index of the probe."""
-    facet: Ints
-    """(h,) index of the facet."""
-    along: Array
-    """(h,) m: where the probe's line meets the plane of the facet, from the probe's point."""
-    facing: Array
-    """(h,) cosine between the probe's direction and the facet's outward normal."""
-
-
-def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
-    """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
-    model = fcl.BVHModel()
-    model.beginModel(len(vertices), len(faces))
-    model.addSubModel(np.ascontiguousarray(_UNIT * vertices), np.ascontiguousarray(faces))
-    model.endModel()
-    return model
-
-
-def fcl_pose(X: Array) -> fcl.Transform:
-    """FCL's form of a pose (4, 4) of such a model."""
-    return fcl.Transform(X[:3, :3], _UNIT * X[:3, 3])
-
-
-def fcl_distance(
-    first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
-) -> float:
-    """m between two such models, 0 where they touch or cross."""
-    found = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
-    return max(float(found), 0.0) / _UNIT
-
-
-def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
-    """FCL's model of some facets, with the vertices that they use."""
-    used, corners = np.unique(faces, return_inverse=True)
-    return fcl_model(vertices[used], corners.reshape(-1, 3))
 
 
 class MeshIndex:
@@ -109,7 +40,7 @@ class MeshIndex:
         self._borders: Ints | None = None
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
-        self._rays: list[_Ray] | None = None
+        self._rays: list[Ray] | None = None
         self._near: list[tuple[cKDTree, float]] | None = None
         self._table: SurfaceTable | None = None
         self.low: Array = mesh.vertices.min(axis=0)
@@ -225,7 +156,7 @@ class MeshIndex:
         if not out.any():
             return out
         if self._rays is None:
-            self._rays = [_Ray(self.mesh, ray) for ray in _RAYS]
+            self._rays = [Ray(self.mesh, ray) for ray in _RAYS]
         some = points[out]
         count = self._rays[0].crossings(some)
         # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
@@ -273,95 +204,6 @@ def inner_weights(number: int) -> Array:
     down = [(3 * a + 2, 3 * b + 2) for a in range(number - 1) for b in range(number - 1 - a)]
     two = np.array(up + down, dtype=float) / (3.0 * number)
     return np.column_stack([two, 1.0 - two.sum(axis=1)])
-
-
-class _Ray:
-    """A mesh as seen along one direction."""
-
-    def __init__(self, mesh: Mesh, ray: Array):
-        ray = ray / np.linalg.norm(ray)
-        u = np.cross(ray, np.eye(3)[np.argmin(np.abs(ray))])
-        u /= np.linalg.norm(u)
-        self._frame = np.stack([u, np.cross(ray, u), ray])
-        self._vertices = mesh.vertices @ self._frame.T
-        self._faces = mesh.faces
-        flat = self._vertices[:, :2]
-        self._boxes = FlatBoxes(*facet_boxes((flat[mesh.faces[:, 0]], flat[mesh.faces[:, 1]], flat[mesh.faces[:, 2]])))
-
-    def crossings(self, points: Array) -> Array:
-        """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""
-        seen = points @ self._frame.T
-        which, facets = self._boxes.around(seen[:, :2])
-        corners = self._vertices[self._faces[facets]] - seen[which, None]
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (corners[:, i].T for i in range(3))
-        a, b, c = bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx
-        total = a + b + c
-        inside = ((a > 0) & (b > 0) & (c > 0)) | ((a < 0) & (b < 0) & (c < 0))
-        height = (a * az + b * bz + c * cz) / np.where(total != 0, total, 1.0)
-        leaving = np.where(inside & (height > 0), np.sign(total), 0.0)
-        return np.asarray(np.bincount(which, leaving, minlength=len(points)), dtype=np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class Region:
-    """Facets of a mesh that probes are cast against."""
-
-    index: MeshIndex
-    bvh: fcl.BVHModel | None
-    facets: Ints | None
-    """Facets of the BVH in the mesh; None: all of them in order."""
-
-    def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
-        """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
-
-        `width` of the slivers, relative to their reach.
-        """
-        count, mesh = len(points), self.index.mesh
-        empty = np.zeros(0)
-        if count == 0 or self.bvh is None:
-            return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
-        least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
-        across = cross(directions, least)
-        across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
-        tip = points + reach[:, None] * directions
-        slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
-        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
-        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-        request = fcl.CollisionRequest(num_max_contacts=256 * count + 4096, enable_contact=False)
-        result = fcl.CollisionResult()
-        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
-        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
-        pairs = np.unique(pairs, axis=0)
-        probe, facet = pairs[:, 0], pairs[:, 1]
-        if self.facets is not None:
-            facet = self.facets[facet]
-        normal = self.index.normals(facet)
-        facing = np.einsum("ij,ij->i", normal, directions[probe])
-        height = np.einsum("ij,ij->i", normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
-        steep = np.abs(facing) > 1e-3
-        along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
-        return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
-
-    def depths(self, points: Array) -> tuple[Array, Ints]:
-        """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        # a triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges
-        point = fcl.CollisionObject(fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]])))
-        mesh = fcl.CollisionObject(self.bvh)
-        distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
-        for k, p in enumerate(_UNIT * points):
-            point.setTranslation(p)
-            result = fcl.DistanceResult()
-            distance[k] = fcl_distance(mesh, point, result)
-            facet[k] = result.b1
-        return distance, facet if self.facets is None else self.facets[facet]
-
-    def crosses(self, other: Region, X_SO: Array) -> bool:
-        """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
-        if self.bvh is None or other.bvh is None:
-            return False
-        request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
-        placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
-        return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
 
 
 @dataclass

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
 

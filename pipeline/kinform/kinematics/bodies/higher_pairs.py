@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, cross, scaled, span, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.mobility.closure import body_twists, close
 from kinform.kinematics.pair.certainty import TOUCHING, meets

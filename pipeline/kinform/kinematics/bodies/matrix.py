@@ -12,7 +12,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, perpendicular, rows, scaled
+from kinform.foundation.algebra.screws import Frame, rows, scaled
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint

@@ -17,7 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.displacements import displacement
-from kinform.foundation.algebra.screws import Frame, cross
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import blocks
 from kinform.kinematics.mobility.loop_system import LoopSystem, loop_system
 from kinform.kinematics.pair.joint import twists_of

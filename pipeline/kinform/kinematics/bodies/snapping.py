@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import canonical, cross, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
 from kinform.kinematics.bodies.concurrence import Locus, meeting_shifts
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.arrays import Array

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.bodies.higher_pairs import is_higher
 from kinform.kinematics.mobility.closure import Closure
 from kinform.kinematics.mobility.teeth import Side, meshing

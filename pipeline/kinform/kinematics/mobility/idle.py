@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, cross, perpendicular, rotation, scaled, span, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.kinematics.pair.evidence import COAXIAL
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, cross, scaled
+from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
 from kinform.model.arrays import Array
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import canonical, cross
+from kinform.foundation.algebra.vectors import canonical, cross
 from kinform.foundation.graphs.graph import Forest, forest
 from kinform.kinematics.mobility.closure import Closure
 from kinform.kinematics.mobility.loops import ROUNDING, Solution

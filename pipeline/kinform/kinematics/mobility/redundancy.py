@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.displacements import cross_matrix
-from kinform.foundation.algebra.screws import Frame, cross, scaled, span
+from kinform.foundation.algebra.screws import Frame, scaled, span
+from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
 from kinform.kinematics.mobility.closure import Closure
 from kinform.kinematics.mobility.loops import CLOSED, FEW, Block, axes_frame, loop_matrix

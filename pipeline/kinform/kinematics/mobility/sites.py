@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import Frame, cross, rows, scaled, span
+from kinform.foundation.algebra.screws import Frame, rows, scaled, span
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.pair.evidence import COAXIAL
 from kinform.kinematics.wording import Locked, locked, locked_text, rows_too_many

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Meshing

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.kinematics.pair.evidence import COAXIAL, FAR, Evidence, Item
 from kinform.kinematics.pair.freedoms import fits, freedoms
 from kinform.kinematics.pair.subspace import name_space

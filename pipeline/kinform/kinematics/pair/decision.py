@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import cross
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.pair.certainty import certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import INDEPENDENT, fits, freedoms

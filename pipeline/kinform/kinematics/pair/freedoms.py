@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import cross, span
+from kinform.foundation.algebra.screws import span
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.pair.evidence import PITCH, Evidence
 from kinform.kinematics.pair.subspace import name_space, nearest_pair
 from kinform.model.arrays import Array

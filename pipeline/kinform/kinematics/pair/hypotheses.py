@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import canonical, cross, perpendicular, rotation, translation
+from kinform.foundation.algebra.screws import rotation, translation
+from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
 from kinform.kinematics.pair.evidence import COAXIAL, PITCH, Evidence, Item
 from kinform.model.arrays import Array
 

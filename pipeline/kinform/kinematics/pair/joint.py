@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import canonical, cross, perpendicular, twist_at_origin
+from kinform.foundation.algebra.screws import twist_at_origin
+from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
 from kinform.kinematics.groups import in_words
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.displacements import cross_matrix
-from kinform.foundation.algebra.screws import Frame, canonical, cross, perpendicular, rotation, translation
+from kinform.foundation.algebra.screws import Frame, rotation, translation
+from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, perpendicular
 from kinform.model.arrays import Array
 
 __all__ = ["JointForm", "name_space", "nearest_pair"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.design import Design
-from kinform.foundation.algebra.screws import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.kinematics.questions.query import QueryAnswer, ask
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint

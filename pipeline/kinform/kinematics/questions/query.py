@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.design import Design
-from kinform.foundation.algebra.screws import Frame, cross, rows, scaled, span
+from kinform.foundation.algebra.screws import Frame, rows, scaled, span
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.mobility.named_freedoms import Motions
 from kinform.kinematics.questions.ways import Attempt, attempt, pair_ways
 from kinform.kinematics.separation.releases import direction_words

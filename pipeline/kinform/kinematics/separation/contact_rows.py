@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, cross
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.bodies.matrix import extreme_samples
 from kinform.kinematics.separation.cone import FREE, grams, held_for_certain, reduced, unit_rows_of
 from kinform.model.arrays import Array

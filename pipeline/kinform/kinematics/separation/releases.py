@@ -9,7 +9,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, cross, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, twist_at_origin
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.pair.answer import Answers, ask
 from kinform.kinematics.separation.cone import (
     FREE,

@@ -19,7 +19,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, cross, scaled, twist_at_origin
+from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.kinematics.pair.answer import Answers, ask
 from kinform.kinematics.separation.cone import HELD, reduced, unit_rows, within

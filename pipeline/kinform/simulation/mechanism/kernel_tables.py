@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
-from kinform.foundation.algebra.screws import perpendicular
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.addresses import addresses

@@ -1,0 +1,42 @@
+"""FCL: models of triangles, their poses, and distances between them, in metres."""
+
+from __future__ import annotations
+
+import fcl
+import numpy as np
+
+from kinform.model.arrays import Array, Ints
+
+__all__ = ["UNIT", "fcl_distance", "fcl_model", "fcl_pose", "partial_model"]
+
+UNIT = 2.0**20
+"""What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
+2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
+
+
+def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
+    model = fcl.BVHModel()
+    model.beginModel(len(vertices), len(faces))
+    model.addSubModel(np.ascontiguousarray(UNIT * vertices), np.ascontiguousarray(faces))
+    model.endModel()
+    return model
+
+
+def fcl_pose(X: Array) -> fcl.Transform:
+    """FCL's form of a pose (4, 4) of such a model."""
+    return fcl.Transform(X[:3, :3], UNIT * X[:3, 3])
+
+
+def fcl_distance(
+    first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
+) -> float:
+    """m between two such models, 0 where they touch or cross."""
+    found = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
+    return max(float(found), 0.0) / UNIT
+
+
+def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
+    """FCL's model of some facets, with the vertices that they use."""
+    used, corners = np.unique(faces, return_inverse=True)
+    return fcl_model(vertices[used], corners.reshape(-1, 3))

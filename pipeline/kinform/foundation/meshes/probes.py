@@ -1,0 +1,111 @@
+"""Sliver probes against facets of a mesh.
+
+A contact list of FCL between two meshes is not usable as a patch: it misses facets that touch exactly
+and facets that penetrate in parallel. A thin triangle that stands across the surface does hit, whatever
+the gap, so every question here is put as one BVH of such slivers against the BVH of a mesh. Slivers are
+given in the mesh's own frame: the BVH never has to be built again for another pose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import fcl
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose
+from kinform.model.arrays import Array, Ints
+from kinform.model.assembly import Mesh
+
+__all__ = ["Facets", "Hits", "Region"]
+
+_WIDTH = 1e-3
+"""Width of a sliver relative to its length: zero width misses most facets."""
+
+
+class Facets(Protocol):
+    """A mesh that tells the normals of its facets."""
+
+    mesh: Mesh
+
+    def normals(self, facets: Ints) -> Array:
+        """(n, 3) unit, outward, part frame."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Facets that probes hit, ordered by probe, then by facet."""
+
+    probe: Ints
+    """(h,) index of the probe."""
+    facet: Ints
+    """(h,) index of the facet."""
+    along: Array
+    """(h,) m: where the probe's line meets the plane of the facet, from the probe's point."""
+    facing: Array
+    """(h,) cosine between the probe's direction and the facet's outward normal."""
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Facets of a mesh that probes are cast against."""
+
+    index: Facets
+    bvh: fcl.BVHModel | None
+    facets: Ints | None
+    """Facets of the BVH in the mesh; None: all of them in order."""
+
+    def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
+        """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
+
+        `width` of the slivers, relative to their reach.
+        """
+        count, mesh = len(points), self.index.mesh
+        empty = np.zeros(0)
+        if count == 0 or self.bvh is None:
+            return Hits(empty.astype(np.int64), empty.astype(np.int64), empty, empty)
+        least = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
+        across = cross(directions, least)
+        across *= (width * reach / np.linalg.norm(across, axis=1))[:, None]
+        tip = points + reach[:, None] * directions
+        slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
+        probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
+        # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
+        request = fcl.CollisionRequest(num_max_contacts=256 * count + 4096, enable_contact=False)
+        result = fcl.CollisionResult()
+        fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
+        pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
+        pairs = np.unique(pairs, axis=0)
+        probe, facet = pairs[:, 0], pairs[:, 1]
+        if self.facets is not None:
+            facet = self.facets[facet]
+        normal = self.index.normals(facet)
+        facing = np.einsum("ij,ij->i", normal, directions[probe])
+        height = np.einsum("ij,ij->i", normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
+        steep = np.abs(facing) > 1e-3
+        along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
+        return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
+
+    def depths(self, points: Array) -> tuple[Array, Ints]:
+        """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
+        # a triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges
+        point = fcl.CollisionObject(fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]])))
+        mesh = fcl.CollisionObject(self.bvh)
+        distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
+        for k, p in enumerate(UNIT * points):
+            point.setTranslation(p)
+            result = fcl.DistanceResult()
+            distance[k] = fcl_distance(mesh, point, result)
+            facet[k] = result.b1
+        return distance, facet if self.facets is None else self.facets[facet]
+
+    def crosses(self, other: Region, X_SO: Array) -> bool:
+        """Whether any facets of the two intersect; `X_SO` (4, 4): pose of the other part here."""
+        if self.bvh is None or other.bvh is None:
+            return False
+        request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
+        placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
+        return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
