@@ -136,7 +136,7 @@ def one(manifest: Path) -> None:
     import trimesh
 
     from kinform import contacts, kinematics, surfaces
-    from kinform.form.read import load
+    from kinform.form.readers.assembly import load
 
     idle = megabytes()
     out: dict[str, float] = {}
@@ -145,9 +145,9 @@ def one(manifest: Path) -> None:
     meshes = {part.mesh.digest: part.mesh for part in assembly.parts}
 
     def recovered():
-        copies = surfaces.congruent(meshes)
+        copies = surfaces.rigid_copies(meshes)
         found = {k: surfaces.recover(m, assembly.tolerances) for k, m in meshes.items() if k not in copies}
-        return copies, found | {k: surfaces.moved(found[c.of], k, c) for k, c in copies.items()}
+        return copies, found | {k: surfaces.surfaces_of_copy(found[c.of], k, c) for k, c in copies.items()}
 
     out["surfaces"], (copies, found) = timed(recovered)
     out["contacts"], touching = timed(lambda: contacts.find(assembly, found))

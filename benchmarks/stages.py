@@ -14,7 +14,7 @@ import fcl
 import trimesh
 
 from kinform import contacts, kinematics, surfaces
-from kinform.form.read import load
+from kinform.form.readers.assembly import load
 
 
 def best(work, runs=3):

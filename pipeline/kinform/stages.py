@@ -62,12 +62,12 @@ def _read(
 ) -> tuple[Assembly, dict[str, str]]:
     """The assembly and the contents of its files; what earlier results hold is not read again."""
     if earlier is not None:
-        from kinform.form.again import reread
+        from kinform.form.reload import reload_meshes
 
-        again = reread(manifest, earlier, files, allow_outside=allow_outside)
+        again = reload_meshes(manifest, earlier, files, allow_outside=allow_outside)
         if again is not None:
             return again
-    from kinform.form.read import load_with_contents
+    from kinform.form.readers.assembly import load_with_contents
 
     return load_with_contents(manifest, allow_outside=allow_outside, earlier=earlier, files=files)
 

@@ -11,7 +11,7 @@ from kinform.consistency.rules.kf902_requirement_not_checked import JUDGES
 def test_every_kind_of_requirement_has_a_rule_of_its_own():
     from typing import get_args
 
-    from kinform.form.manifest.require import Require
+    from kinform.form.manifest.requirements import Require
 
     union = get_args(Require)[0]
     kinds = {get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(union)}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from kinform.errors import InputError
 from kinform.form import load
-from kinform.form.lines import LineTable
+from kinform.form.readers.toml_lines import LineTable
 
 KEYS = st.sampled_from(["name", "mass", "axis of", "[[part]]", "a.b", "#", "é"])
 SCALARS = st.sampled_from(

@@ -6,8 +6,8 @@ import pytest
 import trimesh
 from known import FIXTURES
 
+from kinform.form.files import read_raw
 from kinform.form.meshes.health import build_mesh
-from kinform.form.sources import read_raw
 
 MESHES = sorted(p for p in FIXTURES.rglob("*") if p.suffix in (".stl", ".obj") and "broken" not in p.parts)
 

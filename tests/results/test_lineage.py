@@ -134,7 +134,7 @@ def test_versions_are_read_without_importing_and_are_those_of_the_packages() -> 
 
 
 def test_a_mesh_that_changed_while_it_was_read_leaves_no_lineage(pair: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from kinform.form import scope
+    from kinform.form.readers import scope
 
     parse = scope.parse
 
@@ -143,7 +143,7 @@ def test_a_mesh_that_changed_while_it_was_read_leaves_no_lineage(pair: Path, mon
         _touch_comment(path.parent)
         return found
 
-    monkeypatch.setattr("kinform.form.read.parse", parse_and_edit)
+    monkeypatch.setattr("kinform.form.readers.assembly.parse", parse_and_edit)
     marks = stages.import_(pair / "planar_block.toml").fingerprints
     assert (marks.files, marks.lineage) == ({}, {})
 

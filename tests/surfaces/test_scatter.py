@@ -12,7 +12,7 @@ from shapes import block, kinds, mesh_of, of_manifold, solid_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
-from kinform.surfaces.polygons.fabric import fabric, scatter
+from kinform.surfaces.polygons.facets import fabric, scatter
 
 
 def scattered(mesh, size, seed=0):

@@ -86,7 +86,7 @@ def _proposed(text: str) -> str:
 
 def _doubted(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     """Nothing is proposed; but a unit that is hard to believe is said at once."""
-    from kinform.form.single import doubts
+    from kinform.form.without_manifest import doubts
 
     for doubt in doubts(assembly):
         console.warn(doubt)
@@ -95,7 +95,7 @@ def _doubted(assembly: Assembly) -> list[tuple[list[PartName], str]]:
 
 def _fastened(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     """Parts that their contacts suggest are one body; none where the unit is doubtful: tolerances depend on it."""
-    from kinform.form.single import doubts
+    from kinform.form.without_manifest import doubts
 
     if doubts(assembly):
         return _doubted(assembly)

@@ -22,7 +22,7 @@ from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 from kinform.reuse import fingerprints, inputs
 from kinform.reuse.ledger import Ledger
-from kinform.surfaces.congruent import Copy
+from kinform.surfaces.copies import Copy
 
 __all__ = ["contacts", "surfaces"]
 
@@ -39,7 +39,7 @@ def surfaces(
     for part in view.parts:
         if part.mesh is not None:
             meshes.setdefault(part.mesh.digest, part.mesh)
-    copies = surfaces_stage.congruent(meshes)
+    copies = surfaces_stage.rigid_copies(meshes)
     marks = {
         key: fingerprints.mark("surfaces", _inputs_of(mesh, view.tolerances, copies.get(key)))
         for key, mesh in meshes.items()
@@ -63,7 +63,7 @@ def surfaces(
         found[key] = recovered
     for key in wanted:
         if key in copies:
-            found[key] = surfaces_stage.moved(found[copies[key].of], key, copies[key])
+            found[key] = surfaces_stage.surfaces_of_copy(found[copies[key].of], key, copies[key])
     return {key: found[key] for key in sorted(found)}, {key: marks[key] for key in sorted(marks)}
 
 

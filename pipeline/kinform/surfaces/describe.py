@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
+from kinform.surfaces.groups import group_sum, normal_equations
 from kinform.surfaces.kinds import plane
-from kinform.surfaces.kinds import revolved as _revolved
+from kinform.surfaces.kinds import ruled as _revolved
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
-from kinform.surfaces.kinds.revolved import basis
-from kinform.surfaces.polygons.batch import group_sum, normal_equations
+from kinform.surfaces.kinds.ruled import basis
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
 
 __all__ = ["COVERAGE", "Description", "canonical", "curved", "flat", "freeform"]

@@ -16,7 +16,7 @@ from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces.describe import Description, curved, flat, freeform
 from kinform.surfaces.kinds.kind import Batch
-from kinform.surfaces.polygons.fabric import fabric, scatter
+from kinform.surfaces.polygons.facets import fabric, scatter
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale, build
 from kinform.surfaces.regions.merge import coincident_planes, coincident_regions
 from kinform.surfaces.regions.partition import CURVED, Partition, partition

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest import check, common, function, parts, require
+from kinform.form.manifest import check, common, function, parts, requirements
 from kinform.form.manifest.check import CheckTable
 from kinform.form.manifest.common import Finite, Positive, Table, Vector
 from kinform.form.manifest.function import FunctionTable
@@ -21,7 +21,17 @@ from kinform.form.manifest.parts import (
     TolerancesTable,
 )
 
-__all__ = ["Initial", "Manifest", "SimulationTable", "check", "common", "function", "json_schema", "parts", "require"]
+__all__ = [
+    "Initial",
+    "Manifest",
+    "SimulationTable",
+    "check",
+    "common",
+    "function",
+    "json_schema",
+    "parts",
+    "requirements",
+]
 
 
 class Initial(Table):

@@ -17,7 +17,7 @@ from kinform.form.manifest.common import (
     Table,
     Vector,
 )
-from kinform.form.manifest.require import Require
+from kinform.form.manifest.requirements import Require
 
 __all__ = ["Coupling", "Drive", "FunctionTable", "IntendedJointTable", "LawTable", "Load"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.kinds import revolved as _revolved
+from kinform.surfaces.groups import group_sum, normal_equations, solve_normal
+from kinform.surfaces.kinds import ruled as _revolved
 from kinform.surfaces.kinds.kind import Batch, Params, Probe
-from kinform.surfaces.polygons.batch import group_sum, normal_equations, solve_normal
 from kinform.surfaces.polygons.patchwork import Scale
 
 __all__ = ["Cylinder"]

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.polygons.batch import counted, starts_of
+from kinform.surfaces.groups import occurrences, starts_of
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
 
 __all__ = ["Batch", "Kind", "Params", "Probe", "widths"]
@@ -80,7 +80,7 @@ class Batch:
         if self._edges is None:
             owner, edge = self.patchwork.sides.expand(self.polygon)
             total = np.int64(max(len(self.patchwork.a), 1))
-            key, times = counted(self.region[owner] * total + edge)
+            key, times = occurrences(self.region[owner] * total + edge)
             self._edges = key // total, key % total, times == 2
         return self._edges
 
@@ -89,7 +89,7 @@ class Batch:
         if least not in self._inner:
             owner, vertex = self.corners
             total = np.int64(max(len(self.patchwork.vertices), 1))
-            key, times = counted(self.region[owner] * total + vertex)
+            key, times = occurrences(self.region[owner] * total + vertex)
             key = key[times >= least]
             self._inner[least] = key // total, key % total
         return self._inner[least]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.polygons.batch import group_sum
+from kinform.surfaces.groups import group_sum
 
 __all__ = ["fit"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import group_sum, normal_equations, solve_normal
 from kinform.surfaces.kinds.kind import Batch, Params, Probe
-from kinform.surfaces.polygons.batch import group_sum, normal_equations, solve_normal
 from kinform.surfaces.polygons.patchwork import Scale
 
 __all__ = ["Sphere"]

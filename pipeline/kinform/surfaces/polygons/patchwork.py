@@ -11,11 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.polygons.batch import Ragged, cross
-from kinform.surfaces.polygons.fabric import Fabric, angles
-from kinform.surfaces.polygons.planar import Scale, cluster, moments
+from kinform.surfaces.groups import Ragged
+from kinform.surfaces.polygons.coplanar import Scale, cluster, moments
+from kinform.surfaces.polygons.facets import Fabric, angles
 
 __all__ = ["Patchwork", "Scale", "build"]
 

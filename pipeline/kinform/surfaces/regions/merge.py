@@ -13,7 +13,7 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
-from kinform.surfaces.regions.spread import conforms
+from kinform.surfaces.regions.conformity import conforms
 
 __all__ = ["coincident_planes", "coincident_regions"]
 

@@ -12,16 +12,16 @@ import numpy as np
 
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import distinct, quantile
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.kinds.kind import Batch, Kind
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
-from kinform.surfaces.polygons.batch import distinct, quantile
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
-from kinform.surfaces.regions.grow import Found, absorb, pursue, whole
-from kinform.surfaces.regions.spread import Ground
+from kinform.surfaces.regions.conformity import Ground
+from kinform.surfaces.regions.growth import Found, absorb, pursue, whole
 
 __all__ = ["CURVED", "Partition", "Region", "partition"]
 

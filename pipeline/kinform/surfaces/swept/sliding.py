@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces.describe import COVERAGE, Description, canonical
-from kinform.surfaces.polygons.batch import cross, group_sum
+from kinform.surfaces.groups import group_sum
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
 
 __all__ = ["sliding"]

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.describe import COVERAGE, Description, canonical, freeform
-from kinform.surfaces.polygons.batch import cross
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
 
 __all__ = ["threads"]

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import normalised
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces.groups import group_sum
 from kinform.surfaces.kinds import plane
-from kinform.surfaces.polygons.batch import group_sum
-from kinform.surfaces.polygons.fabric import Fabric, angles, departures, normalised
+from kinform.surfaces.polygons.facets import Fabric, angles, departures
 
 __all__ = ["Scale", "cluster", "moments"]
 

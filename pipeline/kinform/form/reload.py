@@ -1,6 +1,6 @@
 """An assembly whose manifests are as they were: only meshes are looked at again, and nothing of the manifests is parsed.
 
-Whatever is not as plain as that is left to `kinform.form.read`, which also finds the words for what is wrong.
+Whatever is not as plain as that is left to `kinform.form.readers.assembly`, which also finds the words for what is wrong.
 """
 
 from __future__ import annotations
@@ -9,15 +9,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from kinform.form.files import MESHES, Sources, earlier_meshes
 from kinform.form.problems import Problems
-from kinform.form.sources import MESHES, Sources, earlier_meshes
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Part
 
-__all__ = ["reread"]
+__all__ = ["reload_meshes"]
 
 
-def reread(
+def reload_meshes(
     path: Path, earlier: Assembly, files: Mapping[str, str], *, allow_outside: bool = False
 ) -> tuple[Assembly, dict[str, str]] | None:
     """The assembly of the manifest at `path`, and the SHA-256 (hex) of every file, where all but mesh files have the

@@ -9,17 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import distinct, group_sum, normal_equations, occurrences, quantile, solve_normal
 from kinform.surfaces.kinds.kind import ALONG, Batch, Params, Probe
-from kinform.surfaces.polygons.batch import (
-    counted,
-    cross,
-    distinct,
-    group_sum,
-    normal_equations,
-    quantile,
-    solve_normal,
-)
 
 __all__ = [
     "CONVERGED",
@@ -306,7 +299,7 @@ def regular(batch: Batch, params: Params) -> Flags:
     region, edge = region[inner], edge[inner]
     total = np.int64(work.count)
     sides = np.r_[region * total + work.a[edge], region * total + work.b[edge]]
-    key, times = counted(sides)
+    key, times = occurrences(sides)
     whole = np.isin(batch.region * total + batch.polygon, key[times >= 2])
     width = widths(batch, params)
     group = np.r_[batch.region[whole], region]

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from shapes import block, of_manifold, solid_rod
 
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces import congruent, moved, recover
+from kinform.surfaces import recover, rigid_copies, surfaces_of_copy
 
 
 def bracket(**keys):
@@ -43,9 +43,9 @@ def by_digest(*meshes):
 def test_what_is_moved_is_what_would_be_found(rounding):
     first, second = bracket(rounding=rounding), bracket(pose=pose(4), rounding=rounding)
     meshes = by_digest(first, second)
-    ((digest, copy),) = congruent(meshes).items()
+    ((digest, copy),) = rigid_copies(meshes).items()
     assert copy.of == min(meshes) != digest
-    given = moved(recover(meshes[copy.of], Tolerances()), digest, copy)
+    given = surfaces_of_copy(recover(meshes[copy.of], Tolerances()), digest, copy)
     found = recover(meshes[digest], Tolerances())
     assert given.digest == digest
     assert len(given.surfaces) == len(found.surfaces)
@@ -64,12 +64,12 @@ def test_the_mirror_image_and_another_size_are_no_copies():
     larger = named(replace(first, vertices=first.vertices * 1.001))
     bent = first.vertices.copy()
     bent[0] += 1e-5
-    assert congruent(by_digest(first, mirror, larger, named(replace(first, vertices=bent)))) == {}
+    assert rigid_copies(by_digest(first, mirror, larger, named(replace(first, vertices=bent)))) == {}
 
 
 def test_all_copies_are_of_the_lowest_digest():
     meshes = by_digest(*(bracket(pose=pose(seed)) for seed in range(5)))
-    copies = congruent(meshes)
+    copies = rigid_copies(meshes)
     assert len(copies) == 4
     assert {copy.of for copy in copies.values()} == {min(meshes)}
 
@@ -77,4 +77,4 @@ def test_all_copies_are_of_the_lowest_digest():
 def test_symmetric_shapes_are_copies_too():
     cube = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True)))
     turned = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True), pose=pose(2)))
-    assert len(congruent(by_digest(cube, turned))) == 1
+    assert len(rigid_copies(by_digest(cube, turned))) == 1

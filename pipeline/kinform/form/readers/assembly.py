@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
+from kinform.form.files import Sources, earlier_meshes
 from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Part as PartTable
 from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
-from kinform.form.poses import UNIT, pose, unit_error
 from kinform.form.problems import Problems, did_you_mean, quoted
-from kinform.form.purposes import Purposes
-from kinform.form.scope import Scope, parse
-from kinform.form.sources import Sources, earlier_meshes
+from kinform.form.readers.function import Purposes
+from kinform.form.readers.poses import UNIT, pose, unit_error
+from kinform.form.readers.scope import Scope, parse
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Source, Subassembly

@@ -7,17 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.arrays import Array, Ints
 
 __all__ = [
-    "Array",
-    "Flags",
-    "Ints",
     "Ragged",
-    "counted",
     "distinct",
     "group_sum",
     "normal_equations",
+    "occurrences",
     "ordered_quantile",
     "quantile",
     "solve_normal",
@@ -46,15 +43,6 @@ class Ragged:
         return owner, self.items[self.starts[rows][owner] + within]
 
 
-def cross(a: Array, b: Array) -> Array:
-    """Cross products of rows (n, 3): numpy's own spends most of its time on moving axes about."""
-    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
-    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
-    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return out
-
-
 def starts_of(groups: Ints, count: int) -> Ints:
     """Start of each of `count` groups in a sorted list of group numbers (count + 1 entries)."""
     return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
@@ -66,7 +54,7 @@ def distinct(keys: Ints) -> Ints:
     return ordered[np.r_[True, ordered[1:] != ordered[:-1]]] if len(ordered) else ordered
 
 
-def counted(keys: Ints) -> tuple[Ints, Ints]:
+def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     """The distinct keys, ascending, and how often each occurs."""
     ordered = np.sort(keys)
     heads = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]]) if len(ordered) else np.zeros(0, np.int64)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.scope import Scope
+from kinform.form.readers.scope import Scope
 
 __all__ = ["columns", "path_rows"]
 

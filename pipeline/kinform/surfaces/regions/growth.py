@@ -11,10 +11,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import quantile, starts_of
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
-from kinform.surfaces.polygons.batch import quantile, starts_of
 from kinform.surfaces.polygons.patchwork import Scale
-from kinform.surfaces.regions.spread import WIDEST, Ground, conforms, connected, neighbours, reach_of, spread, within
+from kinform.surfaces.regions.conformity import (
+    WIDEST,
+    Ground,
+    conforms,
+    connected,
+    neighbours,
+    reach_of,
+    spread,
+    within,
+)
 
 __all__ = ["Found", "absorb", "pursue", "whole"]
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from kinform.form.lines import LineTable, Path
 from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems, did_you_mean, listed, quoted
+from kinform.form.readers.toml_lines import LineTable, Path
 
 __all__ = ["names_of", "report", "without_errors"]
 

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
+from kinform.form.files import Sources
 from kinform.form.manifest.common import Quantity
 from kinform.form.problems import did_you_mean, quoted
-from kinform.form.requirements import faults
-from kinform.form.scope import Scope
-from kinform.form.sources import Sources
-from kinform.form.tables import columns, path_rows
+from kinform.form.readers.csv_tables import columns, path_rows
+from kinform.form.readers.requirements import faults
+from kinform.form.readers.scope import Scope
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import (

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.polygons.batch import cross
 
-__all__ = ["Fabric", "angles", "departures", "fabric", "normalised", "scatter"]
+__all__ = ["Fabric", "angles", "departures", "fabric", "scatter"]
 
 SHARE = 0.25
 """Share of the area, from the calmest vertices up, at which the scatter is read: saddles are rarely more
@@ -51,12 +51,6 @@ class Fabric:
     length: Array
     inner: Flags
     """(E,) two facets that run the edge oppositely."""
-
-
-def normalised(vectors: Array) -> Array:
-    """Rows (n, 3) of length one; zero rows stay."""
-    size = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
-    return np.asarray(vectors / np.maximum(size, 1e-300)[:, None])
 
 
 def angles(n0: Array, n1: Array) -> Array:

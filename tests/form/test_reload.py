@@ -9,7 +9,7 @@ import pytest
 from known import FIXTURES
 
 from kinform import stages
-from kinform.form.again import reread
+from kinform.form.reload import reload_meshes
 from kinform.model.assembly import Assembly
 from kinform.reuse.digest import digest
 
@@ -28,7 +28,7 @@ def manifest(tmp_path: Path) -> Path:
 def test_a_mesh_that_changed_is_read_and_the_others_are_kept(manifest: Path) -> None:
     earlier, files = read(manifest)
     shutil.copy(manifest.parent / "pin_c.stl", manifest.parent / "pin_a.stl")
-    found = reread(manifest, earlier, files)
+    found = reload_meshes(manifest, earlier, files)
     fresh, contents = read(manifest)
     assert found is not None
     assert digest(found[0]) == digest(fresh)
@@ -50,7 +50,7 @@ def test_what_is_not_plain_is_left_to_the_reader(manifest: Path, tmp_path: Path,
     elif change == "outside":
         mesh.rename(tmp_path / "pin.stl")
         mesh.symlink_to(tmp_path / "pin.stl")
-        assert reread(manifest, earlier, files, allow_outside=True) is not None
+        assert reload_meshes(manifest, earlier, files, allow_outside=True) is not None
     else:
         files = {name: content for name, content in files.items() if name != "pin_a.stl"}
-    assert reread(manifest, earlier, files) is None
+    assert reload_meshes(manifest, earlier, files) is None

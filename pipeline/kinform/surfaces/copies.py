@@ -19,7 +19,7 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.surfaces.describe import canonical
 
-__all__ = ["Copy", "congruent", "moved"]
+__all__ = ["Copy", "rigid_copies", "surfaces_of_copy"]
 
 
 EPS32 = float(np.finfo(np.float32).eps)
@@ -41,7 +41,7 @@ class Copy:
     """m."""
 
 
-def congruent(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
+def rigid_copies(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
     """The copies among meshes by digest; of each shape the mesh of the lowest digest is no copy."""
     by_size: dict[tuple[int, int], list[str]] = {}
     for digest in sorted(meshes):
@@ -130,7 +130,7 @@ def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
     return Copy(other, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
 
 
-def moved(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:
+def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:
     """The surfaces of a mesh as those of its copy, which has this digest."""
     return MeshSurfaces(
         digest, tuple(_moved(surface, copy) for surface in surfaces.surfaces), surfaces.labels, surfaces.noise

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
+from kinform.form.files import read_raw
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems, did_you_mean, quoted
-from kinform.form.sources import read_raw
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from kinform.form import translate
-from kinform.form.lines import LineTable
-from kinform.form.lines import Path as KeyPath
 from kinform.form.manifest import Manifest
 from kinform.form.problems import Problems
+from kinform.form.readers import pydantic_errors
+from kinform.form.readers.toml_lines import LineTable
+from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
@@ -106,10 +106,10 @@ def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTabl
     try:
         return Manifest.model_validate(raw), lines, frozenset()
     except ValidationError as error:
-        translate.report(error, raw, lines, file, problems)
+        pydantic_errors.report(error, raw, lines, file, problems)
         try:
-            kept, dropped = translate.without_errors(error, raw)
-            refused = frozenset(translate.names_of(dropped, raw))
+            kept, dropped = pydantic_errors.without_errors(error, raw)
+            refused = frozenset(pydantic_errors.names_of(dropped, raw))
             return Manifest.model_validate(kept), lines.without(dropped), refused
         except ValidationError:
             return None

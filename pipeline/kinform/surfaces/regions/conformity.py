@@ -8,9 +8,9 @@ import numpy as np
 
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import Ragged, distinct, ordered_quantile
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
-from kinform.surfaces.polygons.batch import Ragged, distinct, ordered_quantile
 from kinform.surfaces.polygons.patchwork import Patchwork, Scale
 
 __all__ = ["WIDEST", "Ground", "conforms", "connected", "neighbours", "reach_of", "spread", "within"]
