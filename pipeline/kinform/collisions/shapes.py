@@ -95,14 +95,8 @@ class Shapes:
         mesh, surfaces = self.mesh(name), self.surfaces_of(name)
         if mesh.digest not in self._borders:
             near: list[set[int]] = [{n} for n in range(len(surfaces.surfaces))]
-            edges = np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-            labels = np.repeat(surfaces.labels, 3)
-            order = np.lexsort((edges[:, 1], edges[:, 0]))
-            edges, labels = edges[order], labels[order]
-            same = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1) & (labels[1:] != labels[:-1]))
-            for a, b in np.unique(np.stack([labels[same], labels[same + 1]], axis=1), axis=0).tolist():
+            for a, b in self.index(name).borders(surfaces).tolist():
                 near[a].add(b)
-                near[b].add(a)
             self._borders[mesh.digest] = near
         return self._borders[mesh.digest]
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
@@ -47,26 +48,16 @@ def _estimate(mesh: Mesh, facets: NDArray[np.int64], tolerances: Tolerances) -> 
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(normals, axis=1)
     normals = normals / np.where(doubled > 0.0, doubled, 1.0)[:, None]
-    first, second, slot_first, slot_second = _shared_edges(mesh.faces)
+    edges = shared_edges(mesh.faces, len(mesh.vertices))
+    first, second = edges.facets.T
     cosine = np.einsum("ij,ij->i", normals[first], normals[second])
     sine = np.linalg.norm(np.cross(normals[first], normals[second]), axis=1)
     turn = np.arctan2(sine, cosine)
     turn[(turn > tolerances.smooth_edge) | (turn < tolerances.coplanar)] = 0.0
-    turns = np.zeros((len(mesh.faces), 3))
-    turns[first, slot_first] = turn
-    turns[second, slot_second] = turn
+    turns = np.zeros(3 * len(mesh.faces))
+    turns[edges.first] = turn
+    turns[edges.second] = turn
     length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     height = doubled[:, None] / np.where(length > 0.0, length, np.inf)
-    sagitta = (0.5 * height * np.tan(0.25 * turns)).sum(axis=1)
+    sagitta = (0.5 * height * np.tan(0.25 * turns.reshape(-1, 3))).sum(axis=1)
     return float((0.5 * doubled * sagitta)[facets].sum())
-
-
-def _shared_edges(
-    faces: NDArray[np.int64],
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Facets on both sides of each shared edge, and which edge (0, 1, 2) it is in each."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    order = np.lexsort((ends[:, 1], ends[:, 0]))
-    same = np.flatnonzero(np.all(ends[order[1:]] == ends[order[:-1]], axis=1))
-    left, right = order[same], order[same + 1]
-    return left // 3, right // 3, left % 3, right % 3

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.meshes.edges import edge_ends
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh, Part
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -47,22 +48,17 @@ def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tupl
         return []
     on_plane = np.zeros(len(mesh.vertices), dtype=np.bool_)
     on_plane[mesh.faces[plane.faces]] = True
-    inside = np.sort(_keys(_edges(mesh.faces[plane.faces]), mesh))
+    inside = np.sort(_keys(edge_ends(mesh.faces[plane.faces]), mesh))
     out = []
     for other in others:
         corners = mesh.faces[other.faces]
-        ends = _edges(corners[on_plane[corners].sum(axis=1) >= 2])
+        ends = edge_ends(corners[on_plane[corners].sum(axis=1) >= 2])
         keys = _keys(ends, mesh)
         place = np.minimum(np.searchsorted(inside, keys), len(inside) - 1)
         shared = inside[place] == keys
         if shared.any():
             out.append((other, ends[shared]))
     return out
-
-
-def _edges(corners: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(3 n, 2) vertices of the edges of facets (n, 3), each edge with the lower first."""
-    return np.sort(corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
 
 
 def _keys(edges: NDArray[np.int64], mesh: Mesh) -> NDArray[np.int64]:

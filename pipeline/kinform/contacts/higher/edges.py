@@ -13,6 +13,7 @@ import numpy as np
 
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.placed import NearSurfaces, PlacedPart, near_facets
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
@@ -67,19 +68,13 @@ def edge_contacts(
 
 
 def _sharp(part: PlacedPart, facets: Ints, tolerances: Tolerances) -> _Edges:
-    faces, count = part.faces[facets], np.int64(len(part.vertices))
-    first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
-    key = np.minimum(first, second) * count + np.maximum(first, second)
-    order = np.argsort(key, kind="stable")
-    key, owner, forward = key[order], np.tile(facets, 3)[order], (first < second)[order]
-    shared = np.flatnonzero((key[1:] == key[:-1]) & (forward[1:] != forward[:-1]))
-    ends = np.stack(np.divmod(key[shared], count), axis=1)
-    beside = np.stack([owner[shared], owner[shared + 1]], axis=1)
-    one, two = part.normals(beside[:, 0]), part.normals(beside[:, 1])
-    along = part.vertices[ends[:, 1]] - part.vertices[ends[:, 0]]
-    sense = np.where(forward[shared], 1.0, -1.0) * np.einsum("ij,ij->i", np.cross(one, two), along)
-    keep = (np.einsum("ij,ij->i", one, two) < math.cos(tolerances.smooth_edge)) & (sense > 0.0)
-    ends, beside, along = ends[keep], beside[keep], along[keep]
+    """Those among the facets (ascending) between which the part is sharp and convex."""
+    edges = shared_edges(part.faces[facets], len(part.vertices), by_corner=True)
+    edges = edges.where(edges.opposed)
+    one, two = (part.normals(facets[side]) for side in edges.facets.T)
+    convex = edges.convexity(part.vertices, one, two) > 0.0
+    edges = edges.where((np.einsum("ij,ij->i", one, two) < math.cos(tolerances.smooth_edge)) & convex)
+    ends, beside, along = edges.ends, facets[edges.facets], edges.along(part.vertices)
     unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     bends = np.zeros(len(ends), dtype=bool)
     meeting: dict[int, list[int]] = {}

@@ -18,6 +18,7 @@ import numpy as np
 from kinform.contacts.mating.charts import perpendicular
 from kinform.contacts.search.placed import PlacedPart
 from kinform.foundation.graphs.components import components
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
 
 if TYPE_CHECKING:
@@ -140,13 +141,7 @@ class Sheet:
     @staticmethod
     def of(part: PlacedPart, facets: Ints, flat: float, smooth: float) -> Sheet:
         """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
-        faces, count = part.faces[facets], np.int64(len(part.vertices))
-        first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
-        key = np.minimum(first, second) * count + np.maximum(first, second)
-        order = np.argsort(key, kind="stable")
-        key, owner = key[order], np.tile(facets, 3)[order]
-        shared = np.flatnonzero(key[1:] == key[:-1])
-        pairs = np.stack([owner[shared], owner[shared + 1]], axis=1)
+        pairs = facets[shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets]
         cosine = np.einsum("ij,ij->i", part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
         bent = cosine < math.cos(flat)
         return Sheet(facets, pairs[bent & (cosine > math.cos(smooth))], pairs[~bent])

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.form.problems import did_you_mean, quoted
-from kinform.foundation.meshes.shells import edges_of, shells_of
+from kinform.foundation.meshes.edges import edge_table
+from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["named_bodies", "select_body", "shell_bodies"]
@@ -31,7 +32,7 @@ def shell_bodies(raw: RawMesh) -> dict[str, RawMesh]:
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)
     label = np.full(len(faces), -1)
-    label[whole] = shells_of(vertices, faces[whole], edges_of(faces[whole], len(vertices)))
+    label[whole] = shells_of(vertices, faces[whole], edge_table(faces[whole], len(vertices)))
     label = _with_cavities(vertices, faces, label)
     names = [k for k in np.unique(label) if k >= 0]
     return {f"shell {n}": _part(raw, label == k) for n, k in enumerate(names, start=1)}

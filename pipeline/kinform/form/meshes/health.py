@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
-from kinform.foundation.meshes.shells import EdgeTable, edges_of, shells_of
+from kinform.foundation.meshes.edges import EdgeTable, edge_table
+from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, MeshHealth
 
@@ -38,7 +39,7 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
             "has zero thickness: all its vertices lie in one plane",
             "export a closed solid, or state solid = false for a part that is surfaces only",
         )])  # fmt: skip
-    edges = edges_of(kept, len(shape))
+    edges = edge_table(kept, len(shape))
     health = _health(shape, kept, edges, raw, distance)
     if health.watertight and health.consistent_winding and health.volume < 0.0:
         kept = np.ascontiguousarray(kept[:, ::-1])

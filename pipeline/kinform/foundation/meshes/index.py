@@ -11,6 +11,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
@@ -100,15 +101,11 @@ class MeshIndex:
     def borders(self, surfaces: MeshSurfaces) -> Ints:
         """(k, 2) pairs of surfaces that share an edge, both ways round, sorted."""
         if self._borders is None:
-            faces, count = self.mesh.faces, np.int64(len(self.mesh.vertices))
-            first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
-            key = np.minimum(first, second) * count + np.maximum(first, second)
-            order = np.argsort(key, kind="stable")
-            key, labels = key[order], np.tile(surfaces.labels, 3)[order]
-            shared = (key[1:] == key[:-1]) & (labels[1:] != labels[:-1])
-            pairs = np.unique(labels[:-1][shared] * np.int64(len(surfaces.surfaces)) + labels[1:][shared])
-            pairs = np.stack(np.divmod(pairs, max(len(surfaces.surfaces), 1)), axis=1)
-            self._borders = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
+            edges = shared_edges(self.mesh.faces, len(self.mesh.vertices), by_corner=True)
+            first, second = surfaces.labels[edges.facets.T]
+            count = np.int64(max(len(surfaces.surfaces), 1))
+            keys = np.concatenate([first * count + second, second * count + first])
+            self._borders = np.stack(np.divmod(np.unique(keys[np.tile(first != second, 2)]), count), axis=1)
         return self._borders
 
     def neighbours(self, surfaces: MeshSurfaces, surface: int) -> list[int]:

@@ -1,4 +1,4 @@
-"""Edges and shells of a welded mesh.
+"""Shells of a welded mesh.
 
 Where more than two facets meet in an edge, bodies touch: facets are paired about the edge so that each pair
 encloses material (radial sorting of half-edges, as in Hoffmann, Geometric and Solid Modeling, 1989, ch. 2),
@@ -7,67 +7,24 @@ so that two boxes that stand on each other stay two shells.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.graphs.components import components
-from kinform.model.arrays import Array, Ints
+from kinform.foundation.meshes.edges import EdgeTable, edge_table
+from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["EdgeTable", "edges_of", "shells_of"]
+__all__ = ["shells_of"]
 
 
 _SAME_ANGLE = 1e-7
 """rad: facets about an edge within this are coincident."""
 
 
-@dataclass(frozen=True, eq=False)
-class EdgeTable:
-    """Half-edges sorted by undirected edge. Half-edge 3·f + k runs from corner k of facet f to the next."""
-
-    half_edges: Ints
-    """(3F,) half-edge numbers, grouped by edge."""
-    starts: Ints
-    """(E,) where each edge begins in `half_edges`."""
-    counts: Ints
-    """(E,) facets at each edge."""
-    forward: NDArray[np.bool_]
-    """(3F,) by half-edge number: runs from the lower to the higher vertex."""
-
-    @property
-    def open(self) -> int:
-        """Edges of one facet only."""
-        return int((self.counts == 1).sum())
-
-    @property
-    def overused(self) -> int:
-        """Edges of more than two facets."""
-        return int((self.counts > 2).sum())
-
-    @property
-    def balance(self) -> Ints:
-        """(E,) runs forward less runs backward; 0 on a shared edge whose facets agree."""
-        direction = np.where(self.forward[self.half_edges], 1, -1)
-        return np.add.reduceat(direction, self.starts) if len(self.starts) else np.zeros(0, dtype=np.int64)
-
-
-def edges_of(faces: Ints, vertices: int) -> EdgeTable:
-    """Edges of (F, 3) faces, none of which uses a vertex twice, over that many vertices."""
-    a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    forward = a < b
-    key = np.where(forward, a * vertices + b, b * vertices + a)
-    order = np.argsort(key, kind="stable")
-    ordered = key[order]
-    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]])) if len(key) else key
-    return EdgeTable(order, starts, np.diff(np.append(starts, len(key))), forward)
-
-
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
     """(F,) number of the shell of each facet; shells are numbered by their first facet."""
     if not len(faces):
         return np.zeros(0, dtype=np.int64)
-    edges = edges or edges_of(faces, len(vertices))
+    edges = edges or edge_table(faces, len(vertices))
     two = edges.starts[edges.counts == 2]
     links = [np.stack([edges.half_edges[two], edges.half_edges[two + 1]], axis=1) // 3]
     if edges.overused:
@@ -85,7 +42,7 @@ def _radial_links(vertices: Array, faces: Ints, edges: EdgeTable) -> Ints:
     ])  # fmt: skip
 
 
-def _members(edges: EdgeTable, which: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+def _members(edges: EdgeTable, which: Flags) -> tuple[Ints, Ints]:
     """Half-edges of the chosen edges, and for each the number of its edge among the chosen."""
     counts = edges.counts[which]
     owner = np.repeat(np.arange(len(counts)), counts)
@@ -93,14 +50,14 @@ def _members(edges: EdgeTable, which: NDArray[np.bool_]) -> tuple[Ints, Ints]:
     return edges.half_edges[np.repeat(edges.starts[which], counts) + within], owner
 
 
-def _neighbours_in_edge(edges: EdgeTable, which: NDArray[np.bool_]) -> Ints:
+def _neighbours_in_edge(edges: EdgeTable, which: Flags) -> Ints:
     """All facets of an edge hang together: where directions disagree nothing finer can be said."""
     half, owner = _members(edges, which)
     same = owner[1:] == owner[:-1]
     return np.stack([half[:-1][same], half[1:][same]], axis=1)
 
 
-def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: NDArray[np.bool_]) -> Ints:
+def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: Flags) -> Ints:
     """Each forward facet with the next backward one, turning from its back side through its material."""
     half, owner = _members(edges, which)
     if not len(half):
@@ -115,7 +72,7 @@ def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: NDAr
     return _next_backward(half[order], owner[order], backward[order])
 
 
-def _next_backward(half: Ints, owner: Ints, backward: NDArray[np.bool_]) -> Ints:
+def _next_backward(half: Ints, owner: Ints, backward: Flags) -> Ints:
     """Pairs each forward half-edge with the next backward one of its edge, cyclically."""
     position = np.arange(len(half))
     begin = np.searchsorted(owner, owner)
@@ -129,7 +86,7 @@ def _next_backward(half: Ints, owner: Ints, backward: NDArray[np.bool_]) -> Ints
     return np.stack([half[keep], half[target[keep]]], axis=1)
 
 
-def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: NDArray[np.bool_]) -> Array:
+def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: Flags) -> Array:
     """Angle of each facet about its edge, from the first facet of the edge, towards a forward facet's back."""
     f, k = half // 3, half % 3
     a, b, apex = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]

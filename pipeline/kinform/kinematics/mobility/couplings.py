@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.kinematics.bodies.higher_pairs import is_higher
 from kinform.kinematics.mobility.closure import Closure
 from kinform.kinematics.mobility.teeth import Side, meshing
@@ -175,16 +176,9 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     corners = mesh.vertices[faces]
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
-    first, second = faces.T.ravel(), np.roll(faces, -1, axis=1).T.ravel()
-    owner = np.tile(np.arange(len(faces)), 3)
-    cut = (height[first] > 0.0) != (height[second] > 0.0)
-    first, second, owner = first[cut], second[cut], owner[cut]
-    key = np.minimum(first, second) * np.int64(len(height)) + np.maximum(first, second)
-    order = np.argsort(key, kind="stable")
-    key, owner, forward = key[order], owner[order], (first < second)[order]
-    twin = np.flatnonzero((key[1:] == key[:-1]) & (forward[1:] != forward[:-1]))
-    one, two = normals[owner[twin]], normals[owner[twin + 1]]
-    edge = mesh.vertices[key[twin] % len(height)] - mesh.vertices[key[twin] // len(height)]
-    sense = np.where(forward[twin], 1.0, -1.0) * np.einsum("ij,ij->i", cross(one, two), edge)
+    edges = shared_edges(faces, len(height), by_corner=True)
+    above = height[edges.ends] > 0.0
+    edges = edges.where(edges.opposed & (above[:, 0] != above[:, 1]))
+    one, two = normals[edges.facets].transpose(1, 0, 2)
     angle = np.arccos(np.clip(np.einsum("ij,ij->i", one, two), -1.0, 1.0))
-    return float(angle[sense > 0.0].sum()) / (2.0 * np.pi)
+    return float(angle[edges.convexity(mesh.vertices, one, two) > 0.0].sum()) / (2.0 * np.pi)

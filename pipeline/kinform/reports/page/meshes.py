@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.foundation.graphs.components import components
+from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
@@ -97,15 +98,11 @@ def _edges(vertices: Array, faces: Ints) -> tuple[Ints, Ints, Ints, Array]:
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    ends = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    key = ends[:, 0] * np.int64(len(vertices)) + ends[:, 1]
-    order = np.argsort(key, kind="stable")
-    pair = np.flatnonzero(key[order[1:]] == key[order[:-1]])
-    here, there = order[pair], order[pair + 1]
-    first, second = here // 3, there // 3
+    edges = shared_edges(faces, len(vertices))
+    first, second = edges.facets.T
     cosine = np.einsum("ij,ij->i", normal[first], normal[second])
     sine = np.linalg.norm(np.cross(normal[first], normal[second]), axis=1)
-    return first, second, ends[here], np.arctan2(sine, cosine)
+    return first, second, edges.ends, np.arctan2(sine, cosine)
 
 
 def _corner_of(faces: Ints, index: Ints, owner: Ints, vertex: Ints) -> Ints:

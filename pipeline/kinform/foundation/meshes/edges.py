@@ -1,0 +1,118 @@
+"""Edges of welded meshes: the one table of which facets meet where.
+
+Half-edge 3·f + k runs from corner k of facet f to its next corner. An edge is the half-edges between the same two vertices:
+one where the mesh is open, two where it is closed, more where bodies touch. Edges are sorted by their lower vertex, then by
+their higher one; the half-edges of one edge by facet, or, `by_corner`, by the corner that they begin at and then by facet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross
+from kinform.model.arrays import Array, Flags, Ints
+
+__all__ = ["EdgeTable", "SharedEdges", "edge_ends", "edge_table", "shared_edges"]
+
+
+@dataclass(frozen=True, eq=False)
+class SharedEdges:
+    """Half-edges that follow each other in an edge of a table: one row an edge of two facets, two an edge of three."""
+
+    first: Ints
+    second: Ints
+    """(k,) half-edges."""
+    ends: Ints
+    """(k, 2) vertices, the lower first."""
+    forward: Flags
+    """(k,) `first` runs from the lower to the higher vertex."""
+    opposed: Flags
+    """(k,) the two run against each other, as those of facets that agree on the outside do."""
+
+    @property
+    def facets(self) -> Ints:
+        """(k, 2) those of `first` and `second`."""
+        return np.stack([self.first, self.second], axis=1) // 3
+
+    def where(self, rows: Flags) -> SharedEdges:
+        """Some of the rows (k,)."""
+        return SharedEdges(self.first[rows], self.second[rows], self.ends[rows], self.forward[rows], self.opposed[rows])
+
+    def along(self, vertices: Array) -> Array:
+        """(k, 3) from the lower to the higher vertex."""
+        return np.asarray(vertices[self.ends[:, 1]] - vertices[self.ends[:, 0]])
+
+    def convexity(self, vertices: Array, first: Array, second: Array) -> Array:
+        """(k,) positive at convex edges, negative at concave ones, 0 at flat ones; of the outward normals of the facets
+        of `first` and `second` (k, 3) each."""
+        along = np.einsum("ij,ij->i", cross(first, second), self.along(vertices))
+        return np.asarray(np.where(self.forward, 1.0, -1.0) * along)
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeTable:
+    """Half-edges by undirected edge."""
+
+    half_edges: Ints
+    """(3F,) half-edge numbers, grouped by edge."""
+    starts: Ints
+    """(E,) where each edge begins in `half_edges`."""
+    counts: Ints
+    """(E,) facets at each edge."""
+    ends: Ints
+    """(3F, 2) vertices of each half-edge, the lower first, by half-edge number."""
+    forward: Flags
+    """(3F,) by half-edge number: runs from the lower to the higher vertex."""
+
+    @property
+    def open(self) -> int:
+        """Edges of one facet only."""
+        return int((self.counts == 1).sum())
+
+    @property
+    def overused(self) -> int:
+        """Edges of more than two facets."""
+        return int((self.counts > 2).sum())
+
+    @property
+    def balance(self) -> Ints:
+        """(E,) runs forward less runs backward; 0 on a shared edge whose facets agree."""
+        direction = np.where(self.forward[self.half_edges], 1, -1)
+        return np.add.reduceat(direction, self.starts) if len(self.starts) else np.zeros(0, dtype=np.int64)
+
+    @property
+    def shared(self) -> SharedEdges:
+        """Neighbours in the edges of two facets and more."""
+        follows = np.ones(len(self.half_edges), dtype=bool)
+        follows[self.starts] = False
+        at = np.flatnonzero(follows)
+        first, second = self.half_edges[at - 1], self.half_edges[at]
+        forward = self.forward[first]
+        return SharedEdges(first, second, self.ends[first], forward, forward != self.forward[second])
+
+
+def edge_ends(faces: Ints) -> Ints:
+    """(3F, 2) vertices of the half-edges of faces (F, 3), the lower first."""
+    start, end = faces.ravel(), faces[:, [1, 2, 0]].ravel()
+    return np.stack([np.minimum(start, end), np.maximum(start, end)], axis=1)
+
+
+def edge_table(faces: Ints, vertices: int, by_corner: bool = False) -> EdgeTable:
+    """Edges of faces (F, 3), none of which uses a vertex twice, over that many vertices."""
+    ends = edge_ends(faces)
+    key = ends[:, 0] * np.int64(vertices) + ends[:, 1]
+    if by_corner:
+        corners = np.arange(len(key)).reshape(-1, 3).T.ravel()
+        order = corners[np.argsort(key[corners], kind="stable")]
+    else:
+        order = np.argsort(key, kind="stable")
+    ordered = key[order]
+    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]])) if len(key) else key
+    return EdgeTable(order, starts, np.diff(np.append(starts, len(key))), ends, ends[:, 0] == faces.ravel())
+
+
+def shared_edges(faces: Ints, vertices: int, by_corner: bool = False) -> SharedEdges:
+    """`shared` of the table of edges."""
+    return edge_table(faces, vertices, by_corner).shared
