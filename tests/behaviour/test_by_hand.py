@@ -18,7 +18,7 @@ from kinform.behaviour.kinds import COMPONENTS, kind_of
 from kinform.behaviour.nested import arranged
 from kinform.errors import InputError
 from kinform.exports import port_model
-from kinform.exports.port_schema import schema
+from kinform.exports.port_model import schema
 from kinform.simulation import Course, simulate_system
 
 

@@ -19,8 +19,7 @@ from validators import package
 
 from kinform.errors import InputError
 from kinform.exports import FORMATS, ExportError, export
-from kinform.exports.port_model import read
-from kinform.exports.port_schema import schema
+from kinform.exports.port_model import read, schema
 
 
 def table(data):

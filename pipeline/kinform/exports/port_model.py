@@ -1,79 +1,47 @@
-"""json: the port model as data, and reading it back. Its shape is in `port_schema`.
+"""json: the port model as data, its JSON Schema (published in docs/), and reading it back.
 
-Numbers are doubles in shortest decimal form, so that reading gives an equal model, bit by bit.
+The tables of the file follow from the records of `kinform.behaviour`: `kind`, as `behaviour.kinds` calls it, and a key for
+each field. Written by hand is only what JSON says in another form: nodes and exposed ports by name, the geometry of a joint
+beside its type, and the whole. Numbers are doubles in shortest decimal form, so that reading gives an equal model, bit by
+bit.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, reduce
+from operator import or_
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import numpy as np
-from pydantic import ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
-from kinform.behaviour import (
-    Component,
-    Constant,
-    Damper,
-    EffortDrive,
-    Ground,
-    JointComponent,
-    LoadComponent,
-    MotionDrive,
-    Node,
-    RigidBody,
-    Signal,
-    Spring,
-    System,
-    count,
-    flat,
-)
-from kinform.behaviour.components import (
-    Controller,
-    DcMotor,
-    EndStop,
-    Gear,
-    Servo,
-    SpringDamper,
-    VoltageController,
-    VoltageSource,
-)
+from kinform.behaviour import Component, Constant, Gear, JointComponent, Node, RigidBody, Signal, System, count, flat
 from kinform.behaviour.joints import KINDS, JointGeometry
-from kinform.behaviour.kinds import kind_of
+from kinform.behaviour.kinds import COMPONENTS, kind_of
+from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Ramp, Sine, Table
 from kinform.errors import InputError, Problem
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
-from kinform.exports.port_schema import (
-    SCHEMA,
-    BodyData,
-    ConstantLaw,
-    ControllerData,
-    DamperData,
-    DcMotorData,
-    EffortData,
-    EndStopData,
-    GearData,
-    GroundData,
-    JointData,
-    MotionData,
-    PortModel,
-    RampLaw,
-    ServoData,
-    SineLaw,
-    SpringDamperData,
-    SpringData,
-    SystemData,
-    TableLaw,
-    VoltageControllerData,
-    VoltageData,
-)
 from kinform.model.arrays import Array
 
-__all__ = ["data", "export", "network", "read", "write"]
+__all__ = ["SCHEMA", "export", "network", "read", "schema", "write"]
+
+SCHEMA = "kinform/port-model/1"
+
+LAWS: dict[str, type[Signal]] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}
+"""Signals that a file can hold, by the name of their law."""
+KEYS = {"signal": "law", "knots": "times"}
+"""Keys of fields that are called otherwise in the file."""
+DESCRIPTIONS = {"name": "Unique in the model.", "subject": "What the user calls it."}
+
+Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
+Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
 
 
 def export(model: ExportModel) -> Exported:
@@ -100,37 +68,41 @@ def write(
     `start` and `missing` as in the schema. Raises ValueError for signals and components that are none of kinform's,
     and for laws that contain a value that is not finite.
     """
-    counted = count(flat(system))
-    data = {
+    whole = {
         "schema": SCHEMA,
         "name": name,
         "gravity": [float(value) for value in gravity],
         **network(system),
         "start": list(start),
-        "count": {"unknowns": counted.unknowns, "equations": counted.equations},
+        "count": _counts(flat(system)),
         "missing": list(missing),
     }
-    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(whole, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def read(text: str | bytes) -> System:
     """The components and nodes in a file that `export` or `write` wrote. Raises InputError for anything else."""
     try:
-        return _read_network(PortModel.model_validate_json(text))
+        return _system(PortModel.model_validate_json(text))
     except ValidationError as error:
         raise InputError(
-            Problem(f"{'.'.join(map(str, one['loc']))}: {one['msg']}", remedy="see the schema of the port model")
-            for one in error.errors(include_url=False)
+            Problem(f"{'.'.join(map(str, item['loc']))}: {item['msg']}", remedy="see the schema of the port model")
+            for item in error.errors(include_url=False)
         ) from error
     except ValueError as error:
         raise InputError([Problem(str(error), remedy="export the model again")]) from error
 
 
+def schema() -> dict[str, Any]:
+    """JSON Schema of the file."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **PortModel.model_json_schema(by_alias=True)}
+
+
 def network(system: System) -> dict[str, Any]:
-    """Components, nodes, and the ports that the system exposes where it does."""
+    """Components, nodes, and the ports that the system exposes where it does. Raises ValueError as `write` does."""
     ports = [{"name": port, "component": c, "port": p} for port, (c, p) in system.exposed]
     return {
-        "components": [data(component) for component in system.components],
+        "components": [_written(component) for component in system.components],
         "nodes": [
             {"size": node.size, "ports": [{"component": c, "port": p} for c, p in node.ports]} for node in system.nodes
         ],
@@ -138,148 +110,231 @@ def network(system: System) -> dict[str, Any]:
     }
 
 
-def _read_network(found: PortModel | SystemData, name: str = "", subject: str = "", prefixed: bool = True) -> System:
-    components = tuple(_read(component) for component in found.components)
-    nodes = tuple(Node(tuple((p.component, p.port) for p in node.ports), node.size) for node in found.nodes)
-    exposed = tuple((port.name, (port.component, port.port)) for port in found.ports)
+def _written(component: Component) -> dict[str, Any]:
+    head = {"name": component.name, "subject": component.subject, "kind": kind_of(component)}
+    if isinstance(component, System):
+        return head | {"prefixed": component.prefixed, **network(component), "count": _counts(component)}
+    if isinstance(component, JointComponent):
+        return head | {"type": component.kind.name} | _values_of(component.geometry)
+    return head | _values_of(component)
+
+
+def _read(table: Any) -> Component:
+    if isinstance(table, SystemTable):
+        return _system(table, table.name, table.subject, table.prefixed)
+    if table.kind != "joint":
+        return COMPONENTS[table.kind](**_fields_of(COMPONENTS[table.kind], table))
+    kind, geometry = KINDS[table.type], JointGeometry(**_fields_of(JointGeometry, table))
+    kind.chain(geometry)  # raises where the geometry lacks something
+    return JointComponent(table.name, table.subject, kind, geometry)
+
+
+def _system(table: PortModel | SystemTable, name: str = "", subject: str = "", prefixed: bool = True) -> System:
+    components = tuple(_read(component) for component in table.components)
+    nodes = tuple(Node(tuple((p.component, p.port) for p in node.ports), node.size) for node in table.nodes)
+    exposed = tuple((port.name, (port.component, port.port)) for port in table.ports)
     return System(components, nodes, name, subject, exposed, prefixed)
+
+
+def _counts(system: System) -> dict[str, int]:
+    counts = count(system)
+    return {"unknowns": counts.unknowns, "equations": counts.equations}
+
+
+def _written_law(signal: Signal) -> dict[str, Any]:
+    for law, kind in LAWS.items():
+        if isinstance(signal, kind):
+            return {"law": law, **_values_of(signal)}
+    raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+
+
+def _read_law(table: Any) -> Signal:
+    if table.law == "table" and (len(table.times) != len(table.levels) or len(table.times) < 2):
+        raise ValueError("a table needs two or more times and as many levels")
+    return LAWS[table.law](**_fields_of(LAWS[table.law], table))
+
+
+@dataclasses.dataclass(frozen=True)
+class _Entry:
+    """How a field of a record stands in the file."""
+
+    field: str
+    type: Any
+    """Of its key, which pydantic checks."""
+    written: Callable[[Any], Any] = lambda value: value
+    read: Callable[[Any], Any] = lambda value: value
+    sparse: bool = False
+    """Left out where it is null."""
+
+    @property
+    def key(self) -> str:
+        return KEYS.get(self.field, self.field)
+
+
+@cache
+def _entries(record: type) -> tuple[_Entry, ...]:
+    """Of the fields of a record; knots of smooth signals, which have none, do not stand in the file."""
+    hints = get_type_hints(record)
+    fields = [field for field in dataclasses.fields(record) if field.default != ()]
+    return tuple(_entry(record, field, hints[field.name]) for field in fields)
+
+
+def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
+    """By the type of the field: arrays are lists, and what is not known or not bounded is null."""
+    name, sparse = field.name, record is Gear and field.default is not dataclasses.MISSING
+    if hint is Signal:
+        return _Entry(name, LawTable, _written_law, _read_law)
+    if hint is Controller:
+        return _Entry(name, ControllerTable, _values_of, lambda table: Controller(**_fields_of(Controller, table)))
+    if hint == tuple[float, ...]:
+        return _Entry(name, list[float], list, tuple)
+    if hint == Array and record is RigidBody:
+        square = name == "inertia"
+        unknown = np.full((3, 3) if square else 3, np.nan)
+        kind: Any = (Matrix if square else Vector) | None
+        return _Entry(name, kind, _list, lambda rows: unknown.copy() if rows is None else np.array(rows))
+    if hint in (Array, Array | None):
+        kind = Vector if hint == Array else Vector | None
+        return _Entry(name, kind, _list, lambda row: None if row is None else np.array(row), sparse)
+    if isinstance(field.default, float) and math.isinf(field.default):
+        free = field.default
+        return _Entry(name, float | None, _bound, lambda value: free if value is None else value, sparse)
+    return _Entry(name, hint)
 
 
 def _list(array: Array | None) -> Any:
     return None if array is None or not np.all(np.isfinite(array)) else array.tolist()
 
 
-def _law(signal: Signal) -> dict[str, Any]:
-    if isinstance(signal, Constant):
-        return {"law": "constant", "level": signal.level}
-    if isinstance(signal, Ramp):
-        return {"law": "ramp", "offset": signal.offset, "slope": signal.slope}
-    if isinstance(signal, Sine):
-        values = {"offset": signal.offset, "amplitude": signal.amplitude, "speed": signal.speed, "phase": signal.phase}
-        return {"law": "sine", **values}
-    if not isinstance(signal, Table):
-        raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
-    return {"law": "table", "times": list(signal.knots), "levels": list(signal.levels)}
-
-
-_WRITERS: dict[type[Component], Callable[[Any], dict[str, Any]]] = {
-    Ground: lambda c: {},
-    RigidBody: lambda c: {
-        "mass": c.mass, "centre_of_mass": _list(c.centre_of_mass), "inertia": _list(c.inertia),
-    },
-    JointComponent: lambda c: {
-        "type": c.kind.name, "axis": _list(c.geometry.axis), "point": _list(c.geometry.point),
-        "axis2": _list(c.geometry.axis2), "pitch": c.geometry.pitch,
-    },
-    MotionDrive: lambda c: {"law": _law(c.signal)},
-    EffortDrive: lambda c: {"law": _law(c.signal)},
-    Spring: lambda c: {"stiffness": c.stiffness, "rest": c.rest},
-    Damper: lambda c: {"damping": c.damping},
-    Gear: lambda c: {
-        "ratio": c.ratio,
-        **{key: _list(getattr(c, key)) for key in ("pitch_point", "flank", "back") if getattr(c, key) is not None},
-        **{key: getattr(c, key) for key in ("lower", "upper") if math.isfinite(getattr(c, key))},
-    },
-    EndStop: lambda c: {"lower": _finite(c.lower), "upper": _finite(c.upper)},
-    Servo: lambda c: {"target": _law(c.target), "controller": _controller(c.controller)},
-    DcMotor: lambda c: {
-        "resistance": c.resistance, "inductance": c.inductance, "constant": c.constant,
-        "gear": c.gear,
-    },
-    VoltageSource: lambda c: {"law": _law(c.signal)},
-    VoltageController: lambda c: {
-        "target": _law(c.target), "controller": _controller(c.controller),
-    },
-    SpringDamper: lambda c: {
-        "point": _list(c.point), "other": _list(c.other), "stiffness": c.stiffness,
-        "damping": c.damping, "rest": c.rest,
-    },
-    LoadComponent: lambda c: {
-        "force": _list(c.force), "torque": _list(c.torque), "point": _list(c.point),
-        "turning": c.turning,
-    },
-    System: lambda c: {
-        "prefixed": c.prefixed, **network(c),
-        "count": {"unknowns": count(c).unknowns, "equations": count(c).equations},
-    },
-}  # fmt: skip
-
-
-def _finite(value: float) -> float | None:
+def _bound(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _controller(controller: Controller) -> dict[str, Any]:
-    return {"kp": controller.kp, "ki": controller.ki, "kd": controller.kd, "limit": _finite(controller.limit)}
+def _values_of(record: Any) -> dict[str, Any]:
+    """The values of a record by their keys in the file."""
+    values = ((entry, entry.written(getattr(record, entry.field))) for entry in _entries(record.__class__))
+    return {entry.key: value for entry, value in values if value is not None or not entry.sparse}
 
 
-def _control(data: ControllerData) -> Controller:
-    return Controller(data.kp, data.ki, data.kd, math.inf if data.limit is None else data.limit)
+def _fields_of(record: type, table: Any) -> dict[str, Any]:
+    """The fields of a record, out of a table that has its keys."""
+    return {entry.field: entry.read(getattr(table, entry.key)) for entry in _entries(record)}
 
 
-def data(component: Component) -> dict[str, Any]:
-    """A component as JSON has it. Raises ValueError for a kind that is none of kinform's."""
-    return {
-        "name": component.name, "subject": component.subject, "kind": kind_of(component),
-        **_WRITERS[type(component)](component),
-    }  # fmt: skip
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
-def _array(values: Any, shape: tuple[int, ...] = (3,)) -> Array:
-    return np.full(shape, np.nan) if values is None else np.array(values, dtype=np.float64)
+class _Documented(_Strict):
+    model_config = ConfigDict(use_attribute_docstrings=True)
 
 
-def _vector(values: Any) -> Array | None:
-    return None if values is None else _array(values)
+def _table_of(record: type, *parts: type, **keys: Any) -> type[_Strict]:
+    """The table of a record: these keys, then one for each field of the record, or of its `parts` where they are given."""
+    for entry in (entry for part in parts or (record,) for entry in _entries(part)):
+        default = None if entry.sparse else ...
+        keys[entry.key] = (entry.type, Field(default, description=DESCRIPTIONS.get(entry.key)))
+    return create_model(record.__name__, __base__=_Strict, __doc__=record.__doc__, **keys)
 
 
-def _signal(law: ConstantLaw | RampLaw | SineLaw | TableLaw) -> Signal:
-    if isinstance(law, ConstantLaw):
-        return Constant(law.level)
-    if isinstance(law, RampLaw):
-        return Ramp(law.offset, law.slope)
-    if isinstance(law, SineLaw):
-        return Sine(law.offset, law.amplitude, law.speed, law.phase)
-    if len(law.times) != len(law.levels) or len(law.times) < 2:
-        raise ValueError("a table needs two or more times and as many levels")
-    return Table(tuple(law.times), tuple(law.levels))
+def _named(name: str) -> tuple[Any, str]:
+    """Type and default of a key that always has this value."""
+    return Literal.__getitem__(name), name
 
 
-def _read(data: Any) -> Component:
-    named = data.name, data.subject
-    if isinstance(data, SystemData):
-        return _read_network(data, *named, data.prefixed)
-    if isinstance(data, GroundData):
-        return Ground(*named)
-    if isinstance(data, BodyData):
-        return RigidBody(*named, data.mass, _array(data.centre_of_mass), _array(data.inertia, (3, 3)))
-    if isinstance(data, JointData):
-        geometry = JointGeometry(_vector(data.axis), _vector(data.point), _vector(data.axis2), data.pitch)
-        KINDS[data.type].chain(geometry)
-        return JointComponent(*named, KINDS[data.type], geometry)
-    if isinstance(data, MotionData):
-        return MotionDrive(*named, _signal(data.law))
-    if isinstance(data, EffortData):
-        return EffortDrive(*named, _signal(data.law))
-    if isinstance(data, SpringData):
-        return Spring(*named, data.stiffness, data.rest)
-    if isinstance(data, DamperData):
-        return Damper(*named, data.damping)
-    if isinstance(data, GearData):
-        point, flank, back = (_vector(values) for values in (data.pitch_point, data.flank, data.back))
-        lower = -math.inf if data.lower is None else data.lower
-        return Gear(*named, data.ratio, point, flank, back, lower, math.inf if data.upper is None else data.upper)
-    if isinstance(data, EndStopData):
-        lower = -math.inf if data.lower is None else data.lower
-        return EndStop(*named, lower, math.inf if data.upper is None else data.upper)
-    if isinstance(data, ServoData):
-        return Servo(*named, _signal(data.target), _control(data.controller))
-    if isinstance(data, DcMotorData):
-        return DcMotor(*named, data.resistance, data.inductance, data.constant, data.gear)
-    if isinstance(data, VoltageData):
-        return VoltageSource(*named, _signal(data.law))
-    if isinstance(data, VoltageControllerData):
-        return VoltageController(*named, _signal(data.target), _control(data.controller))
-    if isinstance(data, SpringDamperData):
-        return SpringDamper(*named, _array(data.point), _array(data.other), data.stiffness, data.damping, data.rest)
-    return LoadComponent(*named, _array(data.force), _array(data.torque), _array(data.point), data.turning)
+class PortTable(_Documented):
+    """A port of a component."""
+
+    component: str
+    port: str
+
+
+class NodeTable(_Documented):
+    """Ports that meet: across variables equal, through variables summing to zero."""
+
+    size: int
+    """Across variables; as many through variables."""
+    ports: list[PortTable]
+
+
+class ExposedTable(_Documented):
+    """A port of a system: the node inside in which a port of a component is."""
+
+    name: str
+    component: str
+    port: str
+
+
+class CountTable(_Documented):
+    """Unknowns and equations at the level of rates and efforts."""
+
+    unknowns: int
+    equations: int
+
+
+class SystemTable(_Documented):
+    """Components and nodes, to any depth; from outside a component with the ports that it exposes."""
+
+    name: str
+    """Unique in the model."""
+    subject: str
+    """What the user calls it."""
+    kind: Literal["system"] = "system"
+    prefixed: bool
+    """Whether names inside get the system's in front where levels are left out; else they are unique already."""
+    components: list[ComponentTable]
+    nodes: list[NodeTable]
+    ports: list[ExposedTable] = []
+    count: CountTable
+    """Of this level: a system inside counts as one component."""
+
+
+class StartTable(_Documented):
+    """Coordinates and rates of a joint at time zero; 0 is the pose of the meshes."""
+
+    joint: str
+    """Name of the component."""
+    position: list[float]
+    velocity: list[float]
+
+
+class PortModel(_Documented):
+    """The device as components with ports, joined at nodes. SI units, radians, quaternions wxyz."""
+
+    model_config = ConfigDict(title=SCHEMA)
+
+    schema_name: Literal["kinform/port-model/1"] = Field(alias="schema")
+    name: str
+    gravity: Vector
+    components: list[ComponentTable]
+    nodes: list[NodeTable]
+    ports: list[ExposedTable] = []
+    """Where the whole is a system to be put into others."""
+    start: list[StartTable]
+    count: CountTable
+    """Of the network without levels."""
+    missing: list[str]
+    """What the design has and the model has not, in sentences."""
+
+
+def _one_of(tables: Iterable[type[_Strict]], key: str) -> Any:
+    """Any of the tables, told apart by the value of a key."""
+    return Annotated[reduce(or_, tables), Field(discriminator=key)]
+
+
+def _table_of_component(kind: str) -> type[_Strict]:
+    record, tag = COMPONENTS[kind], _named(kind)
+    if record is System:
+        return SystemTable
+    if record is JointComponent:
+        types = Literal.__getitem__(tuple(KINDS))
+        return _table_of(record, Component, JointGeometry, kind=tag, type=(types, ...))
+    return _table_of(record, kind=tag)
+
+
+LawTable = _one_of((_table_of(record, law=_named(law)) for law, record in LAWS.items()), "law")
+ControllerTable = _table_of(Controller)
+if TYPE_CHECKING:
+    ComponentTable = _Strict
+else:
+    ComponentTable = _one_of(map(_table_of_component, COMPONENTS), "kind")
