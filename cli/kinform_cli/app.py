@@ -1,64 +1,83 @@
-"""The command line itself: which commands there are, and `--version`."""
+"""The command line itself: which commands there are, and `--version`.
+
+The module of a command is imported when the command is run or its help is asked: reading the options of all of them
+would take longer than to see that nothing changed.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated
+import importlib
+import keyword
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Annotated, Any
 
 import typer
 
 from kinform_cli import console
-from kinform_cli.commands import (
-    catalog,
-    check,
-    contacts,
-    diff,
-    explain,
-    export,
-    import_,
-    init,
-    joints,
-    lock,
-    mass,
-    query,
-    report,
-    run,
-    schema,
-    show,
-    simulate,
-    watch,
-)
 from kinform_cli.options import Command, Debug, Group, examples
 
 __all__ = ["COMMANDS", "app"]
 
-_WHOLE, _STAGES, _LOOK, _BEGIN = "The whole way", "Stage by stage", "Look", "Begin, and look up"
-_CHANGE = "Change"
+PANELS = {
+    "The whole way": ("run",),
+    "Stage by stage": ("import", "contacts", "joints", "mass", "simulate", "check"),
+    "Look": ("show", "query", "report", "export", "catalog"),
+    "Change": ("diff", "lock", "watch"),
+    "Begin, and look up": ("init", "explain", "schema"),
+}
+"""The commands by the panels of the help where they stand.
 
-COMMANDS = (
-    ("run", run.run, run.EXAMPLES, _WHOLE),
-    ("import", import_.import_, import_.EXAMPLES, _STAGES),
-    ("contacts", contacts.contacts, contacts.EXAMPLES, _STAGES),
-    ("joints", joints.joints, joints.EXAMPLES, _STAGES),
-    ("mass", mass.mass, mass.EXAMPLES, _STAGES),
-    ("simulate", simulate.simulate, simulate.EXAMPLES, _STAGES),
-    ("check", check.check, check.EXAMPLES, _STAGES),
-    ("show", show.show, show.EXAMPLES, _LOOK),
-    ("query", query.query, query.EXAMPLES, _LOOK),
-    ("report", report.report, report.EXAMPLES, _LOOK),
-    ("export", export.export, export.EXAMPLES, _LOOK),
-    ("diff", diff.diff, diff.EXAMPLES, _CHANGE),
-    ("lock", lock.lock, lock.EXAMPLES, _CHANGE),
-    ("watch", watch.watch, watch.EXAMPLES, _CHANGE),
-    ("init", init.init, init.EXAMPLES, _BEGIN),
-    ("explain", explain.explain, explain.EXAMPLES, _BEGIN),
-    ("schema", schema.schema, schema.EXAMPLES, _BEGIN),
-)
+The module `kinform_cli.commands.NAME` has either `app`, commands below this one, or a function of its own name and its
+`EXAMPLES`.
+"""
 
-_EXAMPLES = examples(
-    "kinform init *.stl --units mm -o arm.toml   # a manifest to start from",
-    "kinform run arm.toml -o arm.h5              # everything; exit code 0, 1 or 2",
-    "kinform show arm.h5                         # what was derived",
-)
+COMMANDS = {name: panel for panel, names in PANELS.items() for name in names}
+"""The panel of each command."""
+
+
+@cache
+def _command(name: str) -> Any:
+    """The command of this name, made from its module."""
+    leaf = name + "_" if keyword.iskeyword(name) else name
+    module = importlib.import_module(f"kinform_cli.commands.{leaf}")
+    made = getattr(module, "app", None)
+    if made is None:
+        made = typer.Typer(add_completion=False)
+        made.command(name, cls=Command, epilog=module.EXAMPLES)(getattr(module, leaf))
+    command: Any = typer.main.get_command(made)
+    command.rich_help_panel = COMMANDS[name]
+    return command
+
+
+class _Modules(Mapping[str, Any]):
+    """All commands by name; only those that are asked for are made."""
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in COMMANDS:
+            raise KeyError(name)
+        return _command(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(COMMANDS)
+
+    def __len__(self) -> int:
+        return len(COMMANDS)
+
+
+class _Kinform(Group):
+    """The command `kinform` itself."""
+
+    def __init__(self, **settings: Any):
+        super().__init__(**settings)
+        self.commands = _Modules()  # type: ignore[assignment]
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Their names, in the order of the help."""
+        return list(COMMANDS)
+
+
+app = typer.Typer(name="kinform", cls=_Kinform, context_settings={"help_option_names": ["--help", "-h"]})
 
 
 def _print_version(wanted: bool) -> None:
@@ -69,6 +88,13 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
+@app.callback(
+    epilog=examples(
+        "kinform init *.stl --units mm -o arm.toml   # a manifest to start from",
+        "kinform run arm.toml -o arm.h5              # everything; exit code 0, 1 or 2",
+        "kinform show arm.h5                         # what was derived",
+    )
+)
 def _root(
     version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
@@ -80,27 +106,3 @@ def _root(
 
     Exit codes: 0 written, or verified. 1 findings (check, run), differences (diff). 2 not written, or not verified.
     """
-
-
-def _build() -> typer.Typer:
-    built = typer.Typer(
-        name="kinform",
-        cls=Group,
-        context_settings={"help_option_names": ["--help", "-h"]},
-    )
-    built.callback(epilog=_EXAMPLES)(_root)
-    for name, function, lines, panel in COMMANDS:
-        built.command(name, cls=Command, epilog=lines, rich_help_panel=panel)(function)
-    built.add_typer(_catalog(), name="catalog", help=catalog.HELP, epilog=catalog.EXAMPLES, rich_help_panel=_LOOK)
-    return built
-
-
-def _catalog() -> typer.Typer:
-    """The command `kinform catalog` with those below it."""
-    built = typer.Typer(cls=Group, no_args_is_help=False, context_settings={"help_option_names": ["--help", "-h"]})
-    for name, function, lines in catalog.COMMANDS:
-        built.command(name, cls=Command, epilog=lines)(function)
-    return built
-
-
-app = _build()

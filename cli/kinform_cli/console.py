@@ -12,12 +12,15 @@ import sys
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
+from kinform_cli.constants import UNBOUNDED
+
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.text import Text
 
 __all__ = [
     "Settings",
+    "decorated",
     "emit",
     "flush",
     "give_up",
@@ -30,9 +33,6 @@ __all__ = [
     "tolerate_any_character",
     "warn",
 ]
-
-_UNBOUNDED = 100_000
-"""Width off a terminal: columns take what they need."""
 
 
 @dataclass
@@ -57,12 +57,17 @@ def _console(stream: IO[str]) -> Console:
 
     return Patient(
         file=stream,
-        width=None if stream.isatty() else _UNBOUNDED,
+        width=None if stream.isatty() else UNBOUNDED,
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         markup=False,
         highlight=False,
         emoji=False,
     )
+
+
+def decorated() -> bool:
+    """Whether stdout is a terminal, or is to be taken for one; else text needs no rich, whose import costs time."""
+    return sys.stdout.isatty() or any(name in os.environ for name in ("FORCE_COLOR", "TTY_COMPATIBLE"))
 
 
 def stderr() -> Console:

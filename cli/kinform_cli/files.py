@@ -1,4 +1,4 @@
-"""Files that the command reads and writes: checked before the work starts, not after.
+"""Files that the commands read and write: checked before the work starts, not after.
 
 The library replaces a results file in one step, so it is either the old one or the new one. What is
 checked here is what would make that last step fail, or destroy a file that kinform did not write.
@@ -8,19 +8,22 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinform_cli.errors import refuse
+from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
     from kinform.design import Design
 
 __all__ = [
     "MESHES",
+    "advance",
     "check_output",
     "check_text_output",
+    "is_manifest",
     "make_rule",
     "needing",
     "read",
@@ -34,7 +37,7 @@ MESHES = (".stl", ".obj")
 
 def check_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     """Raise an error if a results file could not be written to `path`, or if that is one of the inputs."""
-    _spare(path, inputs)
+    _spare_inputs(path, inputs)
     from kinform import results
 
     results.check_output(path)
@@ -43,7 +46,7 @@ def check_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
 
 def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     """As check_output, for a text file."""
-    _spare(path, inputs)
+    _spare_inputs(path, inputs)
     if path.is_dir():
         raise refuse("this is a folder, not a file", file=path, remedy="name a file in it")
     if not path.parent.is_dir():
@@ -51,7 +54,7 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     _try_writing(path)
 
 
-def _spare(path: Path, inputs: Iterable[Path]) -> None:
+def _spare_inputs(path: Path, inputs: Iterable[Path]) -> None:
     for source in inputs:
         if source == path or (path.exists() and source.exists() and path.samefile(source)):
             raise refuse("is an input and would be overwritten", file=path, remedy="name another output")
@@ -98,6 +101,18 @@ def needing(path: Path) -> Iterator[None]:
         ) from None
 
 
+def advance(source: Path, output: Path, label: str, stage: Callable[[Design, Working], Design]) -> Design:
+    """Take the design in a results file through one stage, and write what that gives to another, or to the same."""
+    check_output(output)
+    from kinform import results
+
+    design = read(source)
+    with needing(source), Working(label) as working:
+        design = stage(design, working)
+    results.write(design, output)
+    return design
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text file in one step, as UTF-8; the same text keeps the file, with a new time."""
     write_bytes(path, text.encode())
@@ -120,14 +135,46 @@ def read_by(design: Design, sources: Sequence[Path]) -> list[Path]:
 def make_rule(target: Path, sources: Iterable[Path]) -> str:
     """A Make rule "target: sources", and an empty rule a source, so that a deleted one stops nothing."""
     names = [str(source) for source in sources]
-    lines = [" \\\n  ".join([_escaped(str(target), target=True) + ":", *map(_escaped, names)])]
-    lines += [_escaped(name, target=True) + ":" for name in names]
+    lines = [" \\\n  ".join([_escape(str(target), target=True) + ":", *map(_escape, names)])]
+    lines += [_escape(name, target=True) + ":" for name in names]
     return "\n".join(lines) + "\n"
 
 
-def _escaped(name: str, *, target: bool = False) -> str:
+def _escape(name: str, *, target: bool = False) -> str:
     """The name as Make reads it: blanks, hashes and dollars escaped; in targets also % and :."""
     name = name.replace("$", "$$")
     for character in " #" + ("%:" if target else ""):
         name = name.replace(character, "\\" + character)
     return name
+
+
+def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
+    """Whether the sources are a manifest (else meshes); InputError where they are a mixture."""
+    kinds = {source.suffix.lower() for source in sources}
+    if kinds <= set(MESHES):
+        if units is None:
+            raise refuse(
+                "the unit of these meshes is not stated",
+                file=sources[0],
+                remedy="add --units mm (or m, cm, um, in, ft)",
+            )
+        return False
+    if ".h5" in kinds or ".hdf5" in kinds:
+        raise refuse(
+            "is a results file; this command starts from a manifest or from meshes",
+            file=next(source for source in sources if source.suffix.lower() in (".h5", ".hdf5")),
+            remedy="look into it with `kinform show`, or verify it with `kinform check`",
+        )
+    if len(sources) > 1:
+        raise refuse(
+            "several inputs that are not all meshes",
+            file=next(source for source in sources if source.suffix.lower() not in MESHES),
+            remedy="name one manifest (.toml), or only meshes (.stl, .obj)",
+        )
+    if units is not None:
+        raise refuse(
+            "--units is for meshes in place of a manifest",
+            file=sources[0],
+            remedy="leave --units out: the manifest states its own `units`",
+        )
+    return True

@@ -1,7 +1,8 @@
 """Ctrl-C is heard once, wherever it falls.
 
-Python raises KeyboardInterrupt between any two instructions. Where that is a callback of its own or of a library, as while
-modules are imported, it is dropped there and the program goes on: such a one is raised again at the next step of the work.
+Python raises KeyboardInterrupt between any two instructions. Where that is a callback of its own or of a library, as
+while modules are imported, it is dropped there and the program goes on: such a one is raised again at the next step of
+the work.
 """
 
 from __future__ import annotations

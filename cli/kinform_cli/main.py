@@ -27,12 +27,6 @@ def main(arguments: Sequence[str]) -> int:
     console.settings.quiet = False
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
-        from kinform_cli.plain import try_plain
-
-        done = try_plain(arguments)
-        if done is not None:
-            console.flush()
-            return done
         import typer
 
         from kinform_cli.app import app

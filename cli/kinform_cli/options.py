@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,7 +12,6 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
-from kinform_cli.choices import FindingsFormat, Severity, TableFormat, cores
 
 __all__ = [
     "AllowOutside",
@@ -22,10 +24,10 @@ __all__ = [
     "Jobs",
     "ManifestFolder",
     "Output",
-    "Quiet",
     "Ranges",
     "Results",
     "Severity",
+    "Sources",
     "TableFormat",
     "Tolerances",
     "Units",
@@ -51,16 +53,66 @@ class _WithExamples:
 
 
 class Command(_WithExamples, TyperCommand):
-    """One command."""
+    """One command; it takes --quiet and --debug beside its own options."""
+
+    def __init__(self, *arguments: Any, **settings: Any):
+        super().__init__(*arguments, **settings)
+        self.params += _options_of_all()
 
 
 class Group(_WithExamples, TyperGroup):
-    """The command `kinform` itself."""
+    """A command with others below it."""
+
+
+@cache
+def _options_of_all() -> list[Any]:
+    """The options that every command takes; their callbacks do all that they ask for."""
+
+    def takes(quiet: Quiet = False, debug: Debug = False) -> None: ...
+
+    app = typer.Typer(add_completion=False)
+    app.command()(takes)
+    options = typer.main.get_command(app).params
+    for option in options:
+        option.expose_value = False
+    return options
 
 
 def examples(*lines: str) -> str:
     """The epilog that shows these command lines."""
     return "\n".join([" Examples:", *(f"   {line}" for line in lines)])
+
+
+def cores(jobs: int | None) -> int:
+    """How many processes `--jobs` stands for."""
+    return jobs or os.cpu_count() or 1
+
+
+class Severity(StrEnum):
+    """Severities of findings, from the worst."""
+
+    error = "error"
+    warning = "warning"
+    note = "note"
+
+
+class FindingsFormat(StrEnum):
+    """How findings are printed."""
+
+    full = "full"
+    concise = "concise"
+    json = "json"
+    sarif = "sarif"
+    junit = "junit"
+    github = "github"
+    md = "md"
+
+
+class TableFormat(StrEnum):
+    """How results are printed."""
+
+    table = "table"
+    json = "json"
 
 
 def _set_quiet(value: bool) -> None:
@@ -74,15 +126,11 @@ def _set_debug(value: bool) -> None:
 Quiet = Annotated[
     bool,
     typer.Option(
-        "--quiet",
-        "-q",
-        callback=_set_quiet,
-        help="No progress, summaries or warnings on stderr; errors stay.",
+        "--quiet", "-q", callback=_set_quiet, help="No progress, summaries or warnings on stderr; errors stay."
     ),
 ]
 Debug = Annotated[
-    bool,
-    typer.Option("--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1)."),
+    bool, typer.Option("--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1).")
 ]
 Jobs = Annotated[
     int | None,
@@ -90,32 +138,31 @@ Jobs = Annotated[
         "--jobs", "-j", min=1, metavar="N", show_default=False, help="Use up to N cores; default: all of them."
     ),
 ]
-
 Ranges = Annotated[
     bool | None,
     typer.Option(
         "--ranges/--no-ranges",
         show_default=False,
-        help="Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
+        help="Find how far each joint goes until parts meet; "
+        "else only where the function states ranges or requirements.",
     ),
 ]
-
-
+Sources = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="M.toml|MESH",
+        show_default=False,
+        help="A manifest; or STL and OBJ files in place of one, with --units.",
+    ),
+]
 Results = Annotated[Path, typer.Argument(metavar="F.h5", show_default=False, help="Results file to read.")]
 Output = Annotated[
     Path,
     typer.Option(
-        "--output",
-        "-o",
-        metavar="F.h5",
-        show_default=False,
-        help="Results file to write; may be the one that is read.",
+        "--output", "-o", metavar="F.h5", show_default=False, help="Results file to write; may be the one that is read."
     ),
 ]
-AllowOutside = Annotated[
-    bool,
-    typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder."),
-]
+AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
 Units = Annotated[
     str | None,
     typer.Option(
@@ -152,7 +199,4 @@ Tolerances = Annotated[
         help="Changes up to this are none: 0.1mm, 0.2deg, 1g, 0.5% (of masses); may be given once for each.",
     ),
 ]
-FailOn = Annotated[
-    Severity,
-    typer.Option("--fail-on", help="Least severity of a finding that gives exit code 1."),
-]
+FailOn = Annotated[Severity, typer.Option("--fail-on", help="Least severity of a finding that gives exit code 1.")]

@@ -13,16 +13,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from kinform_cli import console, interrupts
+from kinform_cli.constants import DELAY, PERIOD
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
-__all__ = ["DELAY", "Working"]
-
-DELAY = 1.0
-"""Seconds after which a bar appears."""
-_PERIOD = 0.1
-"""Seconds between two drawings."""
+__all__ = ["Working"]
 
 _drawing = threading.RLock()
 if hasattr(os, "register_at_fork"):
@@ -76,7 +72,7 @@ class Working:
             bars = _bars()
             task = bars.add_task(self._label, total=None)
             bars.start()
-        while not self._over.wait(_PERIOD):
+        while not self._over.wait(PERIOD):
             with _drawing:
                 bars.update(task, description=self._label, completed=self._done, total=self._total or None)
                 bars.refresh()
@@ -85,14 +81,7 @@ class Working:
 
 
 def _bars() -> Bars:
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        SpinnerColumn,
-        TextColumn,
-        TimeElapsedColumn,
-    )
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     return Progress(
         SpinnerColumn(),

@@ -13,11 +13,9 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-__all__ = ["Rows", "stacked"]
+from kinform_cli.constants import GAP, INDENT
 
-_GAP = 3
-"""Blanks between two facts on one line of a block."""
-_INDENT = 4
+__all__ = ["Rows", "stacked"]
 
 
 class Rows:
@@ -87,12 +85,12 @@ class Rows:
         line = ""
         for heading, value in zip(self._headings[self._keys :], row[self._keys :], strict=True):
             fact = f"{heading}: {value}"
-            if line and _INDENT + len(line) + _GAP + len(fact) > width:
-                yield _Hanging(Text(" " * _INDENT + line))
+            if line and INDENT + len(line) + GAP + len(fact) > width:
+                yield _Hanging(Text(" " * INDENT + line))
                 line = fact
             else:
-                line += (" " * _GAP if line else "") + fact
-        yield _Hanging(Text(" " * _INDENT + line))
+                line += (" " * GAP if line else "") + fact
+        yield _Hanging(Text(" " * INDENT + line))
 
 
 class _Hanging:

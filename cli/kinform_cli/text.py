@@ -1,4 +1,4 @@
-"""How numbers and names are written for people, and values for machines."""
+"""Numbers, lengths, directions and remarks as people read them, and values for machines."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from kinform_cli.constants import FINE, NO_LENGTH
+
 if TYPE_CHECKING:
+    from kinform.design import Design
     from kinform.model.assembly import Assembly
 
-__all__ = ["NONE", "Lengths", "count", "degrees", "dumps", "number", "vector"]
+__all__ = ["NONE", "Lengths", "degrees", "dumps", "ground_note", "number", "vector"]
 
 NONE = "–"
 """What stands where there is no value."""
-
-_FINE = 1e-5
-"""Places are written to this share of the largest part; the JSON has every digit."""
 
 
 def number(value: float | None) -> str:
@@ -51,11 +51,6 @@ def vector(direction: Iterable[float] | None) -> str:
     return ", ".join(f"{component:g}" for component in rounded)
 
 
-def count(many: int, noun: str, plural: str | None = None) -> str:
-    """As in "1 part", "2 parts", "2 bodies"."""
-    return f"{many} {noun if many == 1 else plural or noun + 's'}"
-
-
 @dataclass(frozen=True)
 class Lengths:
     """Lengths in the unit of the assembly, without its name."""
@@ -72,14 +67,14 @@ class Lengths:
 
         metres = metres_per(assembly.units)
         largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
-        fine = _FINE * (largest or 1.0) / metres
+        fine = FINE * (largest or 1.0) / metres
         return Lengths(assembly.units, metres, math.ceil(-math.log10(fine)))
 
     def length(self, metres: float | None) -> str:
         """A gap, a depth, a pitch: to four digits, and nothing below a billionth of a metre."""
         if metres is None or not math.isfinite(metres):
             return number(metres)
-        return number(0.0 if abs(metres) < 1e-9 else metres / self.metres)
+        return number(0.0 if abs(metres) < NO_LENGTH else metres / self.metres)
 
     def place(self, metres: float) -> str:
         """A coordinate, to as many decimals as the parts call for."""
@@ -101,6 +96,15 @@ class Lengths:
     def volume(self, cubic_metres: float) -> str:
         """A volume."""
         return number(cubic_metres / self.metres**3)
+
+
+def ground_note(design: Design) -> str | None:
+    """Which body was taken as the ground, where the manifest does not say."""
+    if design.assembly.ground is not None:
+        return None
+    assert design.kinematics is not None
+    chosen = [body.name for body in design.kinematics.bodies if body.ground]
+    return f"note: no ground is stated: {', '.join(chosen)} is taken, as the heaviest (else the largest) body"
 
 
 def dumps(value: Any) -> str:

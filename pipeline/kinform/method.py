@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from kinform import stages
 from kinform.api import Outcome
 from kinform.design import Design
 from kinform.errors import InputError, Problem
-from kinform.reuse.ledger import Ledger
+
+if TYPE_CHECKING:
+    from kinform import stages
+    from kinform.reuse.ledger import Ledger
 
 __all__ = ["Progress", "run"]
 
@@ -27,7 +30,6 @@ def run(
     units: str | None = None,
     say: Callable[[str], None] | None = None,
     ranges: bool | None = None,
-    changed: bool = False,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
@@ -35,16 +37,17 @@ def run(
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
-    each joint goes; None: where the function states ranges or requirements. `changed`: whether it is known that an earlier
-    file is not what a run would give, and need not be asked.
+    each joint goes; None: where the function states ranges or requirements.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
-    plain = units is None and ranges is None and not changed
-    if output is not None and plain and isinstance(manifest, str | Path):
+    if output is not None and units is None and ranges is None and isinstance(manifest, str | Path):
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged
+    from kinform import stages  # not before: seeing that nothing changed takes less time than importing them
+    from kinform.reuse.ledger import Ledger
+
     ledger = Ledger.of(output)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
@@ -65,6 +68,8 @@ def _import(
     manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool, ledger: Ledger
 ) -> Design:
     """The assembly of a manifest, or of meshes in place of one."""
+    from kinform import stages
+
     paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
     if units is not None:
         return stages.import_meshes(paths, units=units)

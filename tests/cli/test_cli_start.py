@@ -16,7 +16,7 @@ from kinform_cli.app import COMMANDS as REGISTERED
 from kinform_cli.app import app
 from kinform_cli.main import entry, main
 
-COMMANDS = sorted(name for name, *_ in REGISTERED)
+COMMANDS = sorted(REGISTERED)
 HEAVY = {"scipy", "trimesh", "numba", "h5py", "numpy", "manifold3d", "fcl", "pydantic", "matplotlib", "jinja2"}
 
 
@@ -27,7 +27,8 @@ def test_the_console_script_is_the_entry() -> None:
 
 def test_the_commands_are_those_of_the_contract_so_far() -> None:
     assert COMMANDS == sorted(
-        "import contacts joints mass simulate check run show query report export explain init schema diff lock watch".split()
+        "import contacts joints mass simulate check run show query report export explain init schema diff lock watch "
+        "catalog".split()
     )
 
 
@@ -50,6 +51,17 @@ def test_nothing_heavy_is_imported_to_answer(arguments: list[str]) -> None:
     assert not imported & (HEAVY - {"pydantic"})
 
 
+def test_a_command_imports_the_module_of_no_other() -> None:
+    code = (
+        "import sys\n"
+        "from kinform_cli.main import main\n"
+        "assert main(['schema', '--help']) == 0\n"
+        "print(*sorted(name for name in sys.modules if name.startswith('kinform_cli.commands.')), file=sys.stderr)\n"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True)
+    assert ran.stderr.split() == ["kinform_cli.commands.schema"]
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_of_each_command_ends_with_examples_of_it(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, "--help"]) == 0
@@ -63,12 +75,15 @@ def test_help_of_each_command_ends_with_examples_of_it(command: str, capsys: pyt
 def test_examples_use_options_that_exist() -> None:
     """Every line of every example is understood: no unknown command or option."""
     group = typer.main.get_command(app)
-    options = {
-        name: {flag for parameter in command.params for flag in (*parameter.opts, *parameter.secondary_opts)}
-        for name, command in group.commands.items()
-    }
-    for name, _, text, _ in REGISTERED:
-        for line in text.splitlines():
+
+    def options_of(command):
+        below = getattr(command, "commands", {}).values()
+        flags = {flag for parameter in command.params for flag in (*parameter.opts, *parameter.secondary_opts)}
+        return flags.union(*map(options_of, below))
+
+    options = {name: options_of(command) for name, command in group.commands.items()}
+    for name, command in group.commands.items():
+        for line in command.epilog.splitlines():
             words = line.split("#")[0].split("|")[0].split()
             if words[:1] != ["kinform"]:
                 continue

@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import pytest
 from known import FIXTURES
 
-from kinform_cli.choices import FindingsFormat
 from kinform_cli.main import main
+from kinform_cli.options import FindingsFormat
 
 PAIR = FIXTURES / "pairs" / "revolute_collars"
 BLOCK = '[bold]blo ck[-bold] "q" <b>tag Ø螺\n::error::x,y|z`'

@@ -21,10 +21,10 @@ from known import FIXTURES
 from rich.console import Console
 
 from kinform import results, stages
-from kinform_cli.sparks import BLOCKS, PLAIN, spark
 from kinform_cli.tables import stacked
 from kinform_cli.text import Lengths
 from kinform_cli.views import assembly, mass, series
+from kinform_cli.views.series import BLOCKS, PLAIN, spark
 
 SEEKER = FIXTURES / "seeker/5_complete/seeker.toml"
 

@@ -8,37 +8,36 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Quiet, TableFormat, examples
-from kinform_cli.text import count
+from kinform_cli.options import Command, Group, TableFormat, examples
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinform.catalog import Catalog, Refused
 
-__all__ = ["COMMANDS", "EXAMPLES", "HELP", "add", "find", "rebuild"]
+__all__ = ["add", "app", "find", "rebuild"]
 
-HELP = "Keep a catalog of designs, and find designs by what they do."
-EXAMPLES = examples(
-    "kinform catalog add designs/",
-    "kinform catalog find --joint revolute --mobility 1",
-    "kinform catalog rebuild",
+app = typer.Typer(
+    name="catalog",
+    cls=Group,
+    add_completion=False,
+    help="Keep a catalog of designs, and find designs by what they do.",
+    epilog=examples(
+        "kinform catalog add designs/", "kinform catalog find --joint revolute --mobility 1", "kinform catalog rebuild"
+    ),
 )
 
 File = Annotated[
-    Path,
-    typer.Option(
-        "--catalog",
-        "-c",
-        metavar="FILE",
-        envvar="KINFORM_CATALOG",
-        help="The catalog, an SQLite file.",
-    ),
+    Path, typer.Option("--catalog", "-c", metavar="FILE", envvar="KINFORM_CATALOG", help="The catalog, an SQLite file.")
 ]
 _DEFAULT = Path("catalog.sqlite")
 
 
+@app.command(
+    cls=Command, epilog=examples("kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite")
+)
 def add(
     sources: Annotated[
         list[Path],
@@ -47,8 +46,6 @@ def add(
         ),
     ],
     file: File = _DEFAULT,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Add designs to the catalog: all results files below these folders.
 
@@ -61,24 +58,14 @@ def add(
     _keep(*catalog.add(old, sources, file.parent), file)
 
 
-def rebuild(file: File = _DEFAULT, quiet: Quiet = False, debug: Debug = False) -> None:
-    """Make the catalog again from the folders and files that were added to it."""
-    from kinform import catalog
-
-    old = catalog.read(file)
-    files.check_text_output(file)
-    _keep(*catalog.rebuild(old, file.parent), file)
-
-
-def _keep(made: Catalog, refused: Sequence[Refused], file: Path) -> None:
-    from kinform import catalog
-
-    catalog.write(made, file)
-    for item in refused:
-        console.warn(f"left out {item.path}: {item.reason}")
-    console.say(f"{file}: {count(len(made.entries), 'design')}")
-
-
+@app.command(
+    cls=Command,
+    epilog=examples(
+        "kinform catalog find --joint revolute --mobility 1",
+        "kinform catalog find --joint revolute:2+ --loops 1 --max-mass 0.5",
+        "kinform catalog find --name seeker --format json",
+    ),
+)
 def find(
     joint: Annotated[
         list[str] | None,
@@ -131,8 +118,6 @@ def find(
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
     ] = TableFormat.table,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Find designs by what they do; everything that is asked must hold.
 
@@ -147,16 +132,35 @@ def find(
         _joint_counts(joint or []), joints, mobility, instantaneous, loops, min_mass, max_mass, max_size,
         tuple(name or ()), tuple(meets or ()), verified,
     )  # fmt: skip
-    found, total = catalog.find(file, wanted)
-    states = [catalog.stale(entry, file.parent) for entry in found]
+    designs, total = catalog.find(file, wanted)
+    states = [catalog.stale(entry, file.parent) for entry in designs]
     from kinform_cli.views import catalog as view
 
     if format is TableFormat.json:
-        console.emit(view.as_json(found, states))
+        console.emit(view.as_json(designs, states))
     else:
-        console.out(view.render(found, states, total))
+        console.out(view.render(designs, states, total))
     if any(states):
         console.warn(f"results changed since they were added: kinform catalog rebuild --catalog {file}")
+
+
+@app.command(cls=Command, epilog=examples("kinform catalog rebuild", "kinform catalog rebuild -c robots.sqlite"))
+def rebuild(file: File = _DEFAULT) -> None:
+    """Make the catalog again from the folders and files that were added to it."""
+    from kinform import catalog
+
+    old = catalog.read(file)
+    files.check_text_output(file)
+    _keep(*catalog.rebuild(old, file.parent), file)
+
+
+def _keep(kept: Catalog, refused: Sequence[Refused], file: Path) -> None:
+    from kinform import catalog
+
+    catalog.write(kept, file)
+    for item in refused:
+        console.warn(f"left out {item.path}: {item.reason}")
+    console.say(f"{file}: {counted(len(kept.entries), 'design')}")
 
 
 def _joint_counts(asked: Sequence[str]) -> tuple[tuple[str, int, int | None], ...]:
@@ -166,18 +170,3 @@ def _joint_counts(asked: Sequence[str]) -> tuple[tuple[str, int, int | None], ..
         return tuple(many(text) for text in asked)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--joint") from None
-
-
-COMMANDS = (
-    ("add", add, examples("kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite")),
-    (
-        "find",
-        find,
-        examples(
-            "kinform catalog find --joint revolute --mobility 1",
-            "kinform catalog find --joint revolute:2+ --loops 1 --max-mass 0.5",
-            "kinform catalog find --name seeker --format json",
-        ),
-    ),
-    ("rebuild", rebuild, examples("kinform catalog rebuild", "kinform catalog rebuild -c robots.sqlite")),
-)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.gate import conclude
-from kinform_cli.options import Debug, FailOn, FindingsFormat, ManifestFolder, Quiet, Results, Severity, examples
+from kinform_cli.gate import Gate
+from kinform_cli.options import FailOn, FindingsFormat, ManifestFolder, Results, Severity, examples
 from kinform_cli.progress import Working
-from kinform_cli.text import count
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -67,8 +67,6 @@ def check(
             "--lock", metavar="FILE", show_default=False, help="Also compare the behaviour with this lock (KF450)."
         ),
     ] = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Check form, behaviour and function against each other.
 
@@ -91,47 +89,45 @@ def check(
     report = design.report
     assert report is not None
     if baseline is not None:
-        report = _without_adopted(report, baseline)
+        report = _without_baseline(report, baseline)
     if write_baseline is not None:
         adopted = adopt(report)
         files.write_text(write_baseline, adopted.text())
-        console.say(f"{count(len(adopted.keys), 'finding')} written to {write_baseline}")
+        console.say(f"{counted(len(adopted.keys), 'finding')} written to {write_baseline}")
     design = replace(design, report=report)
     if lock is not None:
-        design = _compared(design, lock, manifest_folder)
-    conclude(design, format, fail_on, manifest_folder)
+        design = _with_lock(design, lock, manifest_folder)
+    raise typer.Exit(Gate(format, fail_on, manifest_folder).judge(design))
 
 
-def _without_adopted(report: CheckReport, baseline: Path) -> CheckReport:
+def _without_baseline(report: CheckReport, baseline: Path) -> CheckReport:
     """The report without what the baseline adopts; says on stderr what of it is gone."""
     from kinform.consistency import read_baseline, with_baseline
     from kinform.reports.words import one_line
 
-    try:
-        text = baseline.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        told = getattr(error, "strerror", None) or "is not UTF-8 text"
-        remedy = "write it first: kinform check F.h5 --write-baseline B.json"
-        raise refuse(f"the baseline cannot be read: {told}", file=baseline, remedy=remedy) from None
+    text = _read(baseline, "baseline", "kinform check F.h5 --write-baseline B.json")
     left, gone = with_baseline(report, read_baseline(text, str(baseline)))
-    console.say(f"{count(len(left.ignored) - len(report.ignored), 'finding')} of the baseline {baseline.name}")
+    console.say(f"{counted(len(left.ignored) - len(report.ignored), 'finding')} of the baseline {baseline.name}")
     for code, subject in gone:
         console.say(f"no longer found: {code} {one_line(', '.join(subject))}: write the baseline anew")
     return left
 
 
-def _compared(design: Design, lock: Path, manifest_folder: Path | None) -> Design:
+def _with_lock(design: Design, lock: Path, manifest_folder: Path | None) -> Design:
     """The design with what differs from the lock among its findings, which name it as they name other files."""
     from kinform import changes
 
-    try:
-        text = lock.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        told = getattr(error, "strerror", None) or "is not UTF-8 text"
-        raise refuse(
-            f"the lock cannot be read: {told}", file=lock, remedy="write it first: kinform lock F.h5 -o FILE"
-        ) from None
+    text = _read(lock, "lock", "kinform lock F.h5 -o FILE")
     assert design.report is not None
     shown = str(lock) if manifest_folder is None else Path(os.path.relpath(lock, manifest_folder)).as_posix()
     report = changes.with_lock(design.report, design, changes.read_lock(text, shown))
     return replace(design, report=report)
+
+
+def _read(path: Path, what: str, command: str) -> str:
+    """The text of a file that findings are compared with; an error names the command that writes one."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "is not UTF-8 text"
+        raise refuse(f"the {what} cannot be read: {reason}", file=path, remedy=f"write it first: {command}") from None

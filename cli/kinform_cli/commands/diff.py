@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Quiet, Tolerances, examples
+from kinform_cli.options import Tolerances, examples
 
 if TYPE_CHECKING:
     from kinform.changes import Tolerance
@@ -36,8 +36,6 @@ def diff(
     after: Annotated[Path, typer.Argument(metavar="B.h5", show_default=False, help="Results file after.")],
     format: Annotated[DiffFormat, typer.Option("--format", "-f", help="json: SI and radians.")] = DiffFormat.full,
     tolerances: Tolerances = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Say what changed in behaviour: joints, axes, freedoms, ranges, masses, overlaps, findings.
 
@@ -48,9 +46,9 @@ def diff(
     within = tolerance(tolerances)
     from kinform import changes
 
-    found = changes.compare(changes.snapshot(files.read(before)), changes.snapshot(files.read(after)), within)
-    console.emit(changes.render(found, format.value))
-    raise typer.Exit(found.code)
+    result = changes.compare(changes.snapshot(files.read(before)), changes.snapshot(files.read(after)), within)
+    console.emit(changes.render(result, format.value))
+    raise typer.Exit(result.code)
 
 
 def tolerance(stated: list[str] | None) -> Tolerance | None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console
-from kinform_cli.options import Debug, Quiet, examples
+from kinform_cli.options import examples
 
 __all__ = ["EXAMPLES", "explain"]
 
@@ -19,8 +19,6 @@ def explain(
         str | None,
         typer.Argument(metavar="CODE", show_default=False, help="Code or name of a rule; without it all are listed."),
     ] = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Explain a finding by its code: what it means, why it matters, what to do."""
     from kinform import consistency

@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, Results, examples
-from kinform_cli.text import count
+from kinform_cli.options import Results, examples
 
 __all__ = ["EXAMPLES", "Target", "export"]
 
@@ -48,11 +48,8 @@ def export(
         ),
     ],
     strict: Annotated[
-        bool,
-        typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model."),
+        bool, typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model.")
     ] = False,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Write the model, or its motion, in the format of another tool.
 
@@ -66,14 +63,14 @@ def export(
 
     with files.needing(source):
         try:
-            made = exports.export(design, to.value, strict=strict)
+            model = exports.export(design, to.value, strict=strict)
         except exports.LostError as error:
             remedy = "without --strict it is written, and named in the file"
             problems = [Problem(f"{to.value} cannot carry {text}", str(source), None, remedy) for text in error.lost]
             raise InputError(problems) from None
         except exports.ExportError as error:
             raise refuse(str(error), file=source) from None
-    written = exports.write(made, output)
-    console.say(f"{output}: {count(len(written), 'file')} of {to.value}")
-    for text in made.lost:
+    written = exports.write(model, output)
+    console.say(f"{output}: {counted(len(written), 'file')} of {to.value}")
+    for text in model.lost:
         console.warn(f"{to.value} does not carry {text}")

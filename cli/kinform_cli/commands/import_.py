@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.inputs import Sources, is_manifest
-from kinform_cli.options import AllowOutside, Debug, Depfile, Output, Quiet, Units, examples
+from kinform_cli.options import AllowOutside, Depfile, Output, Sources, Units, examples
 from kinform_cli.progress import Working
-from kinform_cli.text import count
 
 __all__ = ["EXAMPLES", "import_"]
 
@@ -18,16 +17,10 @@ EXAMPLES = examples(
 
 
 def import_(
-    sources: Sources,
-    output: Output,
-    units: Units = None,
-    allow_outside: AllowOutside = False,
-    depfile: Depfile = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
+    sources: Sources, output: Output, units: Units = None, allow_outside: AllowOutside = False, depfile: Depfile = None
 ) -> None:
     """Read a manifest and its meshes into a results file; the other stages need nothing else."""
-    manifest = is_manifest(sources, units)
+    manifest = files.is_manifest(sources, units)
     files.check_output(output, inputs=sources)
     if depfile is not None:
         files.check_text_output(depfile, inputs=[*sources, output])
@@ -43,7 +36,7 @@ def import_(
     if depfile is not None:
         files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
     assembly = design.assembly
-    parts, groups = count(len(assembly.parts), "part"), count(len(assembly.groups), "group")
+    parts, groups = counted(len(assembly.parts), "part"), counted(len(assembly.groups), "group")
     console.say(f"{output}: {assembly.name}, {parts}, {groups}")
     for note in assembly.notes:
         console.say(f"note: {note}")

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, cores, examples
+from kinform_cli.options import cores, examples
 from kinform_cli.progress import Working
-from kinform_cli.text import count
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
@@ -20,15 +20,13 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLES", "init"]
 
 EXAMPLES = examples(
-    "kinform init parts/*.stl --units mm -o arm.toml",
-    "kinform init scene.obj --units m            # print it",
+    "kinform init parts/*.stl --units mm -o arm.toml", "kinform init scene.obj --units m            # print it"
 )
 
 
 def init(
     meshes: Annotated[
-        list[Path],
-        typer.Argument(metavar="MESH...", show_default=False, help="STL and OBJ files of the parts."),
+        list[Path], typer.Argument(metavar="MESH...", show_default=False, help="STL and OBJ files of the parts.")
     ],
     units: Annotated[
         str,
@@ -39,11 +37,7 @@ def init(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output",
-            "-o",
-            metavar="M.toml",
-            show_default=False,
-            help="Manifest to write; else it is printed.",
+            "--output", "-o", metavar="M.toml", show_default=False, help="Manifest to write; else it is printed."
         ),
     ] = None,
     suggest: Annotated[
@@ -53,8 +47,6 @@ def init(
         ),
     ] = True,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Write a manifest for these meshes, ready to be completed."""
     if output is not None:
@@ -66,25 +58,25 @@ def init(
     folder = Path(".") if output is None else output.parent
     name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
     text = form.init_manifest(
-        meshes, units=units, name=name, relative_to=folder, fastened=_fastened if suggest else _doubted
+        meshes, units=units, name=name, relative_to=folder, fastened=_suggest_groups if suggest else _no_groups
     )
     if output is None:
         console.emit(text)
         console.say("printed only: add -o NAME.toml to write it, then: kinform run NAME.toml -o NAME.h5")
         return
     files.write_text(output, text)
-    console.say(f"{output}: {count(text.count('[[part]]'), 'part')}{_proposed(text)}")
+    console.say(f"{output}: {counted(text.count('[[part]]'), 'part')}{_proposals(text)}")
     results = output.with_suffix(".h5")
     console.say(f"complete it (materials, groups, [function]), then: kinform run {output} -o {results}")
 
 
-def _proposed(text: str) -> str:
+def _proposals(text: str) -> str:
     """As in ", 2 groups proposed as comments"; `frame` is an example and nobody's proposal."""
     many = text.count("# [[group]]") if "\n## " in text else 0
-    return f", {count(many, 'group')} proposed as comments" if many else ""
+    return f", {counted(many, 'group')} proposed as comments" if many else ""
 
 
-def _doubted(assembly: Assembly) -> list[tuple[list[PartName], str]]:
+def _no_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     """Nothing is proposed; but a unit that is hard to believe is said at once."""
     from kinform.form.without_manifest import doubts
 
@@ -93,16 +85,16 @@ def _doubted(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     return []
 
 
-def _fastened(assembly: Assembly) -> list[tuple[list[PartName], str]]:
+def _suggest_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     """Parts that their contacts suggest are one body; none where the unit is doubtful: tolerances depend on it."""
     from kinform.form.without_manifest import doubts
 
     if doubts(assembly):
-        return _doubted(assembly)
+        return _no_groups(assembly)
     from kinform import stages
     from kinform.contacts.fastening import fastened
     from kinform.design import Design
 
     with Working("contacts") as progress:
-        found = stages.contacts(Design(assembly), jobs=cores(None), progress=progress).contacts
-    return [] if found is None else fastened(found.suggestions)
+        contacts = stages.contacts(Design(assembly), jobs=cores(None), progress=progress).contacts
+    return [] if contacts is None else fastened(contacts.suggestions)

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.commands.diff import tolerance
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, Results, Tolerances, examples
-from kinform_cli.text import count
+from kinform_cli.options import Results, Tolerances, examples
 
 __all__ = ["EXAMPLES", "lock"]
 
@@ -28,8 +28,6 @@ def lock(
         Path, typer.Option("--output", "-o", metavar="FILE", show_default=False, help="Lock file (JSON) to write.")
     ],
     tolerances: Tolerances = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Lock the behaviour: bodies, joints, axes, ranges, mobility, masses, overlaps, as they are now.
 
@@ -39,8 +37,10 @@ def lock(
     files.check_text_output(output, inputs=[source])
     from kinform import changes
 
-    found = changes.snapshot(files.read(source))
-    if found.joints is None:
+    behaviour = changes.snapshot(files.read(source))
+    if behaviour.joints is None:
         raise refuse("has no joints to lock", file=source, remedy=f"kinform joints {source} -o {source}")
-    files.write_text(output, changes.write_lock(found) if within is None else changes.write_lock(found, within))
-    console.say(f"{output}: {count(len(found.bodies or ()), 'body', 'bodies')}, {count(len(found.joints), 'joint')}")
+    files.write_text(output, changes.write_lock(behaviour) if within is None else changes.write_lock(behaviour, within))
+    console.say(
+        f"{output}: {counted(len(behaviour.bodies or ()), 'body', 'bodies')}, {counted(len(behaviour.joints), 'joint')}"
+    )

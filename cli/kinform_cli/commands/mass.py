@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Output, Quiet, Results, examples
-from kinform_cli.progress import Working
-from kinform_cli.text import count
+from kinform_cli.options import Output, Results, examples
 
 __all__ = ["EXAMPLES", "mass"]
 
 EXAMPLES = examples("kinform mass c.h5 -o d.h5", "kinform show d.h5 mass")
 
 
-def mass(source: Results, output: Output, quiet: Quiet = False, debug: Debug = False) -> None:
+def mass(source: Results, output: Output) -> None:
     """Compute mass, centre of mass and inertia of each part and body."""
-    files.check_output(output)
-    from kinform import results, stages
+    from kinform import stages
 
-    design = files.read(source)
-    with files.needing(source), Working("mass"):
-        design = stages.mass(design)
-    results.write(design, output)
-    found = design.mass
-    assert found is not None
-    known = sum(part.mass is not None for part in found.parts)
-    console.say(f"{output}: mass of {known} of {count(len(found.parts), 'part')}")
-    for part in found.parts:
+    report = files.advance(source, output, "mass", lambda design, working: stages.mass(design)).mass
+    assert report is not None
+    weighed = sum(part.mass is not None for part in report.parts)
+    console.say(f"{output}: mass of {weighed} of {counted(len(report.parts), 'part')}")
+    for part in report.parts:
         if part.mass is None and part.reason:
             console.warn(f"{part.name} has no mass: {part.reason}")
-    for name, message in found.problems:
+    for name, message in report.problems:
         console.warn(f"{name}: {message}")

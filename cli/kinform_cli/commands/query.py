@@ -11,7 +11,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
+from kinform_cli.options import Results, TableFormat, examples
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -29,7 +29,7 @@ EXAMPLES = examples(
     "kinform query arm.h5 --intended",
 )
 
-_NAMED = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def query(
@@ -59,8 +59,6 @@ def query(
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
     ] = TableFormat.table,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Ask whether B can turn or slide relative to A, and if not, which contacts block it.
 
@@ -130,8 +128,8 @@ def _turn(value: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 def _direction(value: str, option: str) -> tuple[float, ...]:
     name = value.strip().lower()
     sign = -1.0 if name.startswith("-") else 1.0
-    if name.lstrip("+-") in _NAMED:
-        return tuple(sign * component + 0.0 for component in _NAMED[name.lstrip("+-")])
+    if name.lstrip("+-") in _AXES:
+        return tuple(sign * component + 0.0 for component in _AXES[name.lstrip("+-")])
     direction = _triple(value, option)
     if not any(direction):
         raise typer.BadParameter(f"{value!r} is no direction: it is zero", param_hint=option)
@@ -154,11 +152,11 @@ def _data(design: Design, motion: dict[str, Any], answer: QueryAnswer) -> dict[s
         "assembly": design.assembly.name,
         "bodies": answer.bodies,
         "motion": motion,
-        **_answered(answer),
+        **_answer_fields(answer),
     }
 
 
-def _answered(answer: QueryAnswer) -> dict[str, Any]:
+def _answer_fields(answer: QueryAnswer) -> dict[str, Any]:
     def ways(pair: tuple[bool | None, bool | None] | None) -> dict[str, bool | None] | None:
         return None if pair is None else {"forward": pair[0], "backward": pair[1]}
 
@@ -179,14 +177,14 @@ def _answered(answer: QueryAnswer) -> dict[str, Any]:
     }
 
 
-def _data_intended(design: Design, found: IntendedAnswer) -> dict[str, Any]:
+def _data_intended(design: Design, answer: IntendedAnswer) -> dict[str, Any]:
     return {
-        "name": found.joint.name,
-        "type": found.joint.type,
-        "between": found.joint.between,
-        "free": found.free,
-        "text": found.text,
-        "motions": [{"kind": item.kind, "twist": item.twist, **_answered(item.answer)} for item in found.motions],
+        "name": answer.joint.name,
+        "type": answer.joint.type,
+        "between": answer.joint.between,
+        "free": answer.free,
+        "text": answer.text,
+        "motions": [{"kind": item.kind, "twist": item.twist, **_answer_fields(item.answer)} for item in answer.motions],
     }
 
 
@@ -214,11 +212,7 @@ def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) ->
     rows = Rows(*headings, title=title, right=numeric, keys=2)
     for blocker in blockers:
         rows.add(
-            *blocker.parts,
-            str(blocker.patch),
-            blocker.kind,
-            lengths.area(blocker.area),
-            lengths.point(blocker.place),
+            *blocker.parts, str(blocker.patch), blocker.kind, lengths.area(blocker.area), lengths.point(blocker.place)
         )
     return rows
 
@@ -231,13 +225,13 @@ def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> Ren
         return "no joints are intended: [function] states none"
     items: list[RenderableType] = []
     words = {True: "yes", False: "no", None: "not known"}
-    for found in answers:
-        between = " and ".join(found.joint.between)
+    for answer in answers:
+        between = " and ".join(answer.joint.between)
         items.append(
-            Text(f"{found.joint.name}: {found.joint.type} between {between}: {words[found.free]}", style="bold")
+            Text(f"{answer.joint.name}: {answer.joint.type} between {between}: {words[answer.free]}", style="bold")
         )
-        items.append(f"  {found.text}")
-        for item in found.motions:
+        items.append(f"  {answer.text}")
+        for item in answer.motions:
             if not item.answer.free_in_assembly:
                 items.append(f"  {item.kind} ({_sense(item)}): {item.answer.text}")
                 blocking = {b.patch: b for b in (*item.answer.blocked_by, *item.answer.assembly_blocked_by)}

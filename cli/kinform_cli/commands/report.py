@@ -7,17 +7,16 @@ from typing import Annotated
 
 import typer
 
+from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, Results, examples
+from kinform_cli.options import Results, examples
 from kinform_cli.progress import Working
-from kinform_cli.text import count
 
 __all__ = ["EXAMPLES", "report"]
 
 EXAMPLES = examples(
-    "kinform report arm.h5 -o arm.html",
-    "kinform report arm.h5 -o arm.html --png out   # also PNG and summary.md",
+    "kinform report arm.h5 -o arm.html", "kinform report arm.h5 -o arm.html --png out   # also PNG and summary.md"
 )
 
 
@@ -35,32 +34,30 @@ def report(
             help="Also write pictures and a Markdown summary into this folder, which is made where it is missing.",
         ),
     ] = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Write one self-contained page: verdict, findings, the assembly in 3D, joints, motion, curves."""
     files.check_text_output(output, inputs=[source])
     if png is not None:
-        _folder(png)
+        _make_folder(png)
     design = files.read(source)
     from kinform.reports.page import Scene, page, pictures, summary
 
     with Working("report"):
         scene = Scene(design)
         text = page(design, scene)
-        drawn = {} if png is None else pictures(scene)
+        images = {} if png is None else pictures(scene)
     files.write_text(output, text)
     console.say(f"{output}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
     if png is not None:
-        for name, data in drawn.items():
+        for name, data in images.items():
             files.write_bytes(png / name, data)
         files.write_text(png / "summary.md", summary(design))
-        console.say(f"{png}: {count(len(drawn), 'picture')} and summary.md")
+        console.say(f"{png}: {counted(len(images), 'picture')} and summary.md")
     if design.report is None:
         console.warn("the rules have not been run, and the page says so: kinform check F.h5 -o F.h5")
 
 
-def _folder(path: Path) -> None:
+def _make_folder(path: Path) -> None:
     """Make the folder for pictures; an error where that cannot be."""
     try:
         path.mkdir(parents=True, exist_ok=True)

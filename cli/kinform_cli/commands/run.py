@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from kinform_cli.inputs import Sources, is_manifest
+from kinform_cli import console, files
+from kinform_cli.errors import refuse
+from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
-    Debug,
     Depfile,
     FailOn,
     FindingsFormat,
     Jobs,
-    Quiet,
     Ranges,
     Severity,
+    Sources,
     Units,
+    cores,
     examples,
 )
-from kinform_cli.running import execute
+from kinform_cli.progress import Working
 
 __all__ = ["EXAMPLES", "run"]
 
@@ -55,8 +58,6 @@ def run(
     ranges: Ranges = None,
     jobs: Jobs = None,
     depfile: Depfile = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Import, contacts, joints, mass, simulate and check in one go.
 
@@ -66,16 +67,38 @@ def run(
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
     """
-    code = execute(
-        sources,
-        output,
-        manifest=is_manifest(sources, units),
-        units=units,
-        allow_outside=allow_outside,
-        format=format,
-        fail_on=fail_on,
-        ranges=ranges,
-        jobs=jobs,
-        depfile=depfile,
-    )
+    manifest = files.is_manifest(sources, units)
+    _check_files(sources, output, depfile)
+    first = output is not None and not output.exists()
+    import kinform
+
+    with Working("run") as working:
+        outcome = kinform.run(
+            sources[0] if manifest else sources,
+            output,
+            jobs=cores(jobs),
+            progress=working.step,
+            allow_outside=allow_outside,
+            units=units,
+            say=console.say,
+            ranges=ranges,
+        )
+    if depfile is not None and output is not None:
+        files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))
+    code = Gate(format, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
+    if output is None:
+        console.say("nothing was kept: add -o F.h5, and `kinform show` and `kinform report` can look at the results")
+    elif first:
+        page = output.with_suffix(".html")
+        console.say(f"next: kinform report {output} -o {page}   (one page to look at), or: kinform show {output}")
     raise typer.Exit(code)
+
+
+def _check_files(sources: Sequence[Path], output: Path | None, depfile: Path | None) -> None:
+    """Raise an error if what the run writes could not be written."""
+    if output is not None:
+        files.check_output(output, inputs=sources)
+    if depfile is not None:
+        if output is None:
+            raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
+        files.check_text_output(depfile, inputs=[*sources, output])

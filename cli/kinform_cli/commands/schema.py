@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 
 from kinform_cli import console
-from kinform_cli.options import Debug, Quiet, examples
+from kinform_cli.options import examples
 
 __all__ = ["EXAMPLES", "schema"]
 
 EXAMPLES = examples(
-    "kinform schema > kinform.schema.json",
-    "#:schema ./kinform.schema.json   # first line of a manifest, for editors",
+    "kinform schema > kinform.schema.json", "#:schema ./kinform.schema.json   # first line of a manifest, for editors"
 )
 
 
-def schema(quiet: Quiet = False, debug: Debug = False) -> None:
+def schema() -> None:
     """Print the JSON Schema of the manifest, for editors."""
     from kinform import form
 

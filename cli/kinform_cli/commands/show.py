@@ -10,7 +10,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Debug, Quiet, Results, TableFormat, examples
+from kinform_cli.options import Results, TableFormat, examples
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -43,12 +43,7 @@ class Topic(StrEnum):
 def show(
     source: Results,
     topic: Annotated[
-        Topic | None,
-        typer.Argument(
-            metavar="TOPIC",
-            show_default=False,
-            help="What to show; without it an overview.",
-        ),
+        Topic | None, typer.Argument(metavar="TOPIC", show_default=False, help="What to show; without it an overview.")
     ] = None,
     format: Annotated[
         TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
@@ -68,8 +63,6 @@ def show(
             metavar="FILE", help="Draw bodies, joints and loops instead, for mobility or joints: FILE.svg or FILE.dot."
         ),
     ] = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Show what a results file holds: tables for people, or JSON."""
     if joint is not None and topic is not Topic.joints:
@@ -79,10 +72,10 @@ def show(
         return
     design = files.read(source)
     from kinform import reports
-    from kinform_cli import views
+    from kinform_cli.views import topics
 
     if joint is not None:
-        _one(design, joint, source, format)
+        _print_joint(design, joint, source, format)
         return
 
     name = None if topic is None else topic.value
@@ -90,20 +83,20 @@ def show(
         if format is TableFormat.json:
             console.emit(reports.summary_json(design, name))
         else:
-            console.out(views.render(design, name))
+            console.out(topics.render(design, name))
 
 
-def _one(design: Design, joint: str, source: Path, format: TableFormat) -> None:
+def _print_joint(design: Design, joint: str, source: Path, format: TableFormat) -> None:
     """The evidence of one joint."""
     from kinform import reports
-    from kinform_cli import views
+    from kinform_cli.views import topics
 
     try:
         with files.needing(source):
             if format is TableFormat.json:
                 console.emit(reports.joint_json(design, joint))
             else:
-                console.out(views.render_joint(design, joint))
+                console.out(topics.render_joint(design, joint))
     except KeyError as error:
         raise refuse(str(error.args[0]), file=source, remedy="name one of them") from None
 

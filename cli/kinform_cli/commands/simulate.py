@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.options import Debug, Output, Quiet, Ranges, Results, examples
-from kinform_cli.progress import Working
+from kinform_cli.options import Output, Ranges, Results, examples
 
 __all__ = ["EXAMPLES", "Level", "simulate"]
 
@@ -41,8 +40,6 @@ def simulate(
         ),
     ] = None,
     ranges: Ranges = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Simulate the motion that the drives give, and write the trajectories.
 
@@ -50,18 +47,18 @@ def simulate(
     kinematic: the derived joints, moved by the drives.
     dynamic: with masses and forces.
     """
-    files.check_output(output)
-    from kinform import results, stages
+    from kinform import stages
 
-    design = files.read(source)
-    with files.needing(source), Working("simulation") as progress:
-        wanted = None if level is None else level.value
-        design = stages.simulate(design, level=wanted, ranges=ranges, progress=progress, say=console.say)
-    results.write(design, output)
-    found = design.simulation
-    assert found is not None
+    wanted = None if level is None else level.value
+    run = files.advance(
+        source,
+        output,
+        "simulation",
+        lambda design, working: stages.simulate(design, level=wanted, ranges=ranges, progress=working, say=console.say),
+    ).simulation
+    assert run is not None
     from kinform_cli.views.simulation import headline
 
-    console.say(f"{output}: {headline(found)}")
-    for subject, message in found.failures:
+    console.say(f"{output}: {headline(run)}")
+    for subject, message in run.failures:
         console.warn(f"{subject}: {message}")

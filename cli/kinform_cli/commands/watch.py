@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console, errors, files
-from kinform_cli.gate import show
-from kinform_cli.options import AllowOutside, Debug, FailOn, FindingsFormat, Jobs, Quiet, Severity, cores, examples
+from kinform_cli.gate import Gate
+from kinform_cli.options import AllowOutside, FailOn, FindingsFormat, Jobs, Severity, cores, examples
 from kinform_cli.progress import Working
 
 __all__ = ["EXAMPLES", "watch"]
@@ -42,30 +42,28 @@ def watch(
         float, typer.Option("--period", min=0.01, metavar="SECONDS", help="How often the files are looked at.")
     ] = 0.5,
     max_runs: Annotated[
-        int | None,
-        typer.Option("--max-runs", min=1, metavar="N", show_default=False, help="Leave after so many runs."),
+        int | None, typer.Option("--max-runs", min=1, metavar="N", show_default=False, help="Leave after so many runs.")
     ] = None,
-    quiet: Quiet = False,
-    debug: Debug = False,
 ) -> None:
     """Run on every save of the manifest or of a file that it names, until Ctrl-C.
 
     Bad input is reported, and the next save tried. The exit code is that of the last run; as for `run`.
     """
     files.check_output(output, inputs=[manifest])
+    gate = Gate(format, fail_on, manifest.parent)
     code, runs = errors.NOT_VERIFIED, 0
     try:
         while True:
             before = _stamps(_files(manifest, output))
-            found = _run(manifest, output, allow_outside, cores(jobs), format, fail_on)
-            code = errors.NOT_VERIFIED if found is None else found
+            verdict = _run(manifest, output, allow_outside, cores(jobs), gate)
+            code = errors.NOT_VERIFIED if verdict is None else verdict
             runs += 1
             if runs == max_runs:
                 break
             watched = _files(manifest, output)
             # what was saved while the run went on counts as saved after it
             # after bad input the folders count too: what was missing may appear, and nothing was written there
-            folders = [] if found is not None else sorted({path.parent for path in watched})
+            folders = [] if verdict is not None else sorted({path.parent for path in watched})
             seen = {path: before.get(path, stamp) for path, stamp in _stamps([*watched, *folders]).items()}
             console.say(f"watching {len(watched)} files; Ctrl-C ends")
             _wait(seen, period)
@@ -74,25 +72,17 @@ def watch(
     raise typer.Exit(code)
 
 
-def _run(
-    manifest: Path, output: Path, allow_outside: bool, jobs: int, format: FindingsFormat, fail_on: Severity
-) -> int | None:
+def _run(manifest: Path, output: Path, allow_outside: bool, jobs: int, gate: Gate) -> int | None:
     """One run: prints its findings or its errors; the exit code that it is due, None where the input is bad."""
     import kinform
 
     try:
         with Working("run") as working:
-            outcome = kinform.run(
-                manifest,
-                output,
-                jobs=jobs,
-                progress=working.step,
-                allow_outside=allow_outside,
-            )
+            outcome = kinform.run(manifest, output, jobs=jobs, progress=working.step, allow_outside=allow_outside)
     except (kinform.KinformError, OSError) as error:
         errors.report(error)
         return None
-    return show(outcome.gist, format, fail_on, manifest.parent, outcome)
+    return gate.judge(outcome.gist, outcome)
 
 
 def _files(manifest: Path, output: Path) -> list[Path]:
@@ -105,14 +95,14 @@ def _files(manifest: Path, output: Path) -> list[Path]:
 
 def _stamps(paths: list[Path]) -> dict[Path, Stamp]:
     """Identity, time and size of each file; None where there is none."""
-    found: dict[Path, Stamp] = {}
+    stamps: dict[Path, Stamp] = {}
     for path in paths:
         try:
             status = path.stat()
-            found[path] = (status.st_ino, status.st_mtime_ns, status.st_size)
+            stamps[path] = (status.st_ino, status.st_mtime_ns, status.st_size)
         except OSError:
-            found[path] = None
-    return found
+            stamps[path] = None
+    return stamps
 
 
 def _wait(seen: dict[Path, Stamp], period: float) -> None:

@@ -8,9 +8,10 @@ from rich.text import Text
 from rich.tree import Tree
 
 from kinform.design import Design
+from kinform.foundation.words import counted
 from kinform.model.assembly import Assembly, Part, Subassembly
 from kinform_cli.tables import stacked
-from kinform_cli.text import count, number
+from kinform_cli.text import number
 
 __all__ = ["render"]
 
@@ -36,7 +37,7 @@ def render(design: Design) -> RenderableType:
 def _tree(assembly: Assembly) -> Tree:
     files = {sub.name: _describe_sub(sub) for sub in assembly.subassemblies}
     tree = Tree(
-        Text.assemble((assembly.name, "bold"), f"  {count(len(assembly.parts), 'part')}, lengths in {assembly.units}")
+        Text.assemble((assembly.name, "bold"), f"  {counted(len(assembly.parts), 'part')}, lengths in {assembly.units}")
     )
     branches: dict[str, Tree] = {"": tree}
     group_of = {part: group.name for group in assembly.groups for part in group.parts}
@@ -68,7 +69,7 @@ def _branch(branches: dict[str, Tree], name: str, files: dict[str, str]) -> Tree
 
 
 def _describe_sub(sub: Subassembly) -> str:
-    return sub.file if sub.mobility is None else f"{sub.file}, {count(sub.mobility, 'freedom')} stated"
+    return sub.file if sub.mobility is None else f"{sub.file}, {counted(sub.mobility, 'freedom')} stated"
 
 
 def _describe(part: Part) -> str:
@@ -77,7 +78,7 @@ def _describe(part: Part) -> str:
         facts.append("stick body")
     else:
         file = part.mesh.path if part.mesh.body is None else f"{part.mesh.path} ({part.mesh.body})"
-        facts += [file, count(len(part.mesh.faces), "facet")]
+        facts += [file, counted(len(part.mesh.faces), "facet")]
         if not part.mesh.health.watertight:
             facts.append("not watertight")
         if not part.solid:

@@ -34,7 +34,7 @@ from kinform.behaviour import (
 from kinform.behaviour.kinds import kind_of
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.design import Design
-from kinform_cli import text
+from kinform.foundation.words import counted
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths, number, vector
 
@@ -45,9 +45,9 @@ def render(design: Design) -> RenderableType:
     """One sentence, the levels where there are any, one row a component, then what could not be made part of it."""
     model = design.behaviour
     assert model is not None
-    lengths, found = Lengths.of(design.assembly), count(model.system)
-    balance = f"{found.unknowns} unknowns, {found.equations} equations"
-    parts = text.count(len(model.system.components), "component"), text.count(len(model.system.nodes), "node")
+    lengths, total = Lengths.of(design.assembly), count(model.system)
+    balance = f"{total.unknowns} unknowns, {total.equations} equations"
+    parts = counted(len(model.system.components), "component"), counted(len(model.system.nodes), "node")
     items: list[RenderableType] = [Text(f"Port model: {parts[0]}, {parts[1]}, {balance}", style="bold")]
     levels = counts(model.nested)
     if len(levels) > 1:
@@ -70,25 +70,25 @@ def _add(rows: Rows, system: System, path: str, lengths: Lengths) -> None:
             rows.add(f"{path}{component.subject}/", "system", f"ports {ports}" if ports else "no ports", "")
             _add(rows, component, f"{path}{component.subject}/", lengths)
             continue
-        said = _SAID[type(component)](component, lengths)
-        rows.add(component.name, _kind(component), said or NONE, _met(system, component))
+        parameters = _PARAMETERS[type(component)](component, lengths)
+        rows.add(component.name, _kind(component), parameters or NONE, _meets(system, component))
 
 
 def _kind(component: Component) -> str:
     return component.kind.name if isinstance(component, JointComponent) else kind_of(component).replace("_", " ")
 
 
-def _met(system: System, component: Component) -> str:
+def _meets(system: System, component: Component) -> str:
     """What its ports meet; of bodies the joints say it."""
     if isinstance(component, Ground | RigidBody):
         return ""
-    out = []
+    meets = []
     for port in component.ports:
-        others = [other.name for other, _ in system.at(component.name, port.name)]
-        wanted = [name for name in others if isinstance(system.component(name), Ground | RigidBody | System)]
-        if wanted or not isinstance(component, JointComponent):
-            out.append(f"{port.name}: {', '.join(wanted or others) or NONE}")
-    return "; ".join(out)
+        met = [other.name for other, _ in system.at(component.name, port.name)]
+        bodies = [name for name in met if isinstance(system.component(name), Ground | RigidBody | System)]
+        if bodies or not isinstance(component, JointComponent):
+            meets.append(f"{port.name}: {', '.join(bodies or met) or NONE}")
+    return "; ".join(meets)
 
 
 def _signal(signal: Signal) -> str:
@@ -115,19 +115,19 @@ def _body(body: RigidBody, lengths: Lengths) -> str:
 
 
 def _joint(joint: JointComponent, lengths: Lengths) -> str:
-    g, out = joint.geometry, []
+    g, facts = joint.geometry, []
     if joint.kind.name != "fixed" and g.axis is not None:
-        out.append(f"axis {vector(g.axis)}")
+        facts.append(f"axis {vector(g.axis)}")
     if joint.kind.name == "universal":
-        out.append(f"then {vector(g.axis2)}")
+        facts.append(f"then {vector(g.axis2)}")
     if joint.kind.name not in ("fixed", "prismatic") and g.point is not None:
-        out.append(f"at {lengths.point(g.point)} {lengths.unit}")
+        facts.append(f"at {lengths.point(g.point)} {lengths.unit}")
     if joint.kind.name == "screw":
-        out.append(f"{lengths.length(g.pitch)} {lengths.unit} a turn")
-    return ", ".join(out)
+        facts.append(f"{lengths.length(g.pitch)} {lengths.unit} a turn")
+    return ", ".join(facts)
 
 
-_SAID: dict[type[Component], Callable[[Any, Lengths], str]] = {
+_PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
     Ground: lambda c, u: "",
     RigidBody: _body,
     JointComponent: _joint,

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
+from kinform.foundation.words import counted
 from kinform_cli.tables import Rows
-from kinform_cli.text import NONE, count, dumps, number
+from kinform_cli.text import NONE, dumps, number
 
 if TYPE_CHECKING:
     from kinform.catalog import CatalogJoint, CatalogRequirement, Entry
@@ -20,12 +21,12 @@ __all__ = ["as_json", "render"]
 _NUMBERS = ("mobility", "loops", "mass kg")
 
 
-def render(found: Sequence[Entry], states: Sequence[str], total: int) -> RenderableType:
+def render(entries: Sequence[Entry], states: Sequence[str], total: int) -> RenderableType:
     """One row a design; `states` says what has become of its results file."""
-    if not found:
-        return f"none of {count(total, 'design')} does all of this"
+    if not entries:
+        return f"none of {counted(total, 'design')} does all of this"
     rows = Rows("design", "joints", *_NUMBERS, "size m", "gate", "results", right=_NUMBERS)
-    for entry, state in zip(found, states, strict=True):
+    for entry, state in zip(entries, states, strict=True):
         rows.add(
             entry.name,
             joints_in_words(entry.joints),
@@ -41,24 +42,24 @@ def render(found: Sequence[Entry], states: Sequence[str], total: int) -> Rendera
 
 def joints_in_words(joints: Iterable[CatalogJoint]) -> str:
     """As in "2 revolute, 1 screw"; the doubtful are said to be so."""
-    counted = Counter(j.type if j.status in ("determined", "inferred") else f"{j.status} {j.type}" for j in joints)
-    return ", ".join(f"{many} {kind}" for kind, many in sorted(counted.items())) or "none"
+    kinds = Counter(j.type if j.status in ("determined", "inferred") else f"{j.status} {j.type}" for j in joints)
+    return ", ".join(f"{many} {kind}" for kind, many in sorted(kinds.items())) or "none"
 
 
 def _gate(entry: Entry) -> str:
     if not entry.requirements:
         return entry.verdict or "not checked"
-    return f"{entry.verdict or 'not checked'}, {_met(entry.requirements)}"
+    return f"{entry.verdict or 'not checked'}, {_requirements_met(entry.requirements)}"
 
 
-def _met(requirements: Sequence[CatalogRequirement]) -> str:
-    return f"{sum(r.met is True for r in requirements)} of {count(len(requirements), 'requirement')} met"
+def _requirements_met(requirements: Sequence[CatalogRequirement]) -> str:
+    return f"{sum(r.met is True for r in requirements)} of {counted(len(requirements), 'requirement')} met"
 
 
-def as_json(found: Sequence[Entry], states: Sequence[str]) -> str:
+def as_json(entries: Sequence[Entry], states: Sequence[str]) -> str:
     """The designs with everything that the catalog knows; `file` is "", "changed" or "gone". SI, radians."""
     designs = []
-    for entry, state in zip(found, states, strict=True):
+    for entry, state in zip(entries, states, strict=True):
         joints = [_without_ends(joint) | {"range": _range(joint)} for joint in entry.joints]
         designs.append(asdict(entry) | {"joints": joints, "file": state})
     return dumps({"schema": "kinform/catalog/1", "designs": designs})
@@ -71,6 +72,6 @@ def _without_ends(joint: CatalogJoint) -> dict[str, object]:
 
 def _range(joint: CatalogJoint) -> dict[str, object]:
     """Null for an unbounded side and for one that is not known: `found` tells them apart."""
-    found = None if joint.lower is None and joint.upper is None else [joint.lower, joint.upper]
+    derived = None if joint.lower is None and joint.upper is None else [joint.lower, joint.upper]
     wanted = None if joint.wanted_lower is None else [joint.wanted_lower, joint.wanted_upper]
-    return {"found": found, "intended": wanted}
+    return {"found": derived, "intended": wanted}

@@ -5,25 +5,21 @@ from __future__ import annotations
 from rich.console import RenderableType
 
 from kinform.design import Design
-from kinform.model.contacts import Contacts
+from kinform.foundation.words import counted
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, count
+from kinform_cli.text import Lengths
 
 __all__ = ["render"]
 
 
-def _known(design: Design) -> Contacts:
-    assert design.contacts is not None
-    return design.contacts
-
-
 def render(design: Design) -> RenderableType:
     """One row a patch, then one row an overlap, then one row a suggestion."""
-    contacts, lengths = _known(design), Lengths.of(design.assembly)
+    contacts, lengths = design.contacts, Lengths.of(design.assembly)
+    assert contacts is not None
     unit = lengths.unit
     pairs = len({patch.parts for patch in contacts.patches})
-    many = count(len(contacts.patches), "contact patch", "contact patches")
-    title = f"{many} between {count(pairs, 'pair')} of parts"
+    many = counted(len(contacts.patches), "contact patch", "contact patches")
+    title = f"{many} between {counted(pairs, 'pair')} of parts"
     numeric = (f"area {unit}²", f"gap {unit}", "#")
     rows = Rows("#", "part", "part", "surface", *numeric[:2], "fit", title=title, right=numeric, keys=3, shared=(1, 2))
     for index, patch in enumerate(contacts.patches):

@@ -8,24 +8,21 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation.words import counted
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
-from kinform_cli.notes import ground_note
+from kinform_cli.constants import MOST_WAYS
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, count, degrees, number, vector
+from kinform_cli.text import Lengths, degrees, ground_note, number, vector
 
 __all__ = ["blockers", "leaves", "render", "sentence"]
 
 
-def _known(design: Design) -> Kinematics:
-    assert design.kinematics is not None
-    return design.kinematics
-
-
 def render(design: Design) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""
-    kinematics, lengths = _known(design), Lengths.of(design.assembly)
-    title = f"{count(len(kinematics.joints), 'joint')} between {count(len(kinematics.bodies), 'body', 'bodies')}"
+    kinematics, lengths = design.kinematics, Lengths.of(design.assembly)
+    assert kinematics is not None
+    title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
     run = design.simulation
     ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
     rows = Rows(
@@ -64,19 +61,15 @@ def render(design: Design) -> RenderableType:
     return stacked(*items)
 
 
-def _range(found: JointRange | None, lengths: Lengths) -> str:
+def _range(item: JointRange | None, lengths: Lengths) -> str:
     """How far a joint goes from the pose of the meshes; `show … simulation` says what stops it."""
-    if found is None:
+    if item is None:
         return ""
-    if found.lower.status == found.upper.status != "found":
-        return found.status
-    say = lengths.place if found.slides else degrees
-    unit = f" {lengths.unit}" if found.slides else ""
-    return " to ".join(e.status if e.value is None else say(e.value) + unit for e in (found.lower, found.upper))
-
-
-MOST_WAYS = 3
-"""Ways to leave that are told of each joint; `--joint` tells all."""
+    if item.lower.status == item.upper.status != "found":
+        return item.status
+    say = lengths.place if item.slides else degrees
+    unit = f" {lengths.unit}" if item.slides else ""
+    return " to ".join(e.status if e.value is None else say(e.value) + unit for e in (item.lower, item.upper))
 
 
 def sentence(joint: Joint) -> str:
@@ -96,18 +89,18 @@ def leaves(joint: Joint) -> str:
         return "held: no motion breaks the contact"
     if joint.held is None:
         return f"not known whether they can come apart: {joint.held_reason or 'computed by an older version'}"
-    return f"can also {_told(joint.releases, many=joint.extremes is None or joint.extremes > len(joint.releases))}"
+    return f"can also {_ways(joint.releases, many=joint.extremes is None or joint.extremes > len(joint.releases))}"
 
 
-def _told(releases: Sequence[Release], *, many: bool = False) -> str:
-    """The slides among the ways to leave, else the first turns."""
+def _ways(releases: Sequence[Release], *, many: bool = False) -> str:
+    """The slides among the ways to leave, else the first turns, in words."""
     slides = [way for way in releases if way.kind == "slide"]
-    told = (slides or list(releases))[:MOST_WAYS]
-    words = ", ".join(way.words for way in told)
-    if many or not all(way.extreme for way in told):
+    shown = (slides or list(releases))[:MOST_WAYS]
+    words = ", ".join(way.words for way in shown)
+    if many or not all(way.extreme for way in shown):
         return f"{words}, and many ways beside"
-    more = len(releases) - len(told)
-    return words + (f", and {count(more, 'more way')}" if more else "")
+    more = len(releases) - len(shown)
+    return words + (f", and {counted(more, 'more way')}" if more else "")
 
 
 def _leaving(kinematics: Kinematics) -> list[RenderableType]:
@@ -119,10 +112,10 @@ def _leaving(kinematics: Kinematics) -> list[RenderableType]:
         lines += [f"  {joint.name}: {sentence(joint)}" for joint in loose]
     held = sum(joint.held is True for joint in kinematics.joints)
     if held:
-        lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {count(len(kinematics.joints), 'joint')}")
+        lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {counted(len(kinematics.joints), 'joint')}")
     if kinematics.separations:
         lines.append(Text("\nCan leave the assembly, the rest at rest", style="bold"))
-        lines += [f"  {', '.join(item.bodies)}: {_told(item.releases)}" for item in kinematics.separations]
+        lines += [f"  {', '.join(item.bodies)}: {_ways(item.releases)}" for item in kinematics.separations]
     if kinematics.separations_reason:
         lines.append(f"\n{kinematics.separations_reason}")
     return lines

@@ -8,26 +8,23 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
-from kinform.model.mass import MassProperties, MassReport
+from kinform.model.mass import MassProperties
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number
 
 __all__ = ["bodies", "render"]
 
 
-def _known(design: Design) -> MassReport:
-    assert design.mass is not None
-    return design.mass
-
-
 def bodies(design: Design) -> RenderableType:
     """One row a body."""
-    return _table("Mass of bodies", _known(design).bodies, Lengths.of(design.assembly))
+    assert design.mass is not None
+    return _table("Mass of bodies", design.mass.bodies, Lengths.of(design.assembly))
 
 
 def render(design: Design) -> RenderableType:
     """Bodies, then parts, then what is wrong."""
-    report = _known(design)
+    report = design.mass
+    assert report is not None
     items: list[RenderableType] = [
         bodies(design),
         "",
@@ -40,8 +37,8 @@ def render(design: Design) -> RenderableType:
         for item in unknown:
             reasons.setdefault(item.reason, []).append(item.name)
         items += [f"  {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-        said = {(item.name, item.reason) for item in unknown}
-        items += [f"  {part}: {message}" for part, message in report.problems if (part, message) not in said]
+        listed = {(item.name, item.reason) for item in unknown}
+        items += [f"  {part}: {message}" for part, message in report.problems if (part, message) not in listed]
     return stacked(*items)
 
 
@@ -53,13 +50,13 @@ def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths) -> Rend
         right=["mass kg"],
     )  # fmt: skip
     for row in rows:
-        known = row.mass is not None
+        weighed = row.mass is not None
         grid.add(
             row.name,
             number(row.mass),
             lengths.point(row.centre_of_mass),
-            ", ".join(f"{moment:.3g}" for moment in row.principal_moments) if known else NONE,
-            (row.origin if known else NONE)
-            + (f" (±{100 * row.mass_bound:.2g} %)" if known and row.mass_bound > 0 else ""),
+            ", ".join(f"{moment:.3g}" for moment in row.principal_moments) if weighed else NONE,
+            (row.origin if weighed else NONE)
+            + (f" (±{100 * row.mass_bound:.2g} %)" if weighed and row.mass_bound > 0 else ""),
         )
     return grid

@@ -1,4 +1,4 @@
-"""Mobility: how many freedoms, counted in the ways that the results contract defines."""
+"""Mobility: how many freedoms, counted in each of the ways that `_MEANINGS` defines."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from kinform.kinematics import Motions
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.motions import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
+from kinform_cli.constants import MOST_NAMES, NO_ANGLE
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
 __all__ = ["render"]
-
-_MOST = 8
-"""So many bodies or joints are listed for a freedom; the JSON has them all."""
 
 _MEANINGS = (
     ("effective", "without idle freedoms: what `mobility` is compared with"),
@@ -48,7 +46,7 @@ def render(design: Design) -> RenderableType:
     if mobility.finite_reason:
         items.append(mobility.finite_reason)
     elif mobility.certificates:
-        items.append(_certified(mobility))
+        items.append(_certificate(mobility))
     if mobility.idle_bodies:
         items.append(f"idle: {', '.join(mobility.idle_bodies)}")
     if mobility.uncertain:
@@ -62,7 +60,7 @@ def render(design: Design) -> RenderableType:
     return stacked(*items)
 
 
-def _certified(mobility: Mobility) -> str:
+def _certificate(mobility: Mobility) -> str:
     """Why all freedoms of the loops are motions."""
     step = min(certificate.step for certificate in mobility.certificates)
     kept = min(certificate.kept for certificate in mobility.certificates)
@@ -81,15 +79,15 @@ def _coupling(coupling: Coupling, design: Design) -> str:
     slides = [types.get(name) == "prismatic" for name in coupling.joints]
     ratio = rate(coupling.ratio, slides[0], slides[1], design.assembly.units)
     share = coupling.uncertainty / abs(coupling.ratio) if coupling.ratio else math.inf
-    known = f" ± {100.0 * share:.1g} %" if math.isfinite(share) else ""
+    spread = f" ± {100.0 * share:.1g} %" if math.isfinite(share) else ""
     pose = ", at this pose" if coupling.kind == "cam" else ""
     sure = "" if coupling.status == "determined" else f" ({coupling.status})"
-    said = f"{coupling.kind}: {first} = {ratio}{known} · {second} through {coupling.through}{pose}{sure}"
+    text = f"{coupling.kind}: {first} = {ratio}{spread} · {second} through {coupling.through}{pose}{sure}"
     if coupling.meshing is not None:
-        one, two = coupling.meshing.teeth
+        first_teeth, second_teeth = coupling.meshing.teeth
         whole = rate(coupling.meshing.ratio, slides[0], slides[1], design.assembly.units)
-        return f"{said}; {whole} over whole teeth, of {one} and {two}"
-    return f"{said}; {coupling.reason}" if coupling.reason else said
+        return f"{text}; {whole} over whole teeth, of {first_teeth} and {second_teeth}"
+    return f"{text}; {coupling.reason}" if coupling.reason else text
 
 
 def _freedoms(design: Design) -> Rows:
@@ -108,8 +106,8 @@ def _freedoms(design: Design) -> Rows:
                 lambda lead: f"{lengths.length(lead)} {lengths.unit}",
             ),
             freedom.driver or NONE,
-            _some([str(name) for name in motions.twists(freedom)]),
-            _some([f"{name} {rate}" for name, rate in rates]) or NONE,
+            _first_names([str(name) for name in motions.twists(freedom)]),
+            _first_names([f"{name} {rate}" for name, rate in rates]) or NONE,
         )
     return grid
 
@@ -118,24 +116,28 @@ def _redundancies(design: Design) -> Rows:
     """Where constraints hold nothing more."""
     assert design.kinematics is not None
     grid = Rows("rows", "too many, and where", title="Redundant constraints", right=["rows"], keys=2)
-    for one in design.kinematics.mobility.redundancies:
-        within = " (contacts of one joint: not counted above)" if one.kind == "pair" else ""
-        grid.add(str(one.rows), one.text + within)
+    for redundancy in design.kinematics.mobility.redundancies:
+        within = " (contacts of one joint: not counted above)" if redundancy.kind == "pair" else ""
+        grid.add(str(redundancy.rows), redundancy.text + within)
     return grid
 
 
-def _some(items: list[str]) -> str:
+def _first_names(items: list[str]) -> str:
     """All of a few, the first of many."""
-    return ", ".join(items) if len(items) <= _MOST else ", ".join(items[:_MOST]) + f" and {len(items) - _MOST} more"
+    return (
+        ", ".join(items)
+        if len(items) <= MOST_NAMES
+        else ", ".join(items[:MOST_NAMES]) + f" and {len(items) - MOST_NAMES} more"
+    )
 
 
 def _misfit(design: Design) -> str:
     """What was moved to make axes agree that agree within their uncertainty."""
     assert design.kinematics is not None
     misfit, lengths = design.kinematics.misfit, Lengths.of(design.assembly)
-    moved = []
+    moves = []
     if lengths.length(misfit.distance) != lengths.length(0.0):
-        moved.append(f"{lengths.length(misfit.distance)} {lengths.unit} at {misfit.distance_at}")
-    if misfit.angle >= 1e-9:
-        moved.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
-    return f"misfit of axes that were made to agree: {', '.join(moved) or 'none'}"
+        moves.append(f"{lengths.length(misfit.distance)} {lengths.unit} at {misfit.distance_at}")
+    if misfit.angle >= NO_ANGLE:
+        moves.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
+    return f"misfit of axes that were made to agree: {', '.join(moves) or 'none'}"

@@ -1,8 +1,13 @@
-"""The series of a simulated run, each as a line with its extremes and when they occur."""
+"""The series of a simulated run, each as a line with its extremes and when they occur.
+
+A line has blocks of eight heights, or where the output cannot show these, characters of growing weight. Each column
+stands for a stretch of the series and shows its value that is farthest from the median, so that no peak is lost.
+"""
 
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator
 
 import numpy as np
@@ -10,19 +15,14 @@ from numpy.typing import NDArray
 
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
-from kinform_cli.sparks import levels, spark
+from kinform_cli.constants import REST, SAME_PEAK, SPARK_WIDTH
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number
 
-__all__ = ["render"]
+__all__ = ["BLOCKS", "PLAIN", "render", "spark"]
 
-_WIDTH = 20
-"""Characters of a line: with the extremes it fits in 80 columns where names are short."""
-_REST = 1e-9
-"""Share of the greatest position, effort or energy below which a series is nothing but rounding."""
-
-_SAME = 1e-6
-"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
+BLOCKS = "▁▂▃▄▅▆▇█"
+PLAIN = "_.:-=+*#"
 
 Series = tuple[str, NDArray[np.float64], bool]
 """(name, values (T,), whether they are angles)."""
@@ -39,11 +39,11 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
         least, most = _extremes(values)
         rows.add(
             name,
-            _shown(float(values[least]), angles),
+            _value(float(values[least]), angles),
             number(float(run.time[least])),
-            _shown(float(values[most]), angles),
+            _value(float(values[most]), angles),
             number(float(run.time[most])),
-            spark(values, _WIDTH, levels()),
+            spark(values, SPARK_WIDTH, _levels()),
         )
     return rows
 
@@ -51,19 +51,19 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
 def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
     """Where the lowest and the highest are: the first places that are not lower or higher by rounding only."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    same = _SAME * (high - low)
+    same = SAME_PEAK * (high - low)
     return int(np.argmax(values <= low + same)), int(np.argmax(values >= high - same))
 
 
 def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
     """Positions, then what moves them, then energies; what is not known throughout is left out."""
     efforts: list[Series] = []
-    known = list(coordinates(run))
+    columns = list(coordinates(run))
     rest = {
-        unit: _REST * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in known if u == unit]]), initial=0.0)
-        for unit in sorted({unit for *_, unit, _ in known})
+        unit: REST * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in columns if u == unit]]), initial=0.0)
+        for unit in sorted({unit for *_, unit, _ in columns})
     }
-    for name, _, unit, column in known:
+    for name, _, unit, column in columns:
         values = run.joint_position[:, column]
         values = np.where(np.nanmax(np.abs(values), initial=0.0) > rest[unit], values, 0.0 * values)
         angles = unit == "rad"
@@ -72,11 +72,11 @@ def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
         effort = run.joint_effort[:, column]
         if np.isfinite(effort).any():
             efforts.append((f"{name} {'N' if unit == 'm' else 'N·m'}", effort, False))
-    yield from _alive(efforts)
+    yield from _beyond_rounding(efforts)
     yield from _reactions(run)
     if len(run.energy):
         energies = [(name, run.energy[:, k], False) for k, name in enumerate(("kinetic J", "potential J"))]
-        yield from _alive([series for series in energies if np.isfinite(series[1]).any()])
+        yield from _beyond_rounding([series for series in energies if np.isfinite(series[1]).any()])
 
 
 def _reactions(run: Simulation) -> Iterator[Series]:
@@ -89,11 +89,39 @@ def _reactions(run: Simulation) -> Iterator[Series]:
         yield f"{name} |τ| N·m", np.linalg.norm(wrenches[:, k, :3], axis=1), False
 
 
-def _alive(series: list[Series]) -> list[Series]:
+def _beyond_rounding(series: list[Series]) -> list[Series]:
     """Those that are more than rounding beside the greatest of them."""
     most = max((float(np.nanmax(np.abs(values))) for _, values, _ in series), default=0.0)
-    return [item for item in series if float(np.nanmax(np.abs(item[1]))) > _REST * most]
+    return [item for item in series if float(np.nanmax(np.abs(item[1]))) > REST * most]
 
 
-def _shown(value: float, angles: bool) -> str:
+def _value(value: float, angles: bool) -> str:
     return degrees(round(value, 12)) if angles and math.isfinite(value) else number(value)
+
+
+def _levels() -> str:
+    """The characters that stdout can show, from low to high."""
+    try:
+        BLOCKS.encode(getattr(sys.stdout, "encoding", None) or "utf-8")
+    except (UnicodeError, LookupError):
+        return PLAIN
+    return BLOCKS
+
+
+def spark(values: NDArray[np.float64], width: int, characters: str = BLOCKS) -> str:
+    """The series (T,), in at most `width` characters: blanks where nothing is known, the lowest if constant."""
+    finite = values[np.isfinite(values)]
+    if not len(finite) or width < 1:
+        return ""
+    low, high = float(finite.min()), float(finite.max())
+    middle = float(np.median(finite))
+    line = ""
+    for stretch in np.array_split(values, min(width, len(values))):
+        inside = stretch[np.isfinite(stretch)]
+        if not len(inside):
+            line += " "
+            continue
+        value = float(inside[np.argmax(np.abs(inside - middle))])
+        share = (value - low) / (high - low) if high > low else 0.0
+        line += characters[min(int(share * len(characters)), len(characters) - 1)]
+    return line

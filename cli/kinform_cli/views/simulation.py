@@ -8,26 +8,24 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation.words import counted
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
+from kinform_cli.constants import BALANCED, REST
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, count, degrees, number
+from kinform_cli.text import Lengths, degrees, number
 from kinform_cli.views import series
 
 __all__ = ["headline", "render"]
 
-_KEPT = 1e-8
-"""Share of the largest energy below which the balance is as exact as the integration is asked to be."""
-
-
-def _known(design: Design) -> Simulation:
-    assert design.simulation is not None
-    return design.simulation
+_NUMBERS = ("start", "end", "lowest", "highest", "fastest")
+_COMPONENTS = ("τx", "τy", "τz", "Fx", "Fy", "Fz")
 
 
 def render(design: Design) -> RenderableType:
     """One sentence, one row a joint coordinate, then what was assumed and what failed."""
-    run, lengths = _known(design), Lengths.of(design.assembly)
+    run, lengths = design.simulation, Lengths.of(design.assembly)
+    assert run is not None
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
         rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS)
@@ -36,10 +34,10 @@ def render(design: Design) -> RenderableType:
             shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
             rows.add(name, kind, *shown, _rate(unit, float(abs(run.joint_velocity[:, column]).max()), lengths))
         items.append(rows)
-        drawn = series.render(run, lengths)
-        if drawn is not None:
-            items += ["", drawn]
-    items += _drives(run) + _gears(run) + _open(run)
+        lines = series.render(run, lengths)
+        if lines is not None:
+            items += ["", lines]
+    items += _drives(run) + _gears(run) + _undetermined(run)
     if len(run.energy) and not math.isnan(run.energy[0, 0]):
         items.append(_energy(run))
     items += _ranges(run, lengths) + _collisions(run, lengths)
@@ -48,16 +46,13 @@ def render(design: Design) -> RenderableType:
     return stacked(*items)
 
 
-_NUMBERS = ("start", "end", "lowest", "highest", "fastest")
-
-
 def headline(run: Simulation) -> str:
     """What ran, or why nothing did, in one sentence."""
     why = f": {run.reason}" if run.reason else ""
     if not len(run.time):
         return f"Simulation {run.status}{why}"
     level = f", {run.level} level" if run.level else ""
-    extent = f"{number(float(run.time[-1]))} s in {count(len(run.time), 'sample')}"
+    extent = f"{number(float(run.time[-1]))} s in {counted(len(run.time), 'sample')}"
     return f"Simulation {run.status}{level}, {extent}{why}"
 
 
@@ -72,7 +67,7 @@ def _drives(run: Simulation) -> list[RenderableType]:
         unit = "N" if slides.get(use.joint) == "prismatic" else "N·m"
         efforts = (f"{number(value)} {unit}" for value in (use.peak, use.rms))
         # what goes in and comes out again leaves rounding, which differs between machines
-        rest = _REST * use.peak_power * float(run.time[-1] - run.time[0])
+        rest = REST * use.peak_power * float(run.time[-1] - run.time[0])
         work = use.work if abs(use.work) > rest else 0.0
         rows.add(use.joint, use.kind.replace("_", " "), *efforts, number(use.peak_power), number(work))
     return [rows]
@@ -90,7 +85,7 @@ def _gears(run: Simulation) -> list[RenderableType]:
     return [rows]
 
 
-def _open(run: Simulation) -> list[RenderableType]:
+def _undetermined(run: Simulation) -> list[RenderableType]:
     """Which components of the reactions redundancy leaves open."""
     if len(run.undetermined) != len(run.joint_names):
         return []
@@ -100,12 +95,6 @@ def _open(run: Simulation) -> list[RenderableType]:
         if loose:
             out.append(f"not determined, redundancy leaves it open: {', '.join(loose)} of {name}")
     return out
-
-
-_REST = 1e-9
-"""Share of the greatest power over the whole run below which work is nothing but rounding."""
-
-_COMPONENTS = ("τx", "τy", "τz", "Fx", "Fy", "Fz")
 
 
 def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
@@ -128,7 +117,8 @@ def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
 def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
     """First contacts in the order of time, and the pairs of which nothing is known."""
     out = [
-        f"collision: {' and '.join(item.parts)} at t = {number(item.time)} s, at {lengths.point(item.place)} {lengths.unit}"
+        f"collision: {' and '.join(item.parts)} at t = {number(item.time)} s, "
+        f"at {lengths.point(item.place)} {lengths.unit}"
         for item in run.collisions or ()
     ]
     return [*out, *(f"collision of {a} and {b} unknown: {why}" for a, b, why in run.uncollided)]
@@ -137,7 +127,7 @@ def _collisions(run: Simulation, lengths: Lengths) -> list[RenderableType]:
 def _energy(run: Simulation) -> str:
     balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
     lost = float(abs(balance - balance[0]).max())
-    exact = lost <= _KEPT * float(abs(run.energy).max())
+    exact = lost <= BALANCED * float(abs(run.energy).max())
     return (
         "energy: the balance holds to eight digits"
         if exact

@@ -1,14 +1,24 @@
-"""The topics that can be shown, in the order of the pipeline, and which command computes each."""
+"""What `kinform show` prints for people: the topics, one module each, in the order of the pipeline, and all in short.
+
+The JSON is `kinform.reports.summary_json`.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from types import ModuleType
 
-from kinform.design import Design
-from kinform_cli.views import assembly, behaviour, contacts, findings, joints, mass, mobility, simulation
+from rich.console import RenderableType
+from rich.text import Text
 
-__all__ = ["TOPICS", "Topic"]
+from kinform.design import Design
+from kinform.errors import StageError
+from kinform.foundation.words import counted
+from kinform.model.findings import SEVERITIES
+from kinform_cli.tables import stacked
+from kinform_cli.views import assembly, behaviour, contacts, evidence, findings, joints, mass, mobility, simulation
+
+__all__ = ["TOPICS", "Topic", "render", "render_joint"]
 
 
 @dataclass(frozen=True)
@@ -19,7 +29,7 @@ class Topic:
     command: str
     field: str
 
-    def known(self, design: Design) -> bool:
+    def computed(self, design: Design) -> bool:
         """Whether the command has run."""
         return getattr(design, self.field) is not None
 
@@ -34,3 +44,48 @@ TOPICS = {
     "simulation": Topic(simulation, "simulate", "simulation"),
     "findings": Topic(findings, "check", "report"),
 }
+
+
+def render(design: Design, topic: str | None) -> RenderableType:
+    """The topic for people, or all in short; raises StageError where its stage has not run."""
+    if topic is None:
+        return _overview(design)
+    _require(design, topic)
+    view: RenderableType = TOPICS[topic].view.render(design)
+    return view
+
+
+def render_joint(design: Design, name: str) -> RenderableType:
+    """All the evidence of one joint; raises StageError, or KeyError for a name that no joint has."""
+    _require(design, "joints")
+    return evidence.render(design, name)
+
+
+def _require(design: Design, topic: str) -> None:
+    if not TOPICS[topic].computed(design):
+        raise StageError(f"`kinform show {topic}`", TOPICS[topic].command)
+
+
+def _overview(design: Design) -> RenderableType:
+    """Tree, joints, mobility, masses of the bodies, one line each for the rest, and what has not been computed yet."""
+    items: list[RenderableType] = [assembly.render(design), ""]
+    if design.contacts is not None:
+        patches = counted(len(design.contacts.patches), "contact patch", "contact patches")
+        items += [f"{patches}, {counted(len(design.contacts.interferences), 'overlap')}", ""]
+    if design.kinematics is not None:
+        items += [joints.render(design), "", mobility.render(design), ""]
+    if design.mass is not None:
+        items += [mass.bodies(design), ""]
+    if design.simulation is not None:
+        items.append(simulation.headline(design.simulation))
+    if design.report is not None:
+        severities = [finding.severity for finding in design.report.findings]
+        numbers = [counted(severities.count(severity), severity) for severity in reversed(SEVERITIES)]
+        undecided = (
+            f", {counted(design.report.inconclusive, 'rule')} inconclusive" if design.report.inconclusive else ""
+        )
+        items.append(f"Findings: {', '.join(numbers)}{undecided}")
+    missing = dict.fromkeys(topic.command for topic in TOPICS.values() if not topic.computed(design))
+    if missing:
+        items.append(Text(f"Not computed yet: kinform {', '.join(missing)}", style="yellow"))
+    return stacked(*items)

@@ -7,10 +7,11 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation.words import counted
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Release
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, count, number, vector
+from kinform_cli.text import Lengths, number, vector
 from kinform_cli.views.joints import blockers, sentence
 
 __all__ = ["render"]
@@ -18,8 +19,8 @@ __all__ = ["render"]
 
 def render(design: Design, name: str) -> RenderableType:
     """The joint of this name; raises KeyError where there is none."""
-    found, lengths = insight(design, name), Lengths.of(design.assembly)
-    joint = found.joint
+    evidence, lengths = insight(design, name), Lengths.of(design.assembly)
+    joint = evidence.joint
     items: list[RenderableType] = [
         Text(f"{joint.name}: {sentence(joint)}", style="bold"),
         f"{joint.status}: {joint.reason}",
@@ -27,18 +28,18 @@ def render(design: Design, name: str) -> RenderableType:
     ]
     if joint.point is not None:
         items.append(f"through ({lengths.point(joint.point)}) {lengths.unit}")
-    items += [_patches(found, lengths), *_values(found)]
+    items += [_patches(evidence, lengths), *_values(evidence)]
     if joint.blockers:
         items += [Text("\nLeft out of the decision: they block it", style="bold"), *blockers(joint, lengths)]
     if joint.releases:
         many = "" if joint.extremes is not None else ", of very many"
         items.append(Text(f"\nWays out of contact{many}", style="bold"))
         items += [f"  {_way(release, lengths)}" for release in joint.releases]
-    items += _alternatives(found)
+    items += _alternatives(evidence)
     return stacked(*items)
 
 
-def _patches(found: Insight, lengths: Lengths) -> Rows:
+def _patches(evidence: Insight, lengths: Lengths) -> Rows:
     unit = lengths.unit
     headings = (
         "patch",
@@ -54,9 +55,12 @@ def _patches(found: Insight, lengths: Lengths) -> Rows:
         "role",
     )
     rows = Rows(
-        *headings, title=f"\n{count(len(found.patches), 'patch', 'patches')}", right=(*headings[6:10], "patch"), keys=4
+        *headings,
+        title=f"\n{counted(len(evidence.patches), 'patch', 'patches')}",
+        right=(*headings[6:10], "patch"),
+        keys=4,
     )
-    for item in found.patches:
+    for item in evidence.patches:
         patch = item.patch
         kind = f"{patch.kind} (one side)" if patch.one_sided else patch.kind
         surfaces = f"{patch.surfaces[0]}, {patch.surfaces[1]}"
@@ -67,16 +71,16 @@ def _patches(found: Insight, lengths: Lengths) -> Rows:
     return rows
 
 
-def _values(found: Insight) -> list[RenderableType]:
-    joint = found.joint
+def _values(evidence: Insight) -> list[RenderableType]:
+    joint = evidence.joint
     lines: list[RenderableType] = [Text("\nSingular values", style="bold")]
-    if not found.samples or not all(value == value for value in joint.singular_values):
+    if not evidence.samples or not all(value == value for value in joint.singular_values):
         return [*lines, "  none: contact does not decide this joint"]
     lines.append(f"  {', '.join(number(float(value)) for value in joint.singular_values)}")
-    lines.append(f"  from {count(found.samples, 'sample')}; {count(found.rows, 'row')} in J")
-    last = "none is free" if found.last_free is None else f"last free {number(found.last_free)}"
-    first = "none is held" if found.first_held is None else f"first held {number(found.first_held)}"
-    lines.append(f"  {last}, {first}; free is below {found.free:g}, held above {found.held:g}, ambiguous between")
+    lines.append(f"  from {counted(evidence.samples, 'sample')}; {counted(evidence.rows, 'row')} in J")
+    last = "none is free" if evidence.last_free is None else f"last free {number(evidence.last_free)}"
+    first = "none is held" if evidence.first_held is None else f"first held {number(evidence.first_held)}"
+    lines.append(f"  {last}, {first}; free is below {evidence.free:g}, held above {evidence.held:g}, ambiguous between")
     return lines
 
 
@@ -86,17 +90,17 @@ def _way(release: Release, lengths: Lengths) -> str:
     return f"{release.words}{place}{middle}"
 
 
-def _alternatives(found: Insight) -> list[RenderableType]:
+def _alternatives(evidence: Insight) -> list[RenderableType]:
     lines: list[RenderableType] = [Text("\nWhat would make it another", style="bold")]
-    for item in found.alternatives:
+    for item in evidence.alternatives:
         names = f"{'patch' if len(item.without) == 1 else 'patches'} {', '.join(map(str, item.without))}"
         axis = "" if item.axis is None else f" ({vector(item.axis)})"
         why = f", which forbid{'s' if len(item.without) == 1 else ''} {item.frees}" if item.frees else ""
-        lines.append(f"  without {names}{why}: {item.type}{axis}, {count(item.freedoms, 'freedom')}, {item.status}")
-    if not found.alternatives and found.tried:
-        lines.append(f"  nothing found: the same without each of {count(found.tried, 'set')} of patches")
-    if not found.alternatives and not found.tried and not found.remark:
+        lines.append(f"  without {names}{why}: {item.type}{axis}, {counted(item.freedoms, 'freedom')}, {item.status}")
+    if not evidence.alternatives and evidence.tried:
+        lines.append(f"  nothing found: the same without each of {counted(evidence.tried, 'set')} of patches")
+    if not evidence.alternatives and not evidence.tried and not evidence.remark:
         lines.append("  nothing: a single patch carries it")
-    if found.remark:
-        lines.append(f"  {found.remark}")
+    if evidence.remark:
+        lines.append(f"  {evidence.remark}")
     return lines

@@ -1,0 +1,59 @@
+"""Every number that decides what is shown, and how finely; the units of all are those of the results."""
+
+from __future__ import annotations
+
+# console
+
+UNBOUNDED = 100_000
+"""Characters of a line off a terminal: columns take what they need there."""
+
+# tables
+
+GAP = 3
+"""Blanks between two facts on one line of a block; a choice."""
+
+INDENT = 4
+"""Blanks before the facts of a block; a choice."""
+
+# text
+
+FINE = 1e-5
+"""Places are written to this share of the largest part; the JSON has every digit."""
+
+NO_LENGTH = 1e-9
+"""Metres below which a length is written as zero: nobody makes a billionth of a metre."""
+
+# progress
+
+DELAY = 1.0
+"""Seconds after which a bar appears: shorter work needs none."""
+
+PERIOD = 0.1
+"""Seconds between two drawings of the bar; a choice."""
+
+# views/series, views/simulation
+
+SPARK_WIDTH = 20
+"""Characters of a line of blocks: with the extremes it fits in 80 columns where names are short."""
+
+REST = 1e-9
+"""Share of the greatest position, effort, energy or work below which a series or a sum is nothing but rounding."""
+
+SAME_PEAK = 1e-6
+"""Share of the span of a series within which two of its peaks are equally high: the first is named."""
+
+BALANCED = 1e-8
+"""Share of the largest energy below which the balance is as exact as the integration is asked to be."""
+
+# views/joints
+
+MOST_WAYS = 3
+"""Ways to leave that are listed for each joint; `--joint` lists all. A choice."""
+
+# views/mobility
+
+MOST_NAMES = 8
+"""Bodies or joints that are listed for a freedom; the JSON has them all. A choice."""
+
+NO_ANGLE = 1e-9
+"""Radians below which a misfit of directions is none."""
