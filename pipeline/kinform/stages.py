@@ -146,10 +146,10 @@ def mass(design: Design, *, ledger: Ledger | None = None) -> Design:
 
     def compile_(view: Assembly) -> Any:
         from kinform.mass import compile_mass
-        from kinform.reuse import inputs
+        from kinform.model.kinematics import only_bodies
 
         earlier = _earlier_masses(design, view, ledger)
-        return compile_mass(view, inputs.only_bodies(found.bodies), design.surfaces, earlier)
+        return compile_mass(view, only_bodies(found.bodies), design.surfaces, earlier)
 
     return _advance("mass", design, compile_, ledger)
 

@@ -21,7 +21,7 @@ from kinform.errors import ResultsError
 from kinform.model.assembly import Assembly, Source
 from kinform.model.function import Function
 from kinform.model.tolerances import Tolerances
-from kinform.results import store as _store
+from kinform.results import replacement
 
 
 def _design(name: str) -> Design:
@@ -68,7 +68,7 @@ def test_what_stops_a_write_leaves_the_old_file_and_no_other(
     def stop(*_: object) -> None:
         raise failure
 
-    monkeypatch.setattr(_store.os, step, stop)
+    monkeypatch.setattr(replacement.os, step, stop)
     expected = KeyboardInterrupt if isinstance(failure, KeyboardInterrupt) else ResultsError
     with pytest.raises(expected) as caught:
         results.write(_design("new"), path)
@@ -84,7 +84,7 @@ def test_a_first_write_that_is_stopped_leaves_nothing(tmp_path: Path, monkeypatc
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(_store.os, "replace", stop)
+    monkeypatch.setattr(replacement.os, "replace", stop)
     with pytest.raises(KeyboardInterrupt):
         results.write(_design("new"), tmp_path / "r.h5")
     assert _only(tmp_path) == []
@@ -203,9 +203,9 @@ def test_what_a_killed_writer_left_is_removed_by_the_next_one(tmp_path: Path) ->
     path = tmp_path / "r.h5"
     code = (
         "import os, signal, sys\n"
-        "from kinform.results import _store\n"
-        "_store.os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
-        "_store.replace(sys.argv[1], b'half')\n"
+        "from kinform.results import replacement\n"
+        "replacement.os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
+        "replacement.replace_file(sys.argv[1], b'half')\n"
     )
     killed = subprocess.run([sys.executable, "-c", code, str(path)], check=False)
     assert killed.returncode == -signal.SIGKILL
@@ -215,7 +215,7 @@ def test_what_a_killed_writer_left_is_removed_by_the_next_one(tmp_path: Path) ->
 
 
 def test_what_a_living_writer_is_writing_stays(tmp_path: Path) -> None:
-    mine, handle = _store._draft(tmp_path)
+    mine, handle = replacement._draft(tmp_path)
     try:
         results.write(_design("one"), tmp_path / "r.h5")
         assert mine.exists()
@@ -228,9 +228,9 @@ def test_what_a_living_writer_is_writing_stays(tmp_path: Path) -> None:
 def test_many_writers_at_once_leave_one_whole_file(tmp_path: Path) -> None:
     code = (
         "import sys\n"
-        "from kinform.results import _store\n"
+        "from kinform.results import replacement\n"
         "for n in range(40):\n"
-        "    _store.replace(sys.argv[1], (sys.argv[2] * 100000 + str(n)).encode())\n"
+        "    replacement.replace_file(sys.argv[1], (sys.argv[2] * 100000 + str(n)).encode())\n"
     )
     path = tmp_path / "r.h5"
     writers = [subprocess.Popen([sys.executable, "-c", code, str(path), letter]) for letter in "abc"]

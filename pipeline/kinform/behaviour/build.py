@@ -15,6 +15,7 @@ from kinform.behaviour.nested import nest
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
+from kinform.model.quantities import Reason
 
 __all__ = ["Behaviour", "build"]
 
@@ -27,9 +28,9 @@ class Behaviour:
     """Without levels, as the solver reads it."""
     nested: System
     """The same with a system for each sub-assembly; without its levels it is `system` in another order."""
-    failures: tuple[tuple[str, str], ...]
+    failures: tuple[Reason, ...]
     """(subject, why) of joints and drives without which the model is not that of the design."""
-    forces_missing: tuple[tuple[str, str], ...]
+    forces_missing: tuple[Reason, ...]
     """(subject, why) of what acts only by forces: dynamics would be wrong without, kinematics is not."""
 
 

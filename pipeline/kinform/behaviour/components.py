@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Annotated
 
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
@@ -23,6 +24,7 @@ from kinform.behaviour.shafts import (
     VoltageSource,
 )
 from kinform.model.arrays import Array
+from kinform.model.quantities import XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
 __all__ = [
     "Actor",
@@ -58,11 +60,11 @@ class Ground(Component):
 class RigidBody(Component):
     """Six equations: Newton and Euler. World frame at the pose of the meshes."""
 
-    mass: float | None
+    mass: Annotated[float, "kg"] | None
     """kg; None when unknown: the body then moves in kinematics only."""
-    centre_of_mass: Array
+    centre_of_mass: Place
     """(3,) m."""
-    inertia: Array
+    inertia: Inertia
     """(3, 3) kg·m² about the centre of mass."""
 
 
@@ -94,16 +96,16 @@ class Gear(Component):
     Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes.
     """
 
-    ratio: float
-    pitch_point: Array | None = None
+    ratio: Ratio
+    pitch_point: Place | None = None
     """(3,) m, at the pose of the meshes; the body that both joints have in common carries it."""
-    flank: Array | None = None
+    flank: Direction | None = None
     """(3,) unit: from the other body of the joint at a into that of the joint at b."""
-    back: Array | None = None
+    back: Direction | None = None
     """(3,) the same of the flanks behind the teeth."""
-    lower: float = -math.inf
+    lower: JointValue = -math.inf
     """Values at a (rad or m) between which there are teeth."""
-    upper: float = math.inf
+    upper: JointValue = math.inf
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -118,11 +120,11 @@ class Gear(Component):
 class LoadComponent(Component):
     """A given wrench on a body at a point; six equations."""
 
-    force: Array
+    force: Annotated[Array, "N", XYZ]
     """(3,) N."""
-    torque: Array
+    torque: Annotated[Array, "N·m", XYZ]
     """(3,) N·m."""
-    point: Array
+    point: Place
     """(3,) m, of the body, in the world at the pose of the meshes."""
     turning: bool
     """True: force and torque turn with the body."""
@@ -135,15 +137,15 @@ class SpringDamper(Component):
     Its pull along the line is stiffness · (length − rest) + damping · d(length)/dt. Twelve equations.
     """
 
-    point: Array
+    point: Place
     """(3,) m, of the body at port a, in the world at the pose of the meshes."""
-    other: Array
+    other: Place
     """(3,) m, of the body at port b."""
-    stiffness: float
+    stiffness: Annotated[float, "N/m"]
     """N/m."""
-    damping: float
+    damping: Annotated[float, "N·s/m"]
     """N·s/m."""
-    rest: float
+    rest: Metres
     """m."""
 
     @property

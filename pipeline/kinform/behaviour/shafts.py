@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
+from kinform.model.quantities import JointValue
 
 __all__ = [
     "Actor",
@@ -54,23 +56,23 @@ class EffortDrive(OnShaft):
 class Spring(OnShaft):
     """effort = stiffness · (rest − value); N·m/rad and rad, or N/m and m."""
 
-    stiffness: float
-    rest: float
+    stiffness: Annotated[float, "N·m/rad or N/m"]
+    rest: JointValue
 
 
 @dataclass(frozen=True)
 class Damper(OnShaft):
     """effort = −damping · rate; N·m·s/rad or N·s/m."""
 
-    damping: float
+    damping: Annotated[float, "N·m·s/rad or N·s/m"]
 
 
 @dataclass(frozen=True)
 class EndStop(OnShaft):
     """The value stays between `lower` and `upper` (rad or m); impacts are without rebound."""
 
-    lower: float = -math.inf
-    upper: float = math.inf
+    lower: JointValue = -math.inf
+    upper: JointValue = math.inf
 
 
 @dataclass(frozen=True)
@@ -80,10 +82,10 @@ class Controller:
     The integral rests while the output is at its limit and would be pushed further.
     """
 
-    kp: float
-    ki: float = 0.0
-    kd: float = 0.0
-    limit: float = math.inf
+    kp: Annotated[float, "V or N·m or N, a rad or m"]
+    ki: Annotated[float, "as kp, a s"] = 0.0
+    kd: Annotated[float, "as kp, times s"] = 0.0
+    limit: Annotated[float, "V or N·m or N"] = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,13 +116,13 @@ class DcMotor(OnShaftAndTerminals):
     L di/dt = V − R i − k g ω, effort = k g i; no friction, no inertia of its own.
     """
 
-    resistance: float
+    resistance: Annotated[float, "Ω"]
     """Ω."""
-    inductance: float
+    inductance: Annotated[float, "H"]
     """H; 0: the current follows at once."""
-    constant: float
+    constant: Annotated[float, "N·m/A"]
     """k: N·m/A, which equals V·s/rad."""
-    gear: float
+    gear: Annotated[float, "1 or rad/m"]
     """g: motor turns a turn of the joint, or radians of the motor a metre."""
 
 

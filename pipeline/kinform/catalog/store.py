@@ -14,7 +14,7 @@ from pathlib import Path
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
-from kinform.results import store as _store
+from kinform.results import replace_file
 
 __all__ = ["SCHEMA", "Catalog", "opened", "read", "write"]
 
@@ -65,7 +65,7 @@ def write(catalog: Catalog, path: str | Path) -> None:
     if Path(path).exists() and Path(path).stat().st_size:
         with opened(path):
             pass
-    _store.replace(path, _bytes(catalog))
+    replace_file(path, _bytes(catalog))
 
 
 @contextlib.contextmanager

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
+from kinform.model.quantities import Direction, Inertia, Metres, Place, columns
 from kinform.model.tolerances import Tolerances
 
 __all__ = [
@@ -38,6 +39,9 @@ class Source:
     line: int | None = None
 
 
+Declared = Annotated[Source, columns("source_file", "source_line")]
+
+
 @dataclass(frozen=True)
 class MeshHealth:
     """Facts about one mesh, measured before anything was repaired (counts; volume in m³, signed)."""
@@ -50,14 +54,14 @@ class MeshHealth:
     """Every shared edge is run through in both directions."""
     manifold_status: str
     """Status by manifold3d: "NoError", "NotManifold", …"""
-    volume: float
+    volume: Annotated[float, "m³"]
     """Signed volume (m³); negative: inside out. Meaningful when watertight."""
     degenerate_facets: int
     duplicate_facets: int
     open_edges: int
     overused_edges: int
     shells: int
-    weld: float
+    weld: Metres
     """Welding distance that was used (m)."""
 
 
@@ -65,9 +69,9 @@ class MeshHealth:
 class Mesh:
     """A welded triangle mesh in the part frame, shared by all parts with the same content."""
 
-    vertices: Array
+    vertices: Annotated[Array, "m"]
     """(V, 3) m."""
-    faces: NDArray[np.int64]
+    faces: Ints
     """(F, 3) indices into vertices; degenerate facets removed."""
     health: MeshHealth
     path: str
@@ -122,10 +126,10 @@ class Mesh:
 class MassOverride:
     """Mass properties that the user states instead of those of the geometry (part frame)."""
 
-    mass: float
-    centre_of_mass: Array
+    mass: Annotated[float, "kg"]
+    centre_of_mass: Place
     """(3,) m."""
-    inertia: Array
+    inertia: Inertia
     """(3, 3) kg·m² about the centre of mass, part axes."""
 
 
@@ -135,17 +139,17 @@ class Part:
 
     name: PartName
     mesh: Mesh | None
-    X_WP: Array
+    X_WP: Annotated[Array, "1 (rotation), m (last column)"]
     """(4, 4) pose of the part frame in the world."""
     solid: bool
     """False: surfaces only; contacts yes, mass no, need not be watertight."""
     material: str | None
-    density: float | None
+    density: Annotated[float, "kg/m³"] | None
     """kg/m³; None when nothing states it."""
     override: MassOverride | None
     units: str
     """Length unit of this part's mesh file."""
-    source: Source
+    source: Declared
 
 
 @dataclass(frozen=True)
@@ -154,23 +158,23 @@ class Group:
 
     name: str
     parts: tuple[PartName, ...]
-    source: Source
+    source: Declared
 
 
 @dataclass(frozen=True, eq=False)
 class Assumption:
     """The user overrides what geometry says of two parts (or groups). World frame, SI."""
 
-    between: tuple[str, str]
+    between: Annotated[tuple[str, str], columns("between_a", "between_b")]
     type: str | None
     """Joint type, or None when `ignore`."""
     ignore: bool
-    axis: Array | None
-    point: Array | None
-    pitch: float | None
+    axis: Direction | None
+    point: Place | None
+    pitch: Metres | None
     """Metres a turn."""
     reason: str
-    source: Source
+    source: Declared
 
 
 @dataclass(frozen=True)
@@ -180,7 +184,7 @@ class Subassembly:
     name: str
     file: str
     mobility: int | None
-    source: Source
+    source: Declared
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +206,7 @@ class Assembly:
     function: Function
     simulation: SimulationRequest | None
     subassemblies: tuple[Subassembly, ...]
-    source: Source
+    source: Declared
     files: tuple[str, ...]
     """Every file read (manifests, meshes, tables), relative to the top manifest's folder, sorted."""
     notes: tuple[str, ...] = field(default=())

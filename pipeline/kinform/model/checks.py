@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from kinform.model.quantities import columns
 
 __all__ = ["CheckSettings", "Ignore"]
 
@@ -25,7 +28,7 @@ class CheckSettings:
 
     select: tuple[str, ...] = ()
     """Codes, names, or the beginnings of codes ("KF2"); empty: all."""
-    severity: tuple[tuple[str, str], ...] = ()
+    severity: tuple[Annotated[tuple[str, str], columns("rule", "severity")], ...] = ()
     """(rule, severity of its findings), sorted."""
     ignore: tuple[Ignore, ...] = ()
     file: str | None = None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from kinform.model.arrays import Array
 from kinform.model.names import JointName, PartName
+from kinform.model.quantities import JointValue, Metres, PartPair, Place
 
 __all__ = ["RANGE_STATUSES", "Collision", "JointRange", "RangeEnd"]
 
@@ -19,15 +20,15 @@ class RangeEnd:
 
     status: str
     """found: it stops at `value`; unbounded: nothing stops it; unknown: see `reason`."""
-    value: float | None = None
+    value: JointValue | None = None
     """rad or m, of the joint."""
     parts: tuple[PartName, ...] = ()
     """The two parts that meet there; none where the linkage itself turns back."""
-    place: Array | None = None
+    place: Place | None = None
     """(3,) m: where they meet, at the pose in which they do."""
     reason: str = ""
     """Why it is not known, or what else is to be known of this side."""
-    leaves: float | None = None
+    leaves: JointValue | None = None
     """rad or m: where a slide or screw that nothing stops has left its guide."""
 
 
@@ -38,7 +39,7 @@ class JointRange:
     joint: JointName
     lower: RangeEnd
     upper: RangeEnd
-    left_out: tuple[tuple[PartName, PartName], ...] = ()
+    left_out: tuple[PartPair, ...] = ()
     """Pairs of parts that overlap from the start, of which nothing is known."""
     slides: bool = False
     """Whether its values are lengths."""
@@ -56,10 +57,10 @@ class JointRange:
 class Collision:
     """Two parts of different bodies that meet in a run, outside of the surfaces that mate."""
 
-    parts: tuple[PartName, PartName]
-    time: float
+    parts: PartPair
+    time: Annotated[float, "s"]
     """s: of the first contact."""
-    place: Array
+    place: Place
     """(3,) m: of the first contact."""
-    depth: float
+    depth: Metres
     """m: how deep they go into each other at the worst output time; nan where it could not be measured."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
+from kinform.model.quantities import Direction, Lead, Metres, PartPair, Place, Radians, SquareMetres, columns
 
 __all__ = ["Contacts", "Interference", "Patch", "Suggestion"]
 
@@ -17,8 +19,8 @@ class Patch:
     `normals` come from the analytic surface, unit, pointing out of a's material (into b).
     """
 
-    parts: tuple[PartName, PartName]
-    surfaces: tuple[int, int]
+    parts: PartPair
+    surfaces: Annotated[tuple[int, int], columns("surface_a", "surface_b")]
     """Index of the surface in each part's MeshSurfaces."""
     kind: str
     """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus, revolution, extrusion: of facets, so
@@ -34,26 +36,26 @@ class Patch:
     """(n,) m, signed: negative is overlap."""
     weights: Array
     """(n,) m², area that each sample stands for; their sum is `area`."""
-    area: float
-    gap: float
+    area: SquareMetres
+    gap: Metres
     """m: area-weighted mean of `gaps`; for coaxial surfaces the difference of radii."""
-    axis: Array
+    axis: Direction
     """(3,) plane normal out of a, or the common axis; zero for spheres."""
-    point: Array
+    point: Place
     """(3,) on the plane, on the axis, or the centre."""
-    radii: tuple[float, float]
+    radii: Annotated[tuple[float, float], "m (cones: rad)", columns("radius_a", "radius_b")]
     """Radius on a and b (half-angle for cones); 0 for planes."""
-    misalignment: float
+    misalignment: Radians
     """rad between the two axes (0 for spheres)."""
-    offset: float
+    offset: Metres
     """m between the two axes at the patch, or between the centres."""
-    uncertainty: tuple[float, float]
+    uncertainty: Annotated[tuple[float, float], "rad, m", columns("axis_uncertainty", "point_uncertainty")]
     """Of the direction (rad) and of the position (m) of the common geometry, from both fits."""
-    chord: float
+    chord: Metres
     """m: sum of the chord errors of both surfaces."""
     fit: str
     """clearance, touch, transition or interference, beyond chord errors and uncertainty."""
-    pitch: float = 0.0
+    pitch: Lead = 0.0
     """m a turn that two helicoids have in common, right-handed positive; 0 for other kinds."""
 
 
@@ -61,12 +63,12 @@ class Patch:
 class Interference:
     """Solids of two parts overlap beyond the chord errors of their surfaces."""
 
-    parts: tuple[PartName, PartName]
-    volume: float
+    parts: PartPair
+    volume: Annotated[float, "m³"]
     """m³, by manifold3d; nan where a mesh is not manifold."""
-    depth: float
+    depth: Metres
     """m: greatest overlap measured."""
-    place: Array
+    place: Place
     """(3,) m: centroid of the overlap."""
     mated: bool
     """True: all of it lies at mating patches within the contact tolerance (a press fit)."""
@@ -78,13 +80,13 @@ class Interference:
 class Suggestion:
     """What the geometry hints at and does not prove: that two parts are one body, or turn about an axis."""
 
-    parts: tuple[PartName, PartName]
+    parts: PartPair
     kind: str
     """holes, pressed or pocket: one body. rim or bolt circle: an axis of a contact of planes alone."""
     evidence: str
-    axis: Array
+    axis: Direction
     """(3,) of the holes, of the fit, out of the pocket, or of the joint."""
-    point: Array
+    point: Place
     """(3,) m."""
 
     @property

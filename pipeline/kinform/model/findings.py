@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from kinform.model.quantities import columns
 
 __all__ = ["SEVERITIES", "CheckReport", "Finding", "Ignored", "RuleOutcome", "verdict"]
 
@@ -23,7 +26,7 @@ class Finding:
     found: str | None = None
     """With unit."""
     intended: str | None = None
-    place: tuple[float, float, float] | None = None
+    place: Annotated[tuple[float, float, float], "m", columns("x", "y", "z")] | None = None
     """m, world."""
     file: str | None = None
     line: int | None = None
@@ -59,7 +62,7 @@ class CheckReport:
     rules: tuple[RuleOutcome, ...]
     ignored: tuple[Ignored, ...] = ()
     """Findings that are accepted, in the order of findings; they decide nothing."""
-    gone: tuple[tuple[str, tuple[str, ...]], ...] | None = None
+    gone: tuple[Annotated[tuple[str, tuple[str, ...]], columns("code", "subject")], ...] | None = None
     """Codes and subjects of a baseline that are not found any more; None where no baseline was compared."""
 
     @property

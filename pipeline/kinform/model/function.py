@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from kinform.model.arrays import Array
+from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
 
 __all__ = [
     "Coupling",
@@ -23,22 +24,27 @@ __all__ = [
 ]
 
 
+Stated = Annotated[float, "unit of the manifest"]
+"""Where only the joint says whether it is an angle or a length."""
+StatedRate = Annotated[float, "unit of the manifest a second"]
+
+
 @dataclass(frozen=True, eq=False)
 class IntendedJoint:
     """A joint as the designer wants it, between two parts or groups; values are of the second
     about `axis` relative to the first."""
 
     name: str
-    between: tuple[str, str]
+    between: Annotated[tuple[str, str], columns("between_a", "between_b")]
     type: str
-    axis: Array | None
+    axis: Direction | None
     """(3,) unit, as the designer's sign has it."""
-    axis2: Array | None
-    point: Array | None
+    axis2: Direction | None
+    point: Place | None
     """(3,) m."""
-    pitch: float | None
+    pitch: Metres | None
     """Metres a turn."""
-    range: tuple[float, float] | None
+    range: Annotated[tuple[float, float], "rad or m", columns("range_lower", "range_upper")] | None
     """(lower, upper) rad or m; ±inf for a free side."""
     file: str
     line: int | None
@@ -48,8 +54,8 @@ class IntendedJoint:
 class Coupling:
     """value(first) = ratio · value(second), in SI values of the two joints."""
 
-    joints: tuple[str, str]
-    ratio: float
+    joints: Annotated[tuple[str, str], columns("joint_a", "joint_b")]
+    ratio: Ratio
     file: str
     line: int | None
 
@@ -64,14 +70,14 @@ class Law:
     """
 
     type: str
-    value: float = 0.0
-    amplitude: float = 0.0
-    frequency: float = 0.0
-    phase: float = 0.0
-    offset: float = 0.0
-    rate: float = 0.0
-    times: tuple[float, ...] = ()
-    values: tuple[float, ...] = ()
+    value: Stated = 0.0
+    amplitude: Stated = 0.0
+    frequency: Annotated[float, "Hz"] = 0.0
+    phase: Annotated[float, "deg"] = 0.0
+    offset: Stated = 0.0
+    rate: StatedRate = 0.0
+    times: tuple[Annotated[float, "s"], ...] = ()
+    values: tuple[Stated, ...] = ()
     file: str | None = None
     """The table's CSV file."""
 
@@ -86,7 +92,7 @@ class Drive:
     law: Law | None
     parameters: dict[str, float]
     """Further numbers of the kind (stiffness, damping, rest, kp, …, gear) that are stated, in manifest units."""
-    metres_per_unit: float
+    metres_per_unit: Metres
     file: str
     line: int | None
 
@@ -100,9 +106,9 @@ class Load:
     """Force (N) or torque (N·m) on a part at a point, in the world or in the body's frame."""
 
     part: str
-    force: Array | None
-    torque: Array | None
-    point: Array | None
+    force: Annotated[Array, "N", XYZ] | None
+    torque: Annotated[Array, "N·m", XYZ] | None
+    point: Place | None
     """(3,) m, world at the pose of the meshes; None: centre of mass."""
     frame: str
     """"world" (fixed direction) or "body" (turns with the part)."""
@@ -146,9 +152,9 @@ class InitialValue:
     """Initial position and velocity of a joint in manifest units; 0 is the pose of the meshes."""
 
     joint: str
-    position: float
-    velocity: float
-    metres_per_unit: float
+    position: Stated
+    velocity: StatedRate
+    metres_per_unit: Metres
     file: str
     line: int | None
 
@@ -158,9 +164,9 @@ class SimulationRequest:
     """`[simulation]`; seconds, m/s²."""
 
     level: str | None = None
-    duration: float = 1.0
-    step: float = 0.01
-    gravity: Array = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
+    duration: Annotated[float, "s"] = 1.0
+    step: Annotated[float, "s"] = 0.01
+    gravity: Annotated[Array, "m/s²", XYZ] = field(default_factory=lambda: np.array([0.0, 0.0, -9.81]))
     initial: tuple[InitialValue, ...] = ()
     file: str | None = None
     line: int | None = None

@@ -6,12 +6,24 @@ Twists are (ω; v), v the velocity of the point at the world's origin.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.names import BodyName, JointName, PartName
+from kinform.model.quantities import (
+    Direction,
+    JointValue,
+    Lead,
+    Metres,
+    PartPair,
+    Place,
+    Radians,
+    Ratio,
+    SquareMetres,
+    columns,
+)
 
 __all__ = [
     "JOINT_TYPES",
@@ -30,6 +42,7 @@ __all__ = [
     "Redundancy",
     "Release",
     "Separation",
+    "only_bodies",
 ]
 
 
@@ -38,6 +51,11 @@ JOINT_TYPES = (
     "general",
 )  # fmt: skip
 STATUSES = ("determined", "inferred", "ambiguous", "blocked")
+
+TWIST = "rad/s, m/s (ω; v)"
+FLANKS = columns(*(f"{side}_{axis}" for side in ("flank", "back") for axis in "xyz"), shape=(2, 3))
+ValueRatio = Annotated[float, "rad or m over rad or m"]
+RateRatio = Annotated[float, "rad/s or m/s, or their ratio"]
 
 
 @dataclass(frozen=True)
@@ -56,15 +74,15 @@ class Body:
 class Blocker:
     """A contact that was left out of the decision, and what it forbids."""
 
-    parts: tuple[PartName, PartName]
+    parts: PartPair
     patch: int
     """Index into Contacts.patches."""
-    area: float
-    share: float
+    area: SquareMetres
+    share: Ratio
     """Of the pair's contact area."""
-    place: Array
+    place: Place
     """(3,) m."""
-    gap: float
+    gap: Metres
     forbids: str
     """In words: "rotation about +z", …"""
 
@@ -75,11 +93,11 @@ class Release:
 
     kind: str
     """slide, turn or screw."""
-    twist: Array
+    twist: Annotated[Array, TWIST, columns("*_wx", "*_wy", "*_wz", "*_vx", "*_vy", "*_vz")]
     """(6,) of the second relative to the first: unit direction of a slide, unit ω of a turn or screw."""
-    direction: Array
+    direction: Direction
     """(3,) unit, signed: of the slide, or of the turn by the right hand."""
-    point: Array | None
+    point: Place | None
     """(3,) m, on the axis of a turn or screw."""
     extreme: bool
     """False: one of very many directions, in the middle of them."""
@@ -93,17 +111,17 @@ class Joint:
     relative to the first."""
 
     name: JointName
-    bodies: tuple[BodyName, BodyName]
+    bodies: Annotated[tuple[BodyName, BodyName], columns("body_a", "body_b")]
     """Sorted by name."""
     type: str
-    axis: Array | None
+    axis: Direction | None
     """(3,) unit, canonical sign."""
-    point: Array | None
+    point: Place | None
     """(3,) m: on the axis, near the contact; the centre for spherical."""
-    axis2: Array | None
-    pitch: float | None
+    axis2: Direction | None
+    pitch: Lead | None
     freedoms: int
-    twists: Array
+    twists: Annotated[Array, TWIST]
     """(freedoms, 6) basis of the relative motions."""
     evidence: tuple[str, ...]
     """Sorted names of surface kinds, or "rim", "bolt circle", "assumption", "function"."""
@@ -113,10 +131,10 @@ class Joint:
     patches: tuple[int, ...]
     """Indices into Contacts.patches that carry the joint."""
     blockers: tuple[Blocker, ...]
-    singular_values: Array
+    singular_values: Annotated[Array, "1"]
     """(6,) ascending."""
-    range_lower: float | None = None
-    range_upper: float | None = None
+    range_lower: JointValue | None = None
+    range_upper: JointValue | None = None
     range_status: str = "unknown"
     held: bool | None = None
     """Whether contact lets no motion of the second body break it; None where contact does not say."""
@@ -150,23 +168,23 @@ class ConstraintMatrix:
     """
 
     bodies: tuple[BodyName, ...]
-    data: Array
-    indices: NDArray[np.int64]
-    indptr: NDArray[np.int64]
-    patch: NDArray[np.int64]
+    data: Annotated[Array, "1 (lengths over scaling.length)"]
+    indices: Ints
+    indptr: Ints
+    patch: Ints
     """(rows,) index into Contacts.patches."""
-    sample: NDArray[np.int64]
+    sample: Ints
     """(rows,) index into the patch's points."""
-    centre: Array
-    length: float
+    centre: Place
+    length: Metres
 
 
 @dataclass(frozen=True)
 class Misfit:
     """What snapping did: the greatest change of a direction and of a position, and where."""
 
-    angle: float = 0.0
-    distance: float = 0.0
+    angle: Radians = 0.0
+    distance: Metres = 0.0
     angle_at: str = ""
     distance_at: str = ""
 
@@ -190,12 +208,12 @@ class FiniteCertificate:
     branches: tuple[int, ...] = ()
     """Freedoms of the branches that were found, eight at most: one where the pose is regular, or where the motions
     beside it are a cone that is no union of branches; none where nothing moves."""
-    step: float = 0.0
+    step: Annotated[float, "rad, or of the size"] = 0.0
     """rad, and share of the size."""
-    kept: float = 0.0
+    kept: Ratio = 0.0
     """Share of the step that is left on the closed loops: the least of generic steps where the pose is
     regular, else the greatest of any step."""
-    residual: float = 0.0
+    residual: Annotated[float, "rad, or of the size"] = 0.0
     """Bound, a power of ten, of the closure errors of the stepped poses (rad, and share of the size)."""
     stepped: int | None = None
     """Freedoms of first order at the stepped poses, the most; None where no step was kept."""
@@ -218,17 +236,17 @@ class Freedom:
     """What the driver moves: its body further from ground; of an idle freedom the body that spins."""
     kind: str
     """turn, slide or screw: of the driving joint's second body relative to its first."""
-    axis: Array
+    axis: Direction
     """(3,) unit, canonical sign."""
-    point: Array
+    point: Place
     """(3,) m: on the axis, near the joint."""
-    pitch: float
+    pitch: Lead
     """m a turn; 0 unless a screw."""
     idle: bool
     """One of the idle freedoms: the others are effective."""
     looped: bool
     """Whether loops must close for it: other joints follow."""
-    drives: tuple[tuple[JointName, int, float], ...]
+    drives: tuple[Annotated[tuple[JointName, int, RateRatio], columns("joint", "twist", "rate")], ...]
     """(joint, index of its twist, rate) where not zero, the driver's rate being ±1 (rad/s, m/s); empty without driver."""
 
 
@@ -248,7 +266,7 @@ class Redundancy:
     """Indices into Contacts.patches: the contacts that make these joints."""
     directions: tuple[str, ...]
     """What can be locked in, one a row: "force along z", "moment about x"; empty where not told apart."""
-    wrenches: Array
+    wrenches: Annotated[Array, "N m, N (τ; f)"]
     """(n, 6) N·m, N (τ about the world's origin; f): the same as wrenches through the first joint; n = directions."""
 
 
@@ -263,7 +281,7 @@ class Mobility:
     redundant: int
     blocked: int
     """Instantaneous mobility when blockers count as constraints (`blocked_mobility`)."""
-    freedoms: Array
+    freedoms: Annotated[Array, TWIST]
     """(instantaneous, bodies, 6) orthonormal basis of body twists, ground at rest. Of large assemblies, where it
     would hold over a million numbers, (0, bodies, 6): `named` says the same."""
     idle_bodies: tuple[BodyName, ...]
@@ -292,21 +310,21 @@ class Mobility:
 class Meshing:
     """Teeth that keep a constant ratio: value(first) = ratio · value(second), whatever the pose."""
 
-    ratio: float
+    ratio: ValueRatio
     """That of the pitches: exact over whole pitches. SI, of the values as kinform counts them."""
-    teeth: tuple[int, int]
+    teeth: Annotated[tuple[int, int], columns("teeth_a", "teeth_b")]
     """Counted on either side: all of a whole wheel, those in an even row of a rack or a sector."""
-    pitches: tuple[float, float]
+    pitches: Annotated[tuple[float, float], "rad or m", columns("pitch_a", "pitch_b")]
     """rad or m."""
-    deviation: float
+    deviation: JointValue
     """rad or m of the first: by how much the motion of the meshes leaves the ratio while one tooth passes, peak to peak."""
-    play: float
+    play: JointValue
     """rad or m of the first, the second held: the least while one tooth passes."""
-    reach: tuple[float, float]
+    reach: Annotated[tuple[float, float], "rad or m", columns("reach_lower", "reach_upper")]
     """Values of the first between which there are teeth at the contact; infinite for whole wheels."""
-    place: Array
+    place: Place
     """(3,) m: the pitch point, at half of the contact's width; the body that bears both sides carries it."""
-    normals: Array
+    normals: Annotated[Array, "1", FLANKS]
     """(2, 3) unit, of the flanks that touch and of the others, taken to be symmetric: from the first side's body into
     the second's. Lines of action go through the pitch point."""
 
@@ -315,8 +333,8 @@ class Meshing:
 class Coupling:
     """Two joints that one contact, or one screw, ties to each other: value(first) = ratio · value(second)."""
 
-    joints: tuple[JointName, JointName]
-    ratio: float
+    joints: Annotated[tuple[JointName, JointName], columns("joint_a", "joint_b")]
+    ratio: ValueRatio
     """Of the values as kinform counts them (of the second body about the listed axis relative to the first), SI."""
     kind: str
     """gear, rack, screw, or cam: then the ratio is that of this pose."""
@@ -324,7 +342,7 @@ class Coupling:
     """The joint that ties them: a higher pair or a screw."""
     status: str
     """determined or ambiguous."""
-    uncertainty: float
+    uncertainty: ValueRatio
     """Of the ratio; nan where it is not known."""
     reason: str = ""
     """Why the teeth are not known to keep a constant ratio; empty where they do, and for screws."""
@@ -341,7 +359,7 @@ class Kinematics:
     matrix: ConstraintMatrix
     mobility: Mobility
     misfit: Misfit
-    misaligned: tuple[tuple[str, float, float], ...] = ()
+    misaligned: tuple[Annotated[tuple[str, Radians, Metres], columns("joint", "angle", "offset")], ...] = ()
     """(joint name, angle rad, offset m) of pairs whose axes were mated beyond what clearance allows."""
     separations: tuple[Separation, ...] = ()
     """What can leave the assembly, ground held; sorted by bodies."""
@@ -355,3 +373,12 @@ class Kinematics:
             if part in body.parts:
                 return body
         raise KeyError(part)
+
+
+def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:
+    """Which parts move as one, and nothing of how."""
+    zero = np.zeros(0)
+    none = np.zeros(0, dtype=np.int64)
+    matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)
+    mobility = Mobility(0, None, 0, 0, 0, 0, np.zeros((0, len(bodies), 6)), (), ())
+    return Kinematics(bodies, (), matrix, mobility, Misfit())

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from kinform.model.arrays import Array
+from kinform.model.quantities import MATRIX, Inertia, Place, Ratio, columns
 
 __all__ = ["MassProperties", "MassReport"]
 
@@ -14,19 +16,19 @@ class MassProperties:
     """Of one part or body, world frame at the pose of the meshes. `reason` says why mass is None."""
 
     name: str
-    mass: float | None
+    mass: Annotated[float, "kg"] | None
     """kg; None when it cannot be known."""
-    volume: float | None
+    volume: Annotated[float, "m³"] | None
     """m³."""
-    centre_of_mass: Array
+    centre_of_mass: Place
     """(3,) m in W; nan when unknown."""
-    inertia: Array
+    inertia: Inertia
     """(3, 3) kg·m² about the centre of mass, world axes; nan when unknown."""
-    principal_moments: Array
+    principal_moments: Annotated[Array, "kg·m²", columns("*_1", "*_2", "*_3")]
     """(3,) ascending."""
-    principal_axes: Array
+    principal_axes: Annotated[Array, "1", MATRIX]
     """(3, 3), columns, right-handed, canonical sign."""
-    mass_bound: float
+    mass_bound: Ratio
     """Relative bound of the error of the mass that the tessellation leaves (0 for polyhedra)."""
     origin: str
     """geometry, override, stick, or for bodies the distinct origins of their parts joined by +."""
@@ -41,5 +43,5 @@ class MassReport:
     bodies: tuple[MassProperties, ...]
     valid: bool
     """Every body has a mass and a physically valid inertia."""
-    problems: tuple[tuple[str, str], ...]
+    problems: tuple[Annotated[tuple[str, str], columns("part", "problem")], ...]
     """(part, what is wrong) in sentences."""

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.collisions import Collision, JointRange
+from kinform.model.quantities import Reason, columns
 
 __all__ = ["DriveUse", "Simulation"]
+
+
+Effort = Annotated[float, "N·m or N"]
 
 
 @dataclass(frozen=True)
@@ -20,13 +24,13 @@ class DriveUse:
     joint: str
     kind: str
     """motion, effort, spring, damper, servo, dc_motor, stop."""
-    peak: float
+    peak: Effort
     """Greatest effort at an output time, N·m or N."""
-    rms: float
+    rms: Effort
     """Root of the mean square of the effort over time."""
-    peak_power: float
+    peak_power: Annotated[float, "W"]
     """Greatest power that it put in, W; negative when it only took power out."""
-    work: float
+    work: Annotated[float, "J"]
     """J put in over the run, springs included."""
 
 
@@ -41,58 +45,58 @@ class Simulation:
     reason: str
     level: str
     """functional, kinematic, dynamic; "" when nothing ran."""
-    time: Array
+    time: Annotated[Array, "s"]
     """(T,) s."""
     body_names: tuple[str, ...]
-    p_WB: Array
+    p_WB: Annotated[Array, "m"]
     """(T, B, 3) m."""
-    q_WB: Array
+    q_WB: Annotated[Array, "1"]
     """(T, B, 4) wxyz; the body frame is the world frame at the pose of the meshes."""
     joint_names: tuple[str, ...]
     joint_types: tuple[str, ...]
-    joint_offset: NDArray[np.int64]
+    joint_offset: Ints
     """(joints + 1,) first coordinate of each joint."""
-    joint_position: Array
+    joint_position: Annotated[Array, "rad or m"]
     """(T, n) rad or m; a joint value is of the second body about the joint's axis."""
-    joint_velocity: Array
-    joint_effort: Array
+    joint_velocity: Annotated[Array, "rad/s or m/s"]
+    joint_effort: Annotated[Array, "N·m or N"]
     """(T, n) N·m or N that the drive gives; nan where unknown."""
-    energy: Array
+    energy: Annotated[Array, "J"]
     """(T, 3): kinetic, potential, work put in by drives and loads so far (J); nan below dynamic."""
-    residual: Array
+    residual: Annotated[Array, "m or rad"]
     """(T,) largest constraint residual (m or rad)."""
-    rank: NDArray[np.int64]
+    rank: Ints
     """(T,) rank of the loop closures."""
     assumptions: tuple[str, ...]
     """Every value that was assumed, in sentences."""
-    failures: tuple[tuple[str, str], ...] = ()
+    failures: tuple[Reason, ...] = ()
     """(subject, what cannot be simulated and why)."""
-    joint_acceleration: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    joint_acceleration: Annotated[Array, "rad/s² or m/s²"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, n) rad/s² or m/s²; nan where unknown."""
-    F_A: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    F_A: Annotated[Array, "N·m, N"] = field(default_factory=lambda: np.zeros((0, 0, 6)))
     """(T, joints, 6) wrench (τ; f) of each joint on its first body, about the joint's point as that body
     carries it, in world axes; no times below dynamic."""
-    F_B: Array = field(default_factory=lambda: np.zeros((0, 0, 6)))
+    F_B: Annotated[Array, "N·m, N"] = field(default_factory=lambda: np.zeros((0, 0, 6)))
     """The same on its second body."""
-    undetermined: NDArray[np.bool_] = field(default_factory=lambda: np.zeros((0, 6), dtype=np.bool_))
+    undetermined: Flags = field(default_factory=lambda: np.zeros((0, 6), dtype=np.bool_))
     """(joints, 6) components that redundancy leaves open: F_A and F_B hold the smallest that balance."""
     gear_names: tuple[str, ...] = ()
     """G gears: the joints whose teeth they are, or what they are called."""
-    gear_effort: Array = field(default_factory=lambda: np.zeros((0, 0, 2)))
+    gear_effort: Annotated[Array, "N·m or N"] = field(default_factory=lambda: np.zeros((0, 0, 2)))
     """(T, G, 2) N·m or N that each gives the shafts of its two joints; no times below dynamic."""
-    gear_force: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    gear_force: Annotated[Array, "N"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, G) N between the teeth, at half of their width and without friction; nan where not known."""
     drives: tuple[DriveUse, ...] = ()
     """What acts on the shafts of joints, in order."""
-    balance: Array = field(default_factory=lambda: np.zeros(0))
+    balance: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros(0))
     """(T,) greatest error of the balance of a body or a node over the greatest wrench then."""
-    balance_bodies: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    balance_bodies: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, B) of that the error at the node of each body's frame; no times below dynamic."""
-    balance_shafts: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    balance_shafts: Annotated[Array, "1"] = field(default_factory=lambda: np.zeros((0, 0)))
     """(T, n) the error at the node on the shaft of each joint coordinate."""
     ranges: tuple[JointRange, ...] | None = None
     """How far joints go until something stops them; None: not computed."""
     collisions: tuple[Collision, ...] | None = None
     """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
-    uncollided: tuple[tuple[str, str, str], ...] = ()
+    uncollided: tuple[Annotated[tuple[str, str, str], columns("part_a", "part_b", "reason")], ...] = ()
     """(part, part, why it is not known whether they collide)."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
-
-from kinform.model.arrays import Array
+from kinform.model.arrays import Ints
+from kinform.model.quantities import Direction, Metres, Place, Radians, SquareMetres, columns
 
 __all__ = ["KINDS", "MeshSurfaces", "Surface"]
 
@@ -29,33 +28,33 @@ class Surface:
     """
 
     kind: str
-    axis: Array
+    axis: Direction
     """(3,) unit, or zero where the kind has none."""
-    point: Array
+    point: Place
     """(3,) m; for cylinders the point of the axis beside the middle of the extent."""
-    radius: float
-    half_angle: float
+    radius: Metres
+    half_angle: Radians
     side: int
     """+1: material inside (shaft, ball, plane); −1: material outside (bore, socket)."""
-    area: float
+    area: SquareMetres
     """m², of the facets."""
-    extent: tuple[float, float]
+    extent: Annotated[tuple[float, float], "m", columns("extent_from", "extent_to")]
     """Range along `axis` from `point` (m); (0, 0) where the kind has none."""
-    sweep: float
+    sweep: Radians
     """Angle about the axis that the facets cover (rad, up to 2π); 0 where the kind has none."""
-    residual: float
+    residual: Metres
     """Largest distance of a defining vertex from the surface (m)."""
-    axis_uncertainty: float
+    axis_uncertainty: Radians
     """rad: residual and rounding over the extent that determines the direction."""
-    point_uncertainty: float
+    point_uncertainty: Metres
     """m: of `point` across the axis (centre for spheres; along the normal for planes)."""
-    chord: float
+    chord: Metres
     """m: greatest distance of a facet from the surface (sagitta)."""
-    faces: NDArray[np.int64]
+    faces: Ints
     """Facet indices, ascending."""
-    minor_radius: float = 0.0
+    minor_radius: Metres = 0.0
     """m: of the tube of a torus, whose `radius` is that of the circle in the tube's middle."""
-    pitch: float = 0.0
+    pitch: Metres = 0.0
     """m a turn of a helicoid, right-handed positive."""
 
 
@@ -67,7 +66,7 @@ class MeshSurfaces:
     """Digest of the mesh."""
     surfaces: tuple[Surface, ...]
     """In a fixed order: by descending area, then by lowest facet index."""
-    labels: NDArray[np.int64]
+    labels: Ints
     """(F,) index of the surface of each facet."""
-    noise: float
+    noise: Metres
     """m: estimated scatter of the vertices about their surfaces."""

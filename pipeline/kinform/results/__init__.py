@@ -1,7 +1,7 @@
 """Results: the HDF5 file that carries a design from stage to stage, and what may be reused of it."""
 
 from kinform.results.file import SCHEMA, Earlier, check_output, files_of, read, read_if_current, to_bytes, write
-from kinform.results.store import replace as replace_file
+from kinform.results.replacement import replace_file
 
 __all__ = [
     "SCHEMA",

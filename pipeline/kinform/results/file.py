@@ -1,6 +1,7 @@
 """The results file as a whole: which group holds what, and what makes a file one of ours.
 
-Groups, attributes and units are those of the results contract. The bytes depend on the design and on the
+`kinform.results.groups` has a module for each group; the attributes of a group say under which schema it was written, and
+what it was made of (`Fingerprints`). The bytes depend on the design and on the
 versions of kinform and HDF5 alone: groups are written in one order, nothing is compressed, no times are
 kept, byte order and file format are pinned.
 """
@@ -14,17 +15,15 @@ import json
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import h5py
 
 from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
-from kinform.results import store as _store
-from kinform.results import table as _table
-from kinform.results.groups import assembly as _assembly
-from kinform.results.groups import findings as _findings
+from kinform.results.groups import assembly
+from kinform.results.replacement import check_target, refuse, replace_file
 from kinform.reuse import lineage
 from kinform.version import __version__
 
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from kinform.model.findings import CheckReport
     from kinform.model.kinematics import Kinematics
     from kinform.model.mass import MassReport
+    from kinform.model.names import PartName
     from kinform.model.simulation import Simulation
     from kinform.model.surfaces import MeshSurfaces
 
@@ -60,18 +60,18 @@ _STAGE_OF = {"constraints": "joints", "mobility": "joints", "behaviour": "simula
 
 
 def write(design: Design, path: str | Path) -> None:
-    """Write the design to `path`, whole or not at all; see the contract of the results file.
+    """Write the design to `path`, whole or not at all.
 
     Identical bytes keep the file and touch its time. Raises ResultsError when `path` cannot be written,
     or holds something that is not a results file of this schema: that is never overwritten.
     """
     check_output(path)
-    _store.replace(path, to_bytes(design))
+    replace_file(path, to_bytes(design))
 
 
 def check_output(path: str | Path) -> None:
     """Raise ResultsError when `write` would refuse this path."""
-    _store.check_target(path)
+    check_target(path)
     target = Path(path)
     if target.exists() and target.stat().st_size > 0:
         try:
@@ -79,7 +79,7 @@ def check_output(path: str | Path) -> None:
                 pass
         except ResultsError as error:
             message = str(error).split("\n")[0].removeprefix(f"{target}: ")
-            raise _store.refuse(
+            raise refuse(
                 path, f"{message}; it is not overwritten", "delete it, or give another name with -o"
             ) from error
 
@@ -114,79 +114,83 @@ class Earlier:
         """Let go of the file; what was not asked for can no longer be read."""
         self._open.close()
 
-    def _read(self, codec: str, *groups: str) -> tuple[Any, ...]:
-        """What a codec reads of some groups, one after the other; empty where the first is not there."""
+    def _read(self, name: str) -> Any:
+        """What a group holds; None where it is not there."""
         try:
-            if groups[0] not in self._file:
-                return ()
-            codecs = [importlib.import_module(f"kinform.results.groups.{name}") for name in codec.split()]
-            return tuple(one.read(self._file[group]) for one, group in zip(codecs, groups, strict=True))
+            return _codec(name).read(self._file[name]) if name in self._file else None
         except _NONSENSE as error:
             raise self._damaged(error) from error
 
     def _damaged(self, error: BaseException) -> ResultsError:
-        return _store.refuse(self._path, f"the results file is damaged ({error})", _RECOMPUTE)
+        return refuse(self._path, f"the results file is damaged ({error})", _RECOMPUTE)
 
     @cached_property
     def assembly(self) -> Assembly:
         """As written; KeyError is damage, for every results file has one."""
         try:
-            return _assembly.read(self._file["assembly"])
+            return assembly.read(self._file["assembly"])
         except _NONSENSE as error:
             raise self._damaged(error) from error
 
     @cached_property
-    def _surfaces(self) -> tuple[Any, ...]:
-        return self._read("surfaces", "surfaces")
+    def _surfaces(self) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:
+        return self._read("surfaces") or ({}, {})
 
-    @cached_property
+    @property
     def surfaces(self) -> dict[str, MeshSurfaces]:
         """By mesh digest."""
-        return self._surfaces[0][0] if self._surfaces else {}
+        return self._surfaces[0]
 
     @cached_property
-    def _contacts(self) -> tuple[Any, ...]:
-        return self._read("contacts", "contacts")
+    def _contacts(self) -> tuple[Contacts | None, dict[tuple[PartName, PartName], str]]:
+        return self._read("contacts") or (None, {})
 
-    @cached_property
+    @property
     def contacts(self) -> Contacts | None:
         """As of Design; so are those below."""
-        return self._contacts[0][0] if self._contacts else None
+        return self._contacts[0]
 
     @cached_property
     def kinematics(self) -> Kinematics | None:
         from kinform.model.kinematics import Kinematics
 
-        found = self._read("joints constraints mobility", "joints", "constraints", "mobility")
-        return Kinematics(**found[0], matrix=found[1], mobility=found[2]) if found else None
+        joints, matrix, mobility = map(self._read, ("joints", "constraints", "mobility"))
+        if joints is not None and (matrix is None or mobility is None):
+            raise self._damaged(KeyError("constraints or mobility"))
+        return None if joints is None else Kinematics(**joints, matrix=matrix, mobility=mobility)
 
     @cached_property
     def mass(self) -> MassReport | None:
-        return next(iter(self._read("mass", "mass")), None)
+        return cast("MassReport | None", self._read("mass"))
 
     @cached_property
     def behaviour(self) -> Behaviour | None:
-        return next(iter(self._read("behaviour", "behaviour")), None)
+        return cast("Behaviour | None", self._read("behaviour"))
 
     @cached_property
     def simulation(self) -> Simulation | None:
-        return next(iter(self._read("simulation", "simulation")), None)
+        return cast("Simulation | None", self._read("simulation"))
 
     @cached_property
     def report(self) -> CheckReport | None:
-        return next(iter(self._read("findings", "findings")), None)
+        return cast("CheckReport | None", self._read("findings"))
 
     @cached_property
     def fingerprints(self) -> Fingerprints:
+        from kinform.results.groups import joints
+
+        file = self._file
         try:
             return Fingerprints(
-                stages=_read_marks(self._file),
-                meshes=self._surfaces[0][1] if self._surfaces else {},
-                pairs=self._contacts[0][1] if self._contacts else {},
-                files=_read_contents(self._file),
-                lineage=_read_lineage(self._file),
-                inputs=_read_inputs(self._file),
-                decisions=_read_decisions(self._file),
+                stages={
+                    name: mark for name, mark in _marks(file, "fingerprint").items() if name not in _STAGE_OF and mark
+                },
+                meshes=self._surfaces[1],
+                pairs=self._contacts[1],
+                files=assembly.read_contents(file["assembly"]),
+                lineage=_marks(file, "lineage"),
+                inputs={name: json.loads(text) for name, text in _marks(file, "inputs").items()},
+                decisions=joints.read_decisions(file["joints"]) if "joints" in file else {},
             )
         except _NONSENSE as error:
             raise self._damaged(error) from error
@@ -224,72 +228,33 @@ def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
 
 
 def _write_groups(file: h5py.File, design: Design) -> None:
-    from kinform.results.groups import constraints as _constraints
-    from kinform.results.groups import contacts as _contacts
-    from kinform.results.groups import joints as _joints
-    from kinform.results.groups import mass as _mass
-    from kinform.results.groups import mobility as _mobility
-    from kinform.results.groups import simulation as _simulation
-    from kinform.results.groups import surfaces as _surfaces
-
-    marks, contacts, kinematics = design.fingerprints, design.contacts, design.kinematics
-    _assembly.write(_group(file, "assembly", marks), design.assembly)
-    if marks.files:
-        _table.write_texts(
-            file["assembly"], "contents", [f"{hash} {name}" for name, hash in sorted(marks.files.items())]
-        )
-    if design.surfaces or contacts is not None:
-        _surfaces.write(_group(file, "surfaces", marks), design.surfaces, marks.meshes)
-    if contacts is not None:
-        _contacts.write(_group(file, "contacts", marks), contacts, marks.pairs)
-    if kinematics is not None:
-        patches = () if contacts is None else contacts.patches
-        _constraints.write(_group(file, "constraints", marks), kinematics.matrix, patches)
-        _joints.write(_group(file, "joints", marks), kinematics)
-        if marks.decisions:
-            _joints.write_decisions(file["joints"], marks.decisions)
-        _mobility.write(_group(file, "mobility", marks), kinematics.mobility)
-    if design.mass is not None:
-        _mass.write(_group(file, "mass", marks), design.mass)
-    if design.behaviour is not None:
-        from kinform.results.groups import behaviour as _behaviour
-
-        _behaviour.write(_group(file, "behaviour", marks), design.behaviour)
-    if design.simulation is not None:
-        _simulation.write(_group(file, "simulation", marks), design.simulation)
-    if design.report is not None:
-        _findings.write(_group(file, "findings", marks), design.report)
+    """All groups of which something is known."""
+    kinematics = design.kinematics
+    contents = {
+        "assembly": design.assembly, "surfaces": design.surfaces or design.contacts, "contacts": design.contacts,
+        "constraints": kinematics, "joints": kinematics, "mobility": kinematics, "mass": design.mass,
+        "behaviour": design.behaviour, "simulation": design.simulation, "findings": design.report,
+    }  # fmt: skip
+    for name, content in contents.items():
+        if content is not None:
+            _codec(name).write(_group(file, name, design.fingerprints), design)
 
 
-def _read_marks(file: h5py.File) -> dict[str, str]:
-    marks = {name: str(group.attrs["fingerprint"]) for name, group in file.items() if name not in _STAGE_OF}
-    return {name: mark for name, mark in marks.items() if mark}
+def _codec(group: str) -> Any:
+    """The module that writes and reads a group."""
+    return importlib.import_module(f"kinform.results.groups.{group}")
 
 
-def _read_contents(file: h5py.File) -> dict[str, str]:
-    lines = _table.read_texts(file["assembly"], "contents") if "contents" in file["assembly"] else ()
-    return {name: hash for hash, name in (line.split(" ", 1) for line in lines)}
-
-
-def _read_lineage(file: h5py.File) -> dict[str, str]:
-    return {name: str(group.attrs["lineage"]) for name, group in file.items() if "lineage" in group.attrs}
-
-
-def _read_inputs(file: h5py.File) -> dict[str, dict[str, str]]:
-    return {name: json.loads(group.attrs["inputs"]) for name, group in file.items() if "inputs" in group.attrs}
-
-
-def _read_decisions(file: h5py.File) -> dict[str, tuple[str, str]]:
-    from kinform.results.groups import joints as _joints
-
-    return _joints.read_decisions(file["joints"]) if "joints" in file else {}
+def _marks(file: h5py.File, attribute: str) -> dict[str, str]:
+    """An attribute of all groups that have it."""
+    return {name: str(group.attrs[attribute]) for name, group in file.items() if attribute in group.attrs}
 
 
 def files_of(path: str | Path) -> tuple[str, ...]:
     """The files that were read for these results, relative to the manifest; () where there are no such results."""
     try:
         with _opened(path) as file:
-            return _table.read_texts(file["assembly"], "files")
+            return assembly.read_files(file["assembly"])
     except (ResultsError, *_DAMAGE):
         return ()
 
@@ -302,28 +267,26 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
     """
     try:
         with _opened(path) as file:
-            known = _read_lineage(file).get("findings")
-            if not known or known != lineage.current(manifest, _read_contents(file), allow_outside=allow_outside):
+            marks = Fingerprints(lineage=_marks(file, "lineage"))
+            contents = assembly.read_contents(file["assembly"])
+            written_from = marks.lineage.get("findings")
+            if not written_from or written_from != lineage.current(manifest, contents, allow_outside=allow_outside):
                 return None
-            assembly = _assembly.read_header(file["assembly"])
-            marks = Fingerprints(lineage=_read_lineage(file))
-            return Design(
-                assembly,
-                kinematics=_bodies(file, assembly),
-                report=_findings.read(file["findings"]),
-                fingerprints=marks,
-            )
+            gist = assembly.read_header(file["assembly"])
+            report = _codec("findings").read(file["findings"])
+            return Design(gist, kinematics=_bodies(file, gist), report=report, fingerprints=marks)
     except (ResultsError, *_DAMAGE):
         return None
 
 
-def _bodies(file: h5py.File, assembly: Assembly) -> Kinematics | None:
+def _bodies(file: h5py.File, gist: Assembly) -> Kinematics | None:
     """The bodies, where the ground is one that kinform chose and findings are told with a note about it."""
-    if assembly.ground is not None:
+    if gist.ground is not None:
         return None
-    from kinform.results.groups import joints as _joints
+    from kinform.model.kinematics import only_bodies
+    from kinform.results.groups import joints
 
-    return _joints.read_bodies(file["joints"])
+    return only_bodies(joints.read_bodies(file["joints"]))
 
 
 @contextlib.contextmanager
@@ -334,16 +297,16 @@ def _opened(path: str | Path) -> Iterator[h5py.File]:
             stream = stack.enter_context(open(path, "rb"))
             signature = stream.read(len(_SIGNATURE))
         except FileNotFoundError as error:
-            raise _store.refuse(path, "there is no such file", f"check the name, or {_COMPUTE}") from error
+            raise refuse(path, "there is no such file", f"check the name, or {_COMPUTE}") from error
         except OSError as error:
-            raise _store.refuse(path, f"cannot be read: {error.strerror or error}", _NAME_ONE) from error
+            raise refuse(path, f"cannot be read: {error.strerror or error}", _NAME_ONE) from error
         if signature != _SIGNATURE:
-            raise _store.refuse(path, "this is not a results file of kinform (not HDF5)", _NAME_ONE)
+            raise refuse(path, "this is not a results file of kinform (not HDF5)", _NAME_ONE)
         try:
             file = stack.enter_context(h5py.File(stream, "r"))
             schema, version = file.attrs.get("schema"), file.attrs.get("kinform", "unknown")
         except _DAMAGE as error:
-            raise _store.refuse(path, "the results file is truncated or damaged", _RECOMPUTE) from error
+            raise refuse(path, "the results file is truncated or damaged", _RECOMPUTE) from error
         _check_schema(path, schema, version)
         yield file
 
@@ -352,10 +315,10 @@ def _check_schema(path: str | Path, schema: object, version: object) -> None:
     if schema == SCHEMA:
         return
     if isinstance(schema, str) and schema.startswith(_FAMILY):
-        raise _store.refuse(
+        raise refuse(
             path,
             f"the results file has the schema {schema}, written by kinform {version}; "
             f"this is kinform {__version__}, which reads {SCHEMA}",
             f"use that version, or {_RECOMPUTE}",
         )
-    raise _store.refuse(path, "this HDF5 file was written by another program", _NAME_ONE)
+    raise refuse(path, "this HDF5 file was written by another program", _NAME_ONE)

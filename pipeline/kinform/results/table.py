@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import h5py
 import numpy as np
@@ -31,13 +31,12 @@ __all__ = [
     "TEXT",
     "Column",
     "flag",
+    "inline",
     "integer",
-    "matrix",
-    "pair",
+    "numbers",
     "read_array",
     "read_columns",
     "read_ragged",
-    "read_records",
     "read_rows",
     "read_texts",
     "real",
@@ -45,16 +44,12 @@ __all__ = [
     "text",
     "texts",
     "values",
-    "vector",
     "write_array",
     "write_columns",
     "write_ragged",
-    "write_records",
     "write_rows",
     "write_texts",
 ]
-
-Record = TypeVar("Record")
 
 TEXT = h5py.string_dtype()
 FACETS = "<i4"
@@ -72,8 +67,9 @@ class Column:
     """Attribute of the record."""
     labels: tuple[str, ...]
     """Names of the columns."""
-    dtype: Any
-    unit: str
+    dtypes: tuple[Any, ...]
+    """Of each column, as NumPy names them."""
+    units: tuple[str, ...]
     split: Callable[[Sequence[Any]], Sequence[Any]]
     """The field of all records → one list or array a label."""
     join: Callable[[Sequence[NDArray[Any]]], list[Any]]
@@ -140,71 +136,83 @@ def _each(function: Callable[[Any], Any], values: Sequence[Any]) -> list[Any]:
     return [known[value] if value in known else known.setdefault(value, function(value)) for value in values]
 
 
+def _scalar(field: str, dtype: Any, unit: str, write: Callable[..., Any], read: Callable[..., list[Any]]) -> Column:
+    """One column for one value, from what writes and what reads all of them."""
+    return Column(field, (field,), (dtype,), (unit,), lambda v: (write(v),), lambda s: read(s[0]))
+
+
 def text(field: str) -> Column:
     """A text, or None."""
-    return Column(field, (field,), TEXT, "", lambda v: ([stored_text(x) for x in v],), lambda s: _read_texts(s[0]))
+    return _scalar(field, TEXT, "", lambda v: [stored_text(x) for x in v], _read_texts)
 
 
 def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
     """An integer; with `optional`, a count or a line number, or None."""
     if optional:
-        return Column(field, (field,), "<i8", unit, lambda v: (_write_counts(v),), lambda s: _read_counts(s[0]))
-    return Column(field, (field,), "<i8", unit, lambda v: ([int(x) for x in v],), lambda s: s[0].tolist())
+        return _scalar(field, "<i8", unit, _write_counts, _read_counts)
+    return _scalar(field, "<i8", unit, lambda v: [int(x) for x in v], lambda s: s.tolist())
 
 
 def real(field: str, unit: str) -> Column:
     """A float, or None."""
-    return Column(field, (field,), "<f8", unit, lambda v: (_write_reals(v),), lambda s: _read_reals(s[0]))
+    return _scalar(field, "<f8", unit, _write_reals, _read_reals)
 
 
-def flag(field: str) -> Column:
-    """A bool."""
-    return Column(field, (field,), np.bool_, "1", lambda v: ([bool(x) for x in v],), lambda s: s[0].tolist())
+def flag(field: str, *, optional: bool = False) -> Column:
+    """A bool; with `optional`, or None: then a count."""
+    if optional:
+        read = lambda s: [None if x is None else bool(x) for x in _read_counts(s)]
+        return _scalar(field, "<i8", "1", _write_counts, read)
+    return _scalar(field, np.bool_, "1", lambda v: [bool(x) for x in v], lambda s: s.tolist())
 
 
 def texts(field: str) -> Column:
-    """A tuple of texts, as a JSON list."""
-    return Column(
-        field, (field,), TEXT, "",
-        lambda v: (_each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),),
-        lambda s: _each(lambda x: tuple(json.loads(x)), s[0].tolist()),
+    """A tuple of texts, or of integers, as a JSON list."""
+    return _scalar(
+        field, TEXT, "",
+        lambda v: _each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),
+        lambda s: _each(lambda x: tuple(json.loads(x)), s.tolist()),
     )  # fmt: skip
 
 
 def values(field: str) -> Column:
     """A dict of free-form values, as JSON."""
-    return Column(
-        field, (field,), TEXT, "",
-        lambda v: ([_write_json(x) for x in v],), lambda s: [json.loads(x) for x in s[0].tolist()],
-    )  # fmt: skip
+    return _scalar(
+        field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [json.loads(x) for x in s.tolist()]
+    )
 
 
-def pair(field: str, kind: Callable[..., Column], labels: tuple[str, ...], *unit: str) -> Column:
-    """A tuple of scalars (or None) of one kind, a column each."""
-    scalar, none = kind(field, *unit), (None,) * len(labels)
+def inline(
+    field: str,
+    inner: Sequence[Column],
+    labels: Sequence[str],
+    get: Callable[[Any, Column], Any],
+    make: Callable[[list[Any]], Any],
+    *,
+    optional: bool,
+) -> Column:
+    """A tuple or record of several values under the labels of their columns; with `optional`, or None: then all are.
 
-    def split(values: Sequence[Any]) -> Sequence[Any]:
-        given = [none if value is None else value for value in values]
-        return [scalar.split([value[k] for value in given])[0] for k in range(len(labels))]
+    `get` gives the value that an inner column holds of one such record, `make` makes one of all of them.
+    """
+    ends = np.cumsum([0, *(len(column.labels) for column in inner)]).tolist()
+
+    def split(records: Sequence[Any]) -> Sequence[Any]:
+        held = [[None if record is None else get(record, column) for record in records] for column in inner]
+        return [data for column, of_all in zip(inner, held, strict=True) for data in column.split(of_all)]
 
     def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
-        return [None if v == none else v for v in zip(*(scalar.join((item,)) for item in stored), strict=True)]
+        held = [c.join(stored[start:end]) for c, start, end in zip(inner, ends[:-1], ends[1:], strict=True)]
+        rows = [list(row) for row in zip(*held, strict=True)]
+        return [None if optional and all(value is None for value in row) else make(row) for row in rows]
 
-    return Column(field, labels, scalar.dtype, scalar.unit, split, join)
-
-
-def vector(field: str, unit: str, axes: Sequence[str] = ("x", "y", "z")) -> Column:
-    """An array of one number an axis, or None."""
-    return _numbers(field, unit, axes, (len(axes),))
-
-
-def matrix(field: str, unit: str, axes: Sequence[str] = ("x", "y", "z")) -> Column:
-    """A square array, or None; columns run through its rows."""
-    return _numbers(field, unit, [a + b for a in axes for b in axes], (len(axes), len(axes)))
+    dtypes = tuple(dtype for column in inner for dtype in column.dtypes)
+    units = tuple(unit for column in inner for unit in column.units)
+    return Column(field, tuple(labels), dtypes, units, split, join)
 
 
-def _numbers(field: str, unit: str, suffixes: Sequence[str], shape: tuple[int, ...]) -> Column:
-    labels = tuple(f"{field}_{suffix}" for suffix in suffixes)
+def numbers(field: str, unit: str, labels: Sequence[str], shape: tuple[int, ...]) -> Column:
+    """An array of this shape, or None: a column a number, row by row."""
     none = np.full(shape, _MISSING)
 
     def split(values: Sequence[Any]) -> Sequence[Any]:
@@ -216,12 +224,12 @@ def _numbers(field: str, unit: str, suffixes: Sequence[str], shape: tuple[int, .
 
     def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
         table = freeze(np.stack(stored, axis=1).astype(np.float64).reshape(-1, *shape))
-        found: list[Any] = list(table)
+        arrays: list[Any] = list(table)
         for i in np.flatnonzero(_missing(stored[0])).tolist():
-            found[i] = None
-        return found
+            arrays[i] = None
+        return arrays
 
-    return Column(field, labels, "<f8", unit, split, join)
+    return Column(field, tuple(labels), ("<f8",) * len(labels), (unit,) * len(labels), split, join)
 
 
 def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str, Any]]) -> None:
@@ -239,46 +247,29 @@ def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = No
     return group[name][()] if labels is None else group[name].fields(list(labels))[()]
 
 
-def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], rows: Iterable[Mapping[str, Any]]) -> None:
-    """Write a table from rows: field → value."""
-    rows = list(rows)
-    _write_fields(group, name, columns, [[row[column.field] for row in rows] for column in columns])
-
-
-def _write_fields(group: h5py.Group, name: str, columns: Sequence[Column], fields: Sequence[Sequence[Any]]) -> None:
-    """Write a table from the fields of all records, a list a column."""
+def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], fields: Sequence[Sequence[Any]]) -> None:
+    """Write a table; `fields` are what each column holds, of all rows."""
     table: dict[str, tuple[str, Any]] = {}
-    for column, found in zip(columns, fields, strict=True):
-        for label, stored in zip(column.labels, column.split(found), strict=True):
-            table[label] = (column.unit, np.array(stored, dtype=column.dtype))
+    for column, of_all in zip(columns, fields, strict=True):
+        for label, dtype, unit, data in zip(
+            column.labels, column.dtypes, column.units, column.split(of_all), strict=True
+        ):
+            table[label] = (unit, np.array(data, dtype=dtype))
     write_columns(group, name, table)
 
 
 def read_rows(
-    group: h5py.Group, name: str, columns: Sequence[Column], added: Sequence[str] = ()
+    group: h5py.Group, name: str, columns: Sequence[Column], later: Container[str] = ()
 ) -> list[dict[str, Any]]:
-    """The rows that `write_rows` wrote. Fields named in `added` came later: files without them give rows without."""
+    """The rows that `write_rows` wrote: field → value. Fields that came `later` are left out where the file lacks them."""
     table = read_columns(group, name)
-    known = set(table.dtype.names or ())
-    columns = [column for column in columns if column.field not in added or known.issuperset(column.labels)]
+    labels = set(table.dtype.names or ())
+    columns = [column for column in columns if column.field not in later or labels.issuperset(column.labels)]
     fields = [column.field for column in columns]
     if not fields:
         return [{} for _ in table]
-    found = [column.join([table[label] for label in column.labels]) for column in columns]
-    return [dict(zip(fields, row, strict=True)) for row in zip(*found, strict=True)]
-
-
-def write_records(group: h5py.Group, name: str, columns: Sequence[Column], records: Iterable[object]) -> None:
-    """Write a table with one row a record; fields are attributes."""
-    records = list(records)
-    _write_fields(group, name, columns, [[getattr(record, column.field) for record in records] for column in columns])
-
-
-def read_records(
-    group: h5py.Group, name: str, columns: Sequence[Column], cls: Callable[..., Record]
-) -> tuple[Record, ...]:
-    """The records that `write_records` wrote."""
-    return tuple(cls(**row) for row in read_rows(group, name, columns))
+    held = [column.join([table[label] for label in column.labels]) for column in columns]
+    return [dict(zip(fields, row, strict=True)) for row in zip(*held, strict=True)]
 
 
 def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> h5py.Dataset:

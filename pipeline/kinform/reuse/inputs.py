@@ -11,16 +11,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from kinform.model.assembly import Assembly, Mesh, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
 
 if TYPE_CHECKING:
-    from kinform.model.kinematics import Body, Kinematics
+    pass
 
-__all__ = ["assembly_for", "bare_mesh", "only_bodies"]
+__all__ = ["assembly_for", "bare_mesh"]
 
 _NOWHERE = Source("")
 
@@ -33,17 +31,6 @@ def assembly_for(stage: str, assembly: Assembly) -> Assembly:
 def bare_mesh(mesh: Mesh) -> Mesh:
     """The shape, without the file that it came from."""
     return mesh.bare
-
-
-def only_bodies(bodies: tuple[Body, ...]) -> Kinematics:
-    """Which parts move as one, and nothing of how."""
-    from kinform.model.kinematics import ConstraintMatrix, Kinematics, Misfit, Mobility
-
-    zero = np.zeros(0)
-    none = np.zeros(0, dtype=np.int64)
-    matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)
-    mobility = Mobility(0, None, 0, 0, 0, 0, np.zeros((0, len(bodies), 6)), (), ())
-    return Kinematics(bodies, (), matrix, mobility, Misfit())
 
 
 def _shapes(assembly: Assembly) -> Assembly:

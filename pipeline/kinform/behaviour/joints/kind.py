@@ -9,6 +9,7 @@ import numpy as np
 
 from kinform.behaviour.primitives import Primitive
 from kinform.model.arrays import Array
+from kinform.model.quantities import Direction, Metres, Place
 
 __all__ = ["JointGeometry", "JointKind"]
 
@@ -17,13 +18,13 @@ __all__ = ["JointGeometry", "JointKind"]
 class JointGeometry:
     """Where a joint is, in the world at the pose of the meshes; None where its kind needs nothing."""
 
-    axis: Array | None = None
+    axis: Direction | None = None
     """(3,) unit."""
-    point: Array | None = None
+    point: Place | None = None
     """(3,) m."""
-    axis2: Array | None = None
+    axis2: Direction | None = None
     """(3,) unit."""
-    pitch: float | None = None
+    pitch: Metres | None = None
     """Metres a turn."""
 
     def needed(self, name: str) -> Array:

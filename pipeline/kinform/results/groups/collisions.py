@@ -2,64 +2,57 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import h5py
 
-from kinform.model.collisions import Collision, JointRange, RangeEnd
+from kinform.model.collisions import JointRange, RangeEnd
+from kinform.model.names import JointName
 from kinform.model.simulation import Simulation
-from kinform.results.table import flag, integer, pair, read_rows, real, text, texts, vector, write_records, write_rows
+from kinform.results.layout import Layout, Rows, Table
 
-__all__ = ["read", "write"]
-
-_RANGES = (
-    text("joint"), text("side"), text("status"), real("value", "rad or m"), texts("parts"), vector("place", "m"),
-    text("reason"), real("leaves", "rad or m"), flag("slides"),
-)  # fmt: skip
-_LEFT_OUT = (integer("joint"), pair("parts", text, ("part_a", "part_b")))
-_COLLISIONS = (
-    pair("parts", text, ("part_a", "part_b")), real("time", "s"), vector("place", "m"), real("depth", "m"),
-)  # fmt: skip
-_UNCOLLIDED = (text("part_a"), text("part_b"), text("reason"))
+__all__ = ["COLLISIONS"]
 
 
-def write(group: h5py.Group, simulation: Simulation) -> None:
-    """Write what was computed of ranges and collisions."""
-    if simulation.ranges is not None:
-        rows = [
-            vars(end) | {"joint": item.joint, "side": side, "slides": item.slides}
-            for item in simulation.ranges
-            for side, end in (("lower", item.lower), ("upper", item.upper))
+@dataclass(frozen=True)
+class _Side:
+    joint: JointName
+    side: str
+    end: RangeEnd
+    slides: bool
+
+
+@dataclass(frozen=True)
+class _Sides:
+    ranges: tuple[_Side, ...]
+
+
+class _Ranges:
+    """Two rows a joint, lower and upper; the pairs that were left out in a table of their own."""
+
+    dataset, fields = "ranges", ("ranges",)
+    sides = Layout(_Sides, Table("ranges"))
+    left_out = Table("ranges_left_out", field="left_out", owner="joint")
+
+    def write(self, group: h5py.Group, cls: type, records: Sequence[Simulation]) -> None:
+        ranges = records[0].ranges
+        if ranges is not None:
+            ends = ((item, side, getattr(item, side)) for item in ranges for side in ("lower", "upper"))
+            sides = tuple(_Side(item.joint, side, end, item.slides) for item, side, end in ends)
+            self.sides.write(group, _Sides(sides))
+            self.left_out.write(group, JointRange, ranges)
+
+    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+        sides = self.sides.read(group).ranges
+        pairs = zip(sides[::2], sides[1::2], strict=True)
+        ranges: Rows = [
+            {"joint": lower.joint, "lower": lower.end, "upper": upper.end, "slides": lower.slides}
+            for lower, upper in pairs
         ]
-        write_rows(group, "ranges", _RANGES, rows)
-        left_out = [{"joint": n, "parts": p} for n, item in enumerate(simulation.ranges) for p in item.left_out]
-        write_rows(group, "ranges_left_out", _LEFT_OUT, left_out)
-    if simulation.collisions is not None:
-        write_records(group, "collisions", _COLLISIONS, simulation.collisions)
-    if simulation.uncollided:
-        untested = [dict(zip(("part_a", "part_b", "reason"), row, strict=True)) for row in simulation.uncollided]
-        write_rows(group, "collisions_unknown", _UNCOLLIDED, untested)
+        self.left_out.read(group, JointRange, ranges)
+        rows[0]["ranges"] = tuple(JointRange(**row) for row in ranges)
 
 
-def read(group: h5py.Group) -> dict[str, Any]:
-    """The fields of Simulation that `write` wrote."""
-    out: dict[str, Any] = {}
-    if "ranges" in group:
-        left_out: dict[int, list[Any]] = {}
-        for row in read_rows(group, "ranges_left_out", _LEFT_OUT):
-            left_out.setdefault(row["joint"], []).append(row["parts"])
-        rows = read_rows(group, "ranges", _RANGES)
-        found = []
-        for n, (lower, upper) in enumerate(zip(rows[::2], rows[1::2], strict=True)):
-            name, ends = lower["joint"], []
-            for row in (lower, upper):
-                ends.append(
-                    RangeEnd(**{key: value for key, value in row.items() if key not in ("joint", "side", "slides")})
-                )
-            found.append(JointRange(name, ends[0], ends[1], tuple(left_out.get(n, ())), lower["slides"]))
-        out["ranges"] = tuple(found)
-    if "collisions" in group:
-        out["collisions"] = tuple(Collision(**row) for row in read_rows(group, "collisions", _COLLISIONS))
-    if "collisions_unknown" in group:
-        out["uncollided"] = tuple(tuple(row.values()) for row in read_rows(group, "collisions_unknown", _UNCOLLIDED))
-    return out
+COLLISIONS = (_Ranges(), Table("collisions"), Table("collisions_unknown", field="uncollided", if_any=True))
+"""What holds the fields of Simulation that say what was run into."""

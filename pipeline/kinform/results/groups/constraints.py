@@ -7,59 +7,53 @@ from collections.abc import Sequence
 import h5py
 import numpy as np
 
+from kinform.design import Design
 from kinform.model.arrays import freeze
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import ConstraintMatrix
-from kinform.results.table import (
-    TEXT,
-    read_array,
-    read_columns,
-    read_rows,
-    read_texts,
-    real,
-    stored_text,
-    vector,
-    write_array,
-    write_columns,
-    write_rows,
-    write_texts,
-)
+from kinform.results.layout import Layout, Numbers, Row, Rows, Texts
+from kinform.results.table import TEXT, read_columns, stored_text, write_columns
 
 __all__ = ["read", "write"]
 
-_SCALING = (vector("centre", "m"), real("length", "m"))
 
+class _Origins:
+    """Of each row its patch and sample, and for readers the parts that the patch is between."""
 
-def write(group: h5py.Group, matrix: ConstraintMatrix, patches: Sequence[Patch]) -> None:
-    """Write J, six columns a body in the order of `bodies`; `rows` names patch, sample and parts."""
-    write_texts(group, "bodies", matrix.bodies)
-    write_array(group, "data", matrix.data, "1 (lengths over scaling.length)")
-    write_array(group, "indices", matrix.indices, "1", "<i8")
-    write_array(group, "indptr", matrix.indptr, "1", "<i8")
-    parts = [patches[i].parts if 0 <= i < len(patches) else ("", "") for i in matrix.patch.tolist()]
-    write_columns(
-        group,
-        "rows",
-        {
+    dataset, fields = "rows", ("patch", "sample")
+
+    def __init__(self, patches: Sequence[Patch] = ()):
+        self._patches = patches
+
+    def write(self, group: h5py.Group, cls: type, records: Sequence[ConstraintMatrix]) -> None:
+        (matrix,), patches = records, self._patches
+        parts = [patches[i].parts if 0 <= i < len(patches) else ("", "") for i in matrix.patch.tolist()]
+        columns = {
             "patch": ("1", matrix.patch.astype("<i8")),
             "sample": ("1", matrix.sample.astype("<i8")),
             "part_a": ("", np.array([stored_text(a) for a, _ in parts], dtype=TEXT)),
             "part_b": ("", np.array([stored_text(b) for _, b in parts], dtype=TEXT)),
-        },
-    )
-    write_rows(group, "scaling", _SCALING, [vars(matrix)])
+        }
+        write_columns(group, "rows", columns)
+
+    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+        table = read_columns(group, "rows", self.fields)
+        rows[0].update({name: freeze(table[name].copy()) for name in self.fields})
+
+
+def _layout(origins: _Origins) -> Layout:
+    arrays = map(Numbers, ("data", "indices", "indptr"))
+    return Layout(ConstraintMatrix, Texts("bodies"), *arrays, origins, Row("scaling", "centre", "length"))
+
+
+def write(group: h5py.Group, design: Design) -> None:
+    """Write J, six columns a body in the order of `bodies`."""
+    assert design.kinematics is not None
+    patches = () if design.contacts is None else design.contacts.patches
+    _layout(_Origins(patches)).write(group, design.kinematics.matrix)
 
 
 def read(group: h5py.Group) -> ConstraintMatrix:
     """The matrix that `write` wrote."""
-    rows = read_columns(group, "rows", ("patch", "sample"))
-    (scaling,) = read_rows(group, "scaling", _SCALING)
-    return ConstraintMatrix(
-        bodies=read_texts(group, "bodies"),
-        data=read_array(group, "data"),
-        indices=read_array(group, "indices"),
-        indptr=read_array(group, "indptr"),
-        patch=freeze(rows["patch"].copy()),
-        sample=freeze(rows["sample"].copy()),
-        **scaling,
-    )
+    matrix: ConstraintMatrix = _layout(_Origins()).read(group)
+    return matrix

@@ -19,7 +19,7 @@ except ImportError:  # Windows: files that are left behind stay
 
 from kinform.errors import Problem, ResultsError
 
-__all__ = ["check_target", "refuse", "replace"]
+__all__ = ["check_target", "refuse", "replace_file"]
 
 _PREFIX, _SUFFIX = ".kinform-", ".tmp"
 
@@ -45,7 +45,7 @@ def check_target(path: str | Path) -> None:
         raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
 
 
-def replace(path: str | Path, data: bytes) -> None:
+def replace_file(path: str | Path, data: bytes) -> None:
     """Put `data` at `path` in one step; keep a file that has these bytes already, with a new time.
 
     Raises ResultsError when that is not possible; the old file is then as it was.
