@@ -75,8 +75,8 @@ def _hints(cls: type) -> Mapping[str, Hint]:
 
 def _defaults(cls: type) -> frozenset[str]:
     """Fields of a class that have a default: files from before they were added may lack them."""
-    has = lambda field: field.default is not MISSING or field.default_factory is not MISSING
-    return frozenset(field.name for field in fields(cls) if has(field))
+    plain = {field.name for field in fields(cls) if field.default is not MISSING}
+    return frozenset(plain | {field.name for field in fields(cls) if field.default_factory is not MISSING})
 
 
 hints: Callable[[Any], Mapping[str, Hint]] = functools.cache(_hints)
