@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.assembly import Group
 from kinform.model.function import Function
 from kinform.model.kinematics import Body
@@ -47,7 +47,7 @@ def design(*joints):
     ],
 )
 def test_order_of_bodies_and_sense_of_axis_make_the_sign(between, axis, sign):
-    found = resolve(*design(intended("yaw", *between, "revolute", axis)), "yaw")
+    found = resolve_joint(*design(intended("yaw", *between, "revolute", axis)), "yaw")
     assert found.joint is not None
     assert found.joint.name == "arm~frame"
     assert found.sign == sign
@@ -57,14 +57,14 @@ def test_order_of_bodies_and_sense_of_axis_make_the_sign(between, axis, sign):
 
 
 def test_a_joint_is_found_under_the_name_that_kinform_gives_it():
-    found = resolve(*design(), "arm~frame")
+    found = resolve_joint(*design(), "arm~frame")
     assert found.joint is not None
     assert (found.sign, found.intended, found.bodies) == (1, None, ("arm", "frame"))
 
 
 def test_the_designers_name_goes_before_kinforms():
     wanted = intended("arm~frame", "frame", "cover", "spherical")
-    found = resolve(*design(wanted), "arm~frame")
+    found = resolve_joint(*design(wanted), "arm~frame")
     assert found.joint is not None
     assert found.joint.name == "cover~frame"
 
@@ -78,13 +78,13 @@ def test_the_designers_name_goes_before_kinforms():
     ],
 )
 def test_a_joint_that_is_not_there_says_why(between, words):
-    found = resolve(*design(intended("yaw", *between, "revolute", Z)), "yaw")
+    found = resolve_joint(*design(intended("yaw", *between, "revolute", Z)), "yaw")
     assert found.joint is None
     assert words in found.reason
 
 
 def test_an_unknown_name_lists_those_that_are_known():
-    found = resolve(*design(intended("yaw", "arm", "frame", "revolute", Z)), "yow")
+    found = resolve_joint(*design(intended("yaw", "arm", "frame", "revolute", Z)), "yow")
     assert found.joint is None
     assert found.bodies == ("", "")
     assert "yaw" in found.reason
@@ -94,4 +94,4 @@ def test_an_unknown_name_lists_those_that_are_known():
 def test_a_group_that_is_spread_over_bodies_is_no_side():
     made, chain = design(intended("yaw", "pair", "frame", "revolute", Z))
     made = replace(made, groups=(*made.groups, Group("pair", ("arm", "tool"), HERE)))
-    assert "spread over the bodies arm, tool" in resolve(made, chain, "yaw").reason
+    assert "spread over the bodies arm, tool" in resolve_joint(made, chain, "yaw").reason

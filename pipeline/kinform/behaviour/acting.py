@@ -22,7 +22,7 @@ from kinform.behaviour.components import (
     VoltageSource,
 )
 from kinform.behaviour.signals import Constant, Signal, signal
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
 from kinform.model.kinematics import Coupling as Found
@@ -38,7 +38,7 @@ def one_freedom(
     assembly: Assembly, kinematics: Kinematics, joints: Joints, name: str
 ) -> tuple[JointComponent | None, int, str]:
     """The joint with one freedom that a name stands for, and the designer's sign, or why there is none."""
-    found = resolve(assembly, kinematics, name)
+    found = resolve_joint(assembly, kinematics, name)
     if found.joint is None:
         return None, 1, found.reason
     component = joints.get(found.joint.name)

@@ -10,7 +10,7 @@ from kinform.consistency import verdict
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.graphs.graph import forest
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.findings import CheckReport
 from kinform.model.function import IntendedJoint, Requirement
@@ -138,7 +138,7 @@ def _size(assembly: Assembly) -> Triple | None:
 def _joints(assembly: Assembly, kinematics: Kinematics) -> tuple[CatalogJoint, ...]:
     stated: dict[str, IntendedJoint] = {}
     for intended in assembly.function.joints:
-        found = resolve(assembly, kinematics, intended.name).joint
+        found = resolve_joint(assembly, kinematics, intended.name).joint
         if found is not None:
             stated.setdefault(str(found.name), intended)
     out = []

@@ -8,12 +8,11 @@ what a code means.
 from __future__ import annotations
 
 from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
-from kinform.consistency.comparisons.intended_joints import Comparison, compare
-from kinform.consistency.explain import UnknownRuleError, explain, rules_markdown
+from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
+from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
 from kinform.consistency.gate import amended, check, verdict
 from kinform.consistency.rule import Outcome, Rule
 from kinform.consistency.rules import RULES
-from kinform.foundation import words
 
 __all__ = [
     "CODE_VERSION",
@@ -26,13 +25,12 @@ __all__ = [
     "adopt",
     "amended",
     "check",
-    "compare",
+    "compare_joint",
     "explain",
     "read_baseline",
     "rules_markdown",
     "verdict",
     "with_baseline",
-    "words",
 ]
 
 CODE_VERSION: int = 14

@@ -1,33 +1,79 @@
-"""What the rules ask about a design, worked out once.
+"""What the rules ask about a design, worked out once, and why something that they need is not there.
 
-A stage that has not been run is not an error here: its property is then the inconclusive outcome
-that the rule hands on.
+A stage that has not been run is not an error: what a rule needs of it is then lacking, with the outcome that the rule
+hands on (`lacks`). Properties that give the result of a stage may be read where it is not lacking only.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Literal, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare
+from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
-from kinform.consistency.control import Unused
-from kinform.consistency.rule import Outcome, inconclusive, skipped
+from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
 from kinform.model.assembly import Assembly, Mesh, Part
+from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts
-from kinform.model.function import Function
+from kinform.model.function import Function, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 
-__all__ = ["Context", "MeshUse"]
+__all__ = ["Context", "MeshUse", "Need", "Unused"]
 
 Stage = TypeVar("Stage")
+Need = Literal[
+    "meshes", "closed meshes", "contacts", "kinematics", "mass", "simulation", "motion", "comparisons",
+    "stated mobility", "stated joints", "stated ranges", "stated couplings", "stated drives", "stated loads",
+    "stated assumptions", "stated initial values", "inferred fasteners", "several parts",
+    "stated mobility of sub-assemblies",
+]  # fmt: skip
+"""What a rule may need of a design: meshes, results of stages, something that the manifest states."""
+APPLIES: dict[Need, tuple[Callable[[Context], object], str]] = {
+    "meshes": (lambda c: c.meshes, "no part has a mesh"),
+    "closed meshes": (lambda c: c.closed_meshes, "no mesh is closed"),
+    "several parts": (lambda c: len(c.assembly.parts) > 1, "the assembly has only one part"),
+    "stated mobility": (lambda c: c.function.mobility is not None, "the function states no mobility"),
+    "stated mobility of sub-assemblies": (
+        lambda c: any(s.mobility is not None for s in c.assembly.subassemblies),
+        "no sub-assembly states a mobility",
+    ),
+    "stated joints": (lambda c: c.function.joints, "the function states no joint"),
+    "stated ranges": (lambda c: any(j.range is not None for j in c.function.joints), "no range is stated"),
+    "stated couplings": (lambda c: c.function.couplings, "the function states no coupling"),
+    "stated drives": (lambda c: c.function.drives, "the function states no drive"),
+    "stated loads": (lambda c: c.function.loads, "the function states no load"),
+    "stated assumptions": (lambda c: c.assembly.assumptions, "the manifest assumes nothing"),
+    "stated initial values": (
+        lambda c: c.assembly.simulation is not None and c.assembly.simulation.initial,
+        "no initial value is stated",
+    ),
+    "inferred fasteners": (lambda c: c.assembly.infer_fasteners, "the manifest does not ask to infer fasteners"),
+}
+"""Where a rule does not apply: whether what it needs is there, and the reason where it is not."""
+NOT_RUN: dict[Need, str] = {
+    "contacts": "contacts have not been found: run `kinform contacts`",
+    "kinematics": "joints have not been derived: run `kinform joints`",
+    "mass": "mass has not been computed: run `kinform mass`",
+    "simulation": "the simulation has not been run: run `kinform simulate`",
+}
+"""By stage: why a rule that needs its result is inconclusive."""
+
+
+@dataclass(frozen=True)
+class Unused:
+    """An entry of `[check]` that changed nothing, and why."""
+
+    name: str
+    """The rule as the entry has it."""
+    message: str
+    ignore: Ignore | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +104,8 @@ class Context:
     """One design under check."""
 
     design: Design
+    judges: Mapping[str, Callable[[Context, Requirement], Answer]] = field(default_factory=dict)
+    """What answers each kind of requirement that `[check]` asks about."""
     unused_settings: tuple[Unused, ...] | None = None
     """Entries of `[check]` without effect; None before the other rules have run."""
 
@@ -87,6 +135,11 @@ class Context:
         return tuple(MeshUse(parts[0].mesh, tuple(parts)) for parts in uses.values() if parts[0].mesh is not None)
 
     @cached_property
+    def closed_meshes(self) -> tuple[MeshUse, ...]:
+        """Those that bound a volume: watertight, and wound one way."""
+        return tuple(u for u in self.meshes if u.mesh.health.watertight and u.mesh.health.consistent_winding)
+
+    @cached_property
     def shaped(self) -> frozenset[str]:
         """Bodies of which a part has a mesh; empty without kinematics."""
         if self.design.kinematics is None:
@@ -108,29 +161,49 @@ class Context:
             return None
         return inconclusive("the units are implausible (KF110): contacts found at this size mean nothing")
 
-    def _stage(self, value: Stage | None, missing: str) -> Stage | Outcome:
-        if self._mistaken_scale is not None:
+    def lacks(self, need: Need) -> Outcome | None:
+        """Why what a rule needs is not there: it does not apply, or nothing can be decided; None where it is there."""
+        if need in APPLIES:
+            present, reason = APPLIES[need]
+            return None if present(self) else skipped(reason)
+        if need == "motion":
+            still = skipped("nothing moved")
+            return self.lacks("simulation") or (still if len(self.simulation.time) < 2 else None)
+        if need == "comparisons":
+            given = skipped("all joints come from the function itself: there is no geometry to compare")
+            missing = self.lacks("stated joints") or self.lacks("kinematics")
+            return missing or (given if all(c.state == "stated" for c in self._every_comparison) else None)
+        if need == "contacts" and not self.meshes:
+            return self.lacks("meshes")
+        if need == "simulation" and not self.simulation_requested:
+            return skipped("no simulation is requested")
+        if need != "mass" and self._mistaken_scale is not None:
             return self._mistaken_scale
-        return inconclusive(missing) if value is None else value
+        result = getattr(self.design, need)
+        run = result is not None and not (need == "simulation" and result.status == "not requested")
+        return None if run else inconclusive(NOT_RUN[need])
+
+    def _result(self, need: Need, result: Stage | None) -> Stage:
+        """The result of a stage, which is not lacking."""
+        lacking = self.lacks(need)
+        if lacking is not None or result is None:
+            raise LookupError(f"{need}: {lacking.reason if lacking else 'none'}; a rule must declare what it needs")
+        return result
 
     @cached_property
-    def contacts(self) -> Contacts | Outcome:
-        """Contacts; skipped without meshes, inconclusive when not found yet."""
-        if not self.meshes:
-            return skipped("no part has a mesh")
-        return self._stage(self.design.contacts, "contacts have not been found: run `kinform contacts`")
+    def contacts(self) -> Contacts:
+        """Contacts."""
+        return self._result("contacts", self.design.contacts)
 
     @cached_property
-    def kinematics(self) -> Kinematics | Outcome:
-        """Joints and mobility; inconclusive when not derived yet."""
-        return self._stage(self.design.kinematics, "joints have not been derived: run `kinform joints`")
+    def kinematics(self) -> Kinematics:
+        """Joints and mobility."""
+        return self._result("kinematics", self.design.kinematics)
 
     @cached_property
-    def mass(self) -> MassReport | Outcome:
-        """Mass properties; inconclusive when not computed yet."""
-        if self.design.mass is None:
-            return inconclusive("mass has not been computed: run `kinform mass`")
-        return self.design.mass
+    def mass(self) -> MassReport:
+        """Mass properties."""
+        return self._result("mass", self.design.mass)
 
     @property
     def simulation_requested(self) -> bool:
@@ -139,37 +212,30 @@ class Context:
         return ran or self.assembly.simulation is not None or bool(self.function.drives)
 
     @cached_property
-    def simulation(self) -> Simulation | Outcome:
-        """The simulation; skipped when not requested, inconclusive when not run yet."""
-        if not self.simulation_requested:
-            return skipped("no simulation is requested")
-        simulation = self.design.simulation
-        if simulation is not None and simulation.status == "not requested":
-            simulation = None
-        return self._stage(simulation, "the simulation has not been run: run `kinform simulate`")
+    def simulation(self) -> Simulation:
+        """The simulation, which may have been refused, or have stopped early."""
+        return self._result("simulation", self.design.simulation)
 
     @cached_property
-    def comparisons(self) -> tuple[Comparison, ...] | Outcome:
+    def comparisons(self) -> tuple[Comparison, ...]:
         """Each intended joint beside what geometry gives, sorted by name."""
-        if not self.function.joints:
-            return skipped("the function states no joint")
-        if isinstance(self.kinematics, Outcome):
-            return self.kinematics
-        joints = sorted(self.function.joints, key=lambda joint: joint.name)
-        found = tuple(compare(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints)
-        if all(comparison.state == "stated" for comparison in found):
-            return skipped("all joints come from the function itself: there is no geometry to compare")
-        return found
+        return self._result("comparisons", self._every_comparison)
 
     @cached_property
-    def answers(self) -> dict[int, Any]:
-        """Answers to requirements that were worked out already, by the identity of the requirement."""
-        return {}
+    def _every_comparison(self) -> tuple[Comparison, ...]:
+        joints = sorted(self.function.joints, key=lambda joint: joint.name)
+        return tuple(compare_joint(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints)
+
+    @cached_property
+    def answers(self) -> Mapping[Requirement, Answer]:
+        """What became of each requirement that `[check]` asks about, in the order of the manifest."""
+        requirements = [r for r in self.function.requirements if r.kind in self.judges]
+        return {requirement: self.judges[requirement.kind](self, requirement) for requirement in requirements}
 
     @cached_property
     def intended_pairs(self) -> frozenset[tuple[str, str]]:
         """Pairs of bodies (sorted names) that an intended joint joins; empty without kinematics."""
-        if isinstance(self.kinematics, Outcome):
+        if self.lacks("kinematics"):
             return frozenset()
         pairs = (bodies_of(self.assembly, self.kinematics, joint.between) for joint in self.function.joints)
         return frozenset((min(pair), max(pair)) for pair in pairs)
@@ -187,19 +253,16 @@ class Context:
 
     def joint(self, name: str) -> Joint | None:
         """The derived joint of that name."""
-        if isinstance(self.kinematics, Outcome):
+        if self.lacks("kinematics"):
             return None
         return next((joint for joint in self.kinematics.joints if joint.name == name), None)
 
-    def place_of(self, joint: Joint) -> tuple[float, float, float] | None:
+    def place_of(self, joint: Joint | None) -> tuple[float, float, float] | None:
         """A point (m) at the joint: on its axis, else in the middle of its contact."""
+        if joint is None:
+            return None
         if joint.point is not None:
-            return _triple(joint.point)
+            return triple(joint.point)
         contacts = self.design.contacts
         points = [contacts.patches[k].points for k in joint.patches] if contacts is not None else []
-        return _triple(np.concatenate(points).mean(axis=0)) if any(map(len, points)) else None
-
-
-def _triple(point: NDArray[np.float64]) -> tuple[float, float, float]:
-    x, y, z = (float(v) for v in point)
-    return (x, y, z)
+        return triple(np.concatenate(points).mean(axis=0)) if any(map(len, points)) else None

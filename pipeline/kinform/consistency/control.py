@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from kinform.consistency.context import Unused
 from kinform.consistency.rule import Outcome, Rule
+from kinform.foundation.words import counted
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
 
-__all__ = ["Applied", "Unused", "accepted", "apply", "idle_ignore", "means", "selected", "unused"]
+__all__ = ["Applied", "accepted", "apply", "idle_ignore", "means", "selected", "unused"]
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""
@@ -26,16 +28,6 @@ class Applied:
     """Entries that had an effect."""
 
 
-@dataclass(frozen=True)
-class Unused:
-    """An entry of `[check]` that changed nothing, and why."""
-
-    name: str
-    """The rule as the entry has it."""
-    message: str
-    ignore: Ignore | None = None
-
-
 def selected(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is to run."""
     return not settings.select or any(_chosen(rule, word) for word in settings.select)
@@ -44,10 +36,10 @@ def selected(rule: Rule, settings: CheckSettings) -> bool:
 def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     """The rule's outcome with other severities, and without what is ignored."""
     levels = [level for word, level in settings.severity if means(rule, word)]
-    found = [replace(f, severity=levels[-1]) if levels else f for f in outcome.findings]
+    findings = [replace(f, severity=levels[-1]) if levels else f for f in outcome.findings]
     entries = [entry for entry in settings.ignore if means(rule, entry.code)]
     kept, ignored, used = [], [], []
-    for finding in found:
+    for finding in findings:
         entry = next((e for e in entries if e.subject is None or e.subject in finding.subject), None)
         if entry is None:
             kept.append(finding)
@@ -59,14 +51,14 @@ def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     if outcome.kind == "inconclusive" and whole is not None and whole not in used:
         used.append(whole)
     settled = whole is not None or (rule.code.startswith(DOUBT) and bool(ignored) and not kept)
-    return Applied(_named(rule, outcome, ignored, settled, whole), tuple(kept), tuple(ignored), tuple(used))
+    return Applied(_outcome_under(rule, outcome, ignored, settled, whole), tuple(kept), tuple(ignored), tuple(used))
 
 
 def accepted(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequence[Ignored]) -> RuleOutcome:
     """The outcome of a decided rule of which these findings are left and these ignored."""
     if rule.outcome != "failed" or not ignored or any(f.severity != "note" for f in left):
         return rule
-    return replace(rule, outcome="passed" if left else "ignored", reason=_told(ignored))
+    return replace(rule, outcome="passed" if left else "ignored", reason=_reasons(ignored))
 
 
 def unused(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore]) -> tuple[Unused, ...]:
@@ -93,7 +85,7 @@ def idle_ignore(entry: Ignore) -> Unused:
     return Unused(entry.code, f"[[check.ignore]] of {entry.code}{about} ignores nothing", entry)
 
 
-def _named(
+def _outcome_under(
     rule: Rule, outcome: Outcome, ignored: Sequence[Ignored], settled: bool, whole: Ignore | None
 ) -> RuleOutcome:
     """What became of the rule; `settled`: what it could not decide is accepted too."""
@@ -102,16 +94,15 @@ def _named(
         return RuleOutcome(rule.code, rule.name, "ignored", reason)
     reason = outcome.reason
     if ignored:
-        reason = "; ".join(filter(None, [reason, _told(ignored)]))
+        reason = "; ".join(filter(None, [reason, _reasons(ignored)]))
     if outcome.kind == "decided" and ignored and not outcome.findings:
         return RuleOutcome(rule.code, rule.name, "ignored", reason)
     return RuleOutcome(rule.code, rule.name, outcome.name, reason)
 
 
-def _told(ignored: Sequence[Ignored]) -> str:
+def _reasons(ignored: Sequence[Ignored]) -> str:
     reasons = dict.fromkeys(item.reason or f"by the {item.by}" for item in ignored)
-    count = "1 finding" if len(ignored) == 1 else f"{len(ignored)} findings"
-    return f"{count} ignored: {'; '.join(reasons)}"
+    return f"{counted(len(ignored), 'finding')} ignored: {'; '.join(reasons)}"
 
 
 def means(rule: Rule, word: str) -> bool:

@@ -6,13 +6,14 @@ from dataclasses import replace
 
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, means, selected, unused
-from kinform.consistency.located import located
+from kinform.consistency.places import with_place
+from kinform.consistency.requirements import RequirementRule
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as LOCKED
-from kinform.consistency.rules.kf902_requirement_not_checked import RULES_OF
 from kinform.design import Design
+from kinform.model.checks import CheckSettings
 from kinform.model.findings import CheckReport, Finding, RuleOutcome, verdict
 
 __all__ = ["amended", "check", "verdict"]
@@ -24,14 +25,15 @@ def check(design: Design) -> CheckReport:
     Stages that a rule needs and that have not been run leave the rule inconclusive, never passed.
     """
     settings = design.assembly.check
-    context = Context(replace(design, kinematics=design.ranged))
+    judges = {r.kind: r.judge for r in RULES if isinstance(r, RequirementRule) and _judged(r, settings)}
+    context = Context(replace(design, kinematics=design.ranged), judges)
     applied = {rule.code: _run(rule, context) for rule in RULES if rule is not CONTROL}
     used = [entry for one in applied.values() for entry in one.used]
     # these two speak later: of the other rules, and where a lock is given
     used += [entry for entry in settings.ignore if means(CONTROL, entry.code) or means(LOCKED, entry.code)]
     alone = all(one.outcome.outcome in ("skipped", "ignored") for one in applied.values())
     applied[CONTROL.code] = apply(
-        CONTROL, CONTROL.check(replace(context, unused_settings=unused(RULES, settings, used))), settings
+        CONTROL, CONTROL.outcome(replace(context, unused_settings=unused(RULES, settings, used))), settings
     )
     rules = [applied[rule.code].outcome for rule in RULES]
     if alone:
@@ -49,41 +51,40 @@ def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckRepor
     """The report with what a lock says (KF450) in place of what it said before, under `[check]` as all rules are."""
     settings = design.assembly.check
     context = Context(replace(design, kinematics=design.ranged))
-    one = _run(replace(LOCKED, check=lambda _: outcome), context)
-    idle = [entry for entry in settings.ignore if means(LOCKED, entry.code) and entry not in one.used]
-    told = CONTROL.check(replace(context, unused_settings=tuple(map(idle_ignore, idle)))) if idle else decided()
-    control = apply(CONTROL, told, settings)
+    applied = _run(replace(LOCKED, check=lambda _: outcome), context)
+    idle = [entry for entry in settings.ignore if means(LOCKED, entry.code) and entry not in applied.used]
+    about = CONTROL.outcome(replace(context, unused_settings=tuple(map(idle_ignore, idle)))) if idle else decided()
+    control = apply(CONTROL, about, settings)
     before = next(rule for rule in report.rules if rule.code == CONTROL.code)
-    rules = {rule.code: rule for rule in report.rules} | {LOCKED.code: one.outcome}
+    rules = {rule.code: rule for rule in report.rules} | {LOCKED.code: applied.outcome}
     if control.findings:
         rules[CONTROL.code] = replace(control.outcome, reason=before.reason)
     kept = [f for f in report.findings if f.code != LOCKED.code]
     ignored = [i for i in report.ignored if i.finding.code != LOCKED.code]
     return replace(
         report,
-        findings=tuple(sorted((*kept, *one.findings, *control.findings), key=_order)),
+        findings=tuple(sorted((*kept, *applied.findings, *control.findings), key=_order)),
         rules=tuple(rules[code] for code in sorted(rules)),
-        ignored=tuple(sorted((*ignored, *one.ignored, *control.ignored), key=lambda i: _order(i.finding))),
+        ignored=tuple(sorted((*ignored, *applied.ignored, *control.ignored), key=lambda i: _order(i.finding))),
     )
 
 
-SPEAK_FOR = {
-    "KF501": ("KF413", "KF502", "KF503", "KF504", "KF505", "KF506", "KF507"),
-    "KF902": tuple(rule.code for rule in RULES_OF.values()),
-    "KF903": ("KF411",),
-    "KF904": ("KF412",),
-}
-"""By rule that tells what could not be decided: rules that leave this to it. They are not selected one without the other."""
+def _asked(rule: Rule, settings: CheckSettings) -> bool:
+    """Whether the rule is selected, or one that it speaks for."""
+    return any(selected(other, settings) for other in RULES if other is rule or other.code in rule.speaks_for)
+
+
+def _judged(rule: Rule, settings: CheckSettings) -> bool:
+    """Whether the rule is selected, or one that speaks for it."""
+    return any(selected(other, settings) for other in RULES if other is rule or rule.code in other.speaks_for)
 
 
 def _run(rule: Rule, context: Context) -> Applied:
     """The rule under the settings of the manifest."""
     settings = context.assembly.check
-    partners = SPEAK_FOR.get(rule.code, ())
-    asked = selected(rule, settings) or any(selected(other, settings) for other in RULES if other.code in partners)
-    outcome = rule.check(context) if asked else skipped("not selected by [check]")
-    found = tuple(located(context, finding) for finding in outcome.findings)
-    return apply(rule, replace(outcome, findings=found), settings)
+    outcome = rule.outcome(context) if _asked(rule, settings) else skipped("not selected by [check]")
+    findings = tuple(with_place(context, finding) for finding in outcome.findings)
+    return apply(rule, replace(outcome, findings=findings), settings)
 
 
 def _order(finding: Finding) -> tuple[object, ...]:

@@ -1,16 +1,15 @@
-"""What a rule is, and what it may answer."""
+"""What a rule is: what it is called, what it needs, how it decides."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass, replace
+from typing import Protocol
 
+from kinform.consistency.context import Context, Need
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped, triple
 from kinform.model.findings import SEVERITIES, Finding
-
-if TYPE_CHECKING:
-    from kinform.consistency.context import Context
 
 __all__ = ["Declared", "Outcome", "Rule", "decided", "inconclusive", "skipped"]
 
@@ -25,41 +24,6 @@ class Declared(Protocol):
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Answer of one rule: `kind` is decided, inconclusive or skipped.
-
-    An inconclusive rule may carry findings too: about what it could decide, and notes that say what
-    it could not.
-    """
-
-    kind: str
-    findings: tuple[Finding, ...] = ()
-    reason: str = ""
-
-    @property
-    def name(self) -> str:
-        """passed, failed, inconclusive or skipped; notes alone do not fail a rule."""
-        if self.kind != "decided":
-            return self.kind
-        return "failed" if any(f.severity != "note" for f in self.findings) else "passed"
-
-
-def decided(findings: Iterable[Finding] = (), reason: str = "") -> Outcome:
-    """The rule ran to its end; no finding of more than a note: passed."""
-    return Outcome("decided", tuple(findings), reason)
-
-
-def inconclusive(reason: str, findings: Iterable[Finding] = ()) -> Outcome:
-    """Something that the rule is about could not be decided."""
-    return Outcome("inconclusive", tuple(findings), reason)
-
-
-def skipped(reason: str) -> Outcome:
-    """The rule does not apply to this design."""
-    return Outcome("skipped", (), reason)
-
-
-@dataclass(frozen=True)
 class Rule:
     """One rule: its code, a name that says what is wrong, its severity, its documentation, its check."""
 
@@ -70,41 +34,54 @@ class Rule:
     documentation: str | None
     """Docstring of the rule's module: what is checked, why it matters, what to do, an example."""
     check: Callable[[Context], Outcome]
+    """Runs where everything in `needs` is there."""
+    needs: tuple[Need, ...] = ()
+    """What the check reads, in the order in which it is asked for: the first that is not there is the outcome."""
+    speaks_for: tuple[str, ...] = ()
+    """Codes of rules that leave it to this one to say what they could not decide: where one of them is selected, so
+    is this."""
+
+    def outcome(self, context: Context) -> Outcome:
+        """What the rule says of a design: why something that it needs is not there, else what its check says."""
+        for need in self.needs:
+            lacking = context.lacks(need)
+            if lacking is not None:
+                return lacking
+        return self.check(context)
+
+    def at(self, severity: str) -> Rule:
+        """The rule with findings of another severity."""
+        if severity not in SEVERITIES:
+            raise ValueError(f"unknown severity {severity!r}: expected one of {', '.join(SEVERITIES)}")
+        return replace(self, severity=severity)
 
     def finding(
         self,
         subject: Sequence[str],
         message: str,
         *,
-        severity: str | None = None,
         found: str | None = None,
         intended: str | None = None,
         place: Iterable[float] | None = None,
         declared: Declared | None = None,
-        line: int | None = None,
         remedy: str | None = None,
     ) -> Finding:
         """A finding of this rule; `place` (3,) m in the world, left out unless finite."""
-        level = severity or self.severity
-        if level not in SEVERITIES:
-            raise ValueError(f"unknown severity {level!r}: expected one of {', '.join(SEVERITIES)}")
         return Finding(
             code=self.code,
             rule=self.name,
-            severity=level,
+            severity=self.severity,
             subject=tuple(subject),
             message=message,
             found=found,
             intended=intended,
             place=_finite(place),
-            file=declared.file if declared is not None else None,
-            line=line if line is not None else declared.line if declared is not None else None,
+            file=None if declared is None else declared.file,
+            line=None if declared is None else declared.line,
             remedy=remedy,
         )
 
 
 def _finite(place: Iterable[float] | None) -> tuple[float, float, float] | None:
-    if place is None:
-        return None
-    x, y, z = (float(value) for value in place)
-    return (x, y, z) if all(math.isfinite(value) for value in (x, y, z)) else None
+    point = None if place is None else triple(place)
+    return point if point is not None and all(map(math.isfinite, point)) else None

@@ -15,7 +15,7 @@ from kinform.behaviour.components import EndStop, SpringDamper
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.function import SimulationRequest
@@ -171,7 +171,7 @@ def _ranges(
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for stated in assembly.function.joints:
-        found = resolve(assembly, kinematics, stated.name)
+        found = resolve_joint(assembly, kinematics, stated.name)
         if stated.range is not None and found.joint is not None and found.joint.name in single:
             low, high = stated.range if found.sign > 0 else (-stated.range[1], -stated.range[0])
             out[found.joint.name] = (float(low), float(high))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kinform.function.resolve import Resolution, resolve
+from kinform.function.joint_names import Resolution, resolve_joint
 
-__all__ = ["CODE_VERSION", "Resolution", "resolve"]
+__all__ = ["CODE_VERSION", "Resolution", "resolve_joint"]
 
 CODE_VERSION: int = 3

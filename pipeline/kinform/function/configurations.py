@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import blocks
-from kinform.function.resolve import resolve
+from kinform.function.joint_names import resolve_joint
 from kinform.kinematics.mobility.loop_system import LoopSystem, loop_system
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -202,7 +202,7 @@ def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str
     for intended in assembly.function.joints:
         if intended.range is None:
             continue
-        found = resolve(assembly, kinematics, intended.name)
+        found = resolve_joint(assembly, kinematics, intended.name)
         if found.joint is None:
             continue
         low, high = intended.range if found.sign > 0 else (-intended.range[1], -intended.range[0])

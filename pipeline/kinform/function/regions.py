@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array
 
 __all__ = ["Targets", "targets_of"]
@@ -31,21 +30,21 @@ class Targets:
     gap: float
 
 
-def targets_of(region: Mapping[str, Any], *, direction: bool) -> Targets | str:
+def targets_of(region: Region, *, direction: bool) -> Targets | str:
     """The targets of a region for a point, or for a direction; a sentence where the region has none such."""
-    if region["type"] == "cone":
+    if isinstance(region, Cone):
         return _cone(region) if direction else "a cone is a region of directions: state a direction, not a point"
-    if region["type"] == "box":
+    if isinstance(region, Box):
         return "a box is a region of places: state a point, not a direction" if direction else _box(region)
-    values = region.get("directions" if direction else "points")
-    if not values:
+    values = region.directions if direction else region.points
+    if not len(values):
         return f"the poses list no {'directions' if direction else 'points'}"
-    return Targets(np.array(values, dtype=np.float64), direction, 0.0)
+    return Targets(values, direction, 0.0)
 
 
-def _cone(region: Mapping[str, Any]) -> Targets:
+def _cone(region: Cone) -> Targets:
     """A spiral of equal areas over the cap, and its rim."""
-    axis, half = np.array(region["axis"]), float(region["half_angle"])
+    axis, half = region.axis, region.half_angle
     u, v = perpendicular(axis)
     k = np.arange(INSIDE) + 0.5
     height = 1.0 - (1.0 - math.cos(half)) * k / INSIDE
@@ -59,11 +58,10 @@ def _cone(region: Mapping[str, Any]) -> Targets:
     return Targets(values, True, max(spacing, math.pi * math.sin(half) / RIM))
 
 
-def _box(region: Mapping[str, Any]) -> Targets:
+def _box(region: Box) -> Targets:
     """A grid with the corners."""
-    lower, upper = np.array(region["lower"]), np.array(region["upper"])
-    X = np.array(region["X_WF"])
-    low, high = np.minimum(lower, upper), np.maximum(lower, upper)
+    X = region.X_WF
+    low, high = np.minimum(region.lower, region.upper), np.maximum(region.lower, region.upper)
     axes = [np.linspace(a, b, ALONG) if b > a else np.array([a]) for a, b in zip(low, high, strict=True)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     half = 0.5 * np.array([(b - a) / (ALONG - 1) for a, b in zip(low, high, strict=True)])

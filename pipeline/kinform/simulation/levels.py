@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, RigidBody
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
@@ -124,7 +124,7 @@ def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> list[str]:
     tied = {frozenset(c.joints): c for c in kinematics.couplings if c.meshing is not None or c.kind == "screw"}
     free = []
     for coupling in assembly.function.couplings:
-        ends = [resolve(assembly, kinematics, name).joint for name in coupling.joints]
+        ends = [resolve_joint(assembly, kinematics, name).joint for name in coupling.joints]
         if frozenset(end.name for end in ends if end is not None) not in tied:
             free.append(" and ".join(coupling.joints))
     if not free:

@@ -8,29 +8,28 @@ from typing import Any, Protocol
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Declared, Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import counted, quoted
-from kinform.function import resolve
-from kinform.model.kinematics import Kinematics
+from kinform.function import resolve_joint
 
-__all__ = ["actuated", "loose", "without_freedom"]
+__all__ = ["loose_carriers", "without_freedom"]
 
 DRIVEN = ("revolute", "prismatic", "screw")
 """Joints with one freedom, on which a single value acts."""
 
 
-def actuated(context: Context, kinematics: Kinematics, name: str) -> tuple[str, str]:
+def _single_freedom(context: Context, name: str) -> tuple[str, str]:
     """("", "") when the joint of this name has exactly one freedom; else ("absent" or "unknown", why)."""
-    resolution = resolve(context.assembly, kinematics, name)
-    joint = resolution.joint
+    resolution = resolve_joint(context.assembly, context.kinematics, name)
+    joint, carried = resolution.joint, loose_carriers(context, name)
     if joint is None:
-        return _unknown(loose(context, name)) or ("absent", resolution.reason)
+        return ("unknown", carried) if carried else ("absent", resolution.reason)
     if joint.status == "ambiguous":
         return "unknown", f"joint '{joint.name}' is ambiguous: {joint.reason}"
     if joint.type in DRIVEN:
         return "", ""
+    why = f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}"
     if joint.type == "general" and joint.freedoms > 0:
-        return "unknown", f"joint '{joint.name}' is general, with {counted(joint.freedoms, 'freedom')}"
-    short = ("absent", f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}")
-    return _unknown(loose(context, name)) or short
+        return "unknown", why
+    return ("unknown", carried) if carried else ("absent", why)
 
 
 class Acting(Declared, Protocol):
@@ -41,22 +40,19 @@ class Acting(Declared, Protocol):
 
 
 def without_freedom(
-    context: Context, rule: Rule, acting: Sequence[Acting], told: Callable[[Any], str], remedy: str
+    context: Context, rule: Rule, acting: Sequence[Acting], words: Callable[[Any], str], remedy: str
 ) -> Outcome:
-    """A finding for each that acts on a joint which has not exactly one freedom; `told` says what acts."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
+    """A finding for each that acts on a joint which has not exactly one freedom; `words` say what acts."""
     findings, unknown = [], []
     for item in acting:
-        state, reason = actuated(context, kinematics, item.joint)
+        state, reason = _single_freedom(context, item.joint)
         if state == "unknown":
             unknown.append(reason)
         elif state == "absent":
             findings.append(
                 rule.finding(
                     [item.joint],
-                    f"the {told(item)} '{item.joint}' has no freedom to act on: {reason}",
+                    f"the {words(item)} '{item.joint}' has no freedom to act on: {reason}",
                     found=reason,
                     intended="a joint with one freedom",
                     declared=item,
@@ -66,20 +62,14 @@ def without_freedom(
     return inconclusive("; ".join(dict.fromkeys(unknown)), findings) if unknown else decided(findings)
 
 
-def _unknown(reason: str) -> tuple[str, str] | None:
-    return ("unknown", reason) if reason else None
-
-
-def loose(context: Context, name: str) -> str:
-    """Where the freedom of a stated joint is carried by loose parts, it exists but nothing can act on it yet: why; else ""."""
-    compared = context.comparisons
-    if not isinstance(compared, tuple):
-        return ""
-    for comparison in compared:
+def loose_carriers(context: Context, name: str) -> str:
+    """Where the freedom of a stated joint is carried by loose parts, it exists but nothing can act on it yet: why;
+    else ""."""
+    for comparison in () if context.lacks("comparisons") else context.comparisons:
         if comparison.intended.name == name and comparison.through and comparison.right_type:
             parts = quoted(comparison.through)
             return (
-                f"joint '{name}' is carried by loose parts between its bodies, beside or through {parts}: fasten what is "
-                "loose to one of them with a [[group]]"
+                f"joint '{name}' is carried by loose parts between its bodies, beside or through {parts}: fasten what "
+                "is loose to one of them with a [[group]]"
             )
     return ""

@@ -8,22 +8,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from kinform.consistency.constants import (
+    COUNTED_TEETH,
+    DEVIATIONS,
+    SCREW_PITCH,
+    UNCERTAIN_RATIO,
+    UNCOUNTED_TEETH,
+)
 from kinform.consistency.context import Context
 from kinform.foundation.words import rate
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Kinematics
 
 __all__ = ["Ratio", "coupled_through", "derived_ratio", "shown_ratio"]
-
-TEETH = 1e-2
-"""Relative: what the ratio of teeth at one pose may be off."""
-COUNTED = 1e-3
-"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
-SCREW = 1e-3
-"""Relative: what the pitch of a screw may be off."""
-MOST = 0.05
-"""Relative uncertainty beyond which a ratio says nothing."""
 
 
 @dataclass(frozen=True)
@@ -35,16 +33,16 @@ class Ratio:
     through: tuple[str, ...]
 
 
-def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> Ratio | str:
+def derived_ratio(context: Context, stated: Stated) -> Ratio | str:
     """What the geometry gives for a stated coupling, or the reason why it gives nothing."""
-    ends = [resolve(context.assembly, kinematics, name) for name in stated.joints]
+    ends = [resolve_joint(context.assembly, context.kinematics, name) for name in stated.joints]
     for end in ends:
         if end.joint is None:
             return end.reason
     first, second = (str(end.joint.name) for end in ends if end.joint is not None)
     if first == second:
         return "both names stand for one joint"
-    chain = _chain(kinematics, first, second)
+    chain = _chain(context.kinematics, first, second)
     if chain is None:
         return "no contact of teeth, cam or screw is found that ties these joints"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
@@ -55,13 +53,12 @@ def derived_ratio(context: Context, kinematics: Kinematics, stated: Stated) -> R
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
-            relative += COUNTED
+            relative += COUNTED_TEETH
             continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
-        known = math.isfinite(coupling.uncertainty)
-        own = 3.0 * coupling.uncertainty / abs(coupling.ratio) if known else 0.0
-        relative += max(own, SCREW if coupling.kind == "screw" else TEETH)
-    if relative > MOST * len(chain):
+        spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
+        relative += max(DEVIATIONS * spread, SCREW_PITCH if coupling.kind == "screw" else UNCOUNTED_TEETH)
+    if relative > UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(context, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
 
@@ -77,13 +74,13 @@ def _slides(context: Context, name: str) -> bool:
     return any(joint.name == name and joint.type == "prismatic" for joint in context.function.joints)
 
 
-def coupled_through(context: Context, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:
+def coupled_through(context: Context, stated: Stated) -> tuple[str, ...]:
     """Names of the joints, teeth, cams or screws, that a stated coupling goes through; none where there are none."""
-    joints = [resolve(context.assembly, kinematics, name).joint for name in stated.joints]
+    joints = [resolve_joint(context.assembly, context.kinematics, name).joint for name in stated.joints]
     names = [str(joint.name) for joint in joints if joint is not None]
     if len(names) < 2 or names[0] == names[1]:
         return ()
-    return tuple(str(coupling.through) for coupling, _ in _chain(kinematics, names[0], names[1]) or [])
+    return tuple(str(coupling.through) for coupling, _ in _chain(context.kinematics, names[0], names[1]) or [])
 
 
 def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupling, bool]] | None:
@@ -123,6 +120,6 @@ def _leads(kinematics: Kinematics) -> list[Coupling]:
             if coupling.through in moved or slides[0] in moved:
                 rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
         ratios = [slide / screw for slide, screw in rates if screw]
-        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW * abs(ratios[0]):
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW_PITCH * abs(ratios[0]):
             out.append(replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0]))
     return out

@@ -14,7 +14,7 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint, Kinematics
 
-__all__ = ["Comparison", "bodies_of", "compare"]
+__all__ = ["Comparison", "bodies_of", "compare_joint"]
 
 
 STATES = ("stated", "one body", "absent", "undecided", "found")
@@ -93,7 +93,7 @@ def bodies_of(assembly: Assembly, kinematics: Kinematics, between: tuple[str, st
     return first, second
 
 
-def compare(
+def compare_joint(
     assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics, intended: IntendedJoint
 ) -> Comparison:
     """The intended joint beside what the geometry of its two bodies, and of loose parts that connect

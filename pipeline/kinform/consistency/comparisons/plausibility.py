@@ -19,25 +19,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.consistency.constants import HUGE, LARGE, MASSIVE, OUTLIER, SMALL, TINY, TINY_ELSE
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
 
 __all__ = ["Doubt", "doubts", "extent"]
-
-
-HUGE = 100.0
-"""Diagonal (m) above which the units are taken to be wrong."""
-LARGE = 20.0
-"""Diagonal (m) above which the units are doubted."""
-MASSIVE = 1000.0
-"""Volume of solid material (m³) above which the units are taken to be wrong."""
-TINY = {"um": 1e-6}
-"""Diagonal (m) below which the units are taken to be wrong, for each unit; 1 mm where not listed."""
-SMALL = 3.0
-"""Below so many times TINY the units are doubted."""
-OUTLIER = 100.0
-"""A part so many times larger than all others together is doubted."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +62,7 @@ def extent(assembly: Assembly) -> float | None:
 
 def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     units = assembly.units
-    tiny = TINY.get(units, 1e-3)
+    tiny = TINY.get(units, TINY_ELSE)
     material = sum(_material(part) for part in assembly.parts)
     found = f"{length(size, units)} across"
 

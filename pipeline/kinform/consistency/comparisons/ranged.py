@@ -7,17 +7,16 @@ from dataclasses import dataclass
 
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome
 from kinform.foundation.words import angle, length, quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 
-__all__ = ["Ranged", "matched", "ranged", "shown"]
+__all__ = ["StatedRange", "matched", "shown", "stated_ranges"]
 
 
 @dataclass(frozen=True, eq=False)
-class Ranged:
+class StatedRange:
     """One stated range: what was found to its sides in the designer's sense, or why nothing was."""
 
     intended: IntendedJoint
@@ -32,49 +31,48 @@ class Ranged:
     """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
 
-def ranged(context: Context) -> list[Ranged]:
+def stated_ranges(context: Context) -> list[StatedRange]:
     """Every intended joint that states a range, sorted by name."""
     joints = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
-    compared = context.comparisons
-    by_name = {} if isinstance(compared, Outcome) else {item.intended.name: item for item in compared}
-    other = compared.reason if isinstance(compared, Outcome) else ""
+    lacking = context.lacks("comparisons")
+    by_name = {} if lacking else {item.intended.name: item for item in context.comparisons}
+    other = lacking.reason if lacking else ""
     return [
         _of_sticks(context, joint)
-        or (_ranged(context, joint, by_name[joint.name]) if by_name else Ranged(joint, reason=other))
+        or (_beside_ends(context, joint, by_name[joint.name]) if by_name else StatedRange(joint, reason=other))
         for joint in joints
     ]
 
 
-def _of_sticks(context: Context, intended: IntendedJoint) -> Ranged | None:
+def _of_sticks(context: Context, intended: IntendedJoint) -> StatedRange | None:
     """A range of which a body has no mesh; it is given where nothing in the assembly could meet."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
+    if context.lacks("kinematics"):
         return None
-    bodies = sorted(set(bodies_of(context.assembly, kinematics, intended.between)))
+    bodies = sorted(set(bodies_of(context.assembly, context.kinematics, intended.between)))
     bare = [name for name in bodies if name not in context.shaped]
     if not bare:
         return None
     given = bare == bodies and len(context.shaped) < 2
-    return Ranged(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given)
+    return StatedRange(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given)
 
 
-def _ranged(context: Context, intended: IntendedJoint, comparison: Comparison) -> Ranged:
+def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparison) -> StatedRange:
     run, match = context.design.simulation, matched(comparison)
     if match is None:
-        return Ranged(intended, reason="no joint of that type was found directly between its parts")
+        return StatedRange(intended, reason="no joint of that type was found directly between its parts")
     joint, sign = match
     if run is None or run.ranges is None:
-        return Ranged(intended, reason="ranges have not been computed: run `kinform simulate`")
-    found = next((item for item in run.ranges if item.joint == joint.name), None)
-    if found is None:
-        return Ranged(intended, reason="no range was computed for it")
-    ends = (found.lower, found.upper) if sign > 0.0 else (found.upper, found.lower)
-    return Ranged(intended, *ends, sign=sign, left_out=found.left_out)
+        return StatedRange(intended, reason="ranges have not been computed: run `kinform simulate`")
+    reach = next((item for item in run.ranges if item.joint == joint.name), None)
+    if reach is None:
+        return StatedRange(intended, reason="no range was computed for it")
+    ends = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
+    return StatedRange(intended, *ends, sign=sign, left_out=reach.left_out)
 
 
 def matched(comparison: Comparison) -> tuple[Joint, float] | None:
-    """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the designer's
-    values run against those of kinform, else 1; None where there is none."""
+    """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the
+    designer's values run against those of kinform, else 1; None where there is none."""
     intended, joint = comparison.intended, comparison.joint
     if not (comparison.right_type or comparison.state == "stated") or joint is None or joint.type != intended.type:
         return None

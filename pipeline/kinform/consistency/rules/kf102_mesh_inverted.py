@@ -12,7 +12,7 @@ Example: a cube of 10 mm with a signed volume of -1000 mm³.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import volume
 
 __all__ = ["RULE"]
@@ -20,9 +20,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Closed meshes of negative volume."""
-    closed = [u for u in context.meshes if u.mesh.health.watertight and u.mesh.health.consistent_winding]
-    if not closed:
-        return skipped("no mesh is closed")
     return decided(
         RULE.finding(
             use.subject,
@@ -32,9 +29,9 @@ def check(context: Context) -> Outcome:
             declared=use.parts[0].source,
             remedy="Flip the facets of the whole mesh and export it again.",
         )
-        for use in closed
+        for use in context.closed_meshes
         if use.mesh.health.volume < 0.0
     )
 
 
-RULE = Rule("KF102", "mesh-inverted", "error", __doc__, check)
+RULE = Rule("KF102", "mesh-inverted", "error", __doc__, check, needs=("closed meshes",))

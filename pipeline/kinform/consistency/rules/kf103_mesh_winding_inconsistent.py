@@ -11,15 +11,13 @@ Example: a plate of which one face was flipped by hand.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
     """Meshes with facets in opposite senses; edges with more than two facets have no sense of their own."""
-    if not context.meshes:
-        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             use.subject,
@@ -34,4 +32,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF103", "mesh-winding-inconsistent", "error", __doc__, check)
+RULE = Rule("KF103", "mesh-winding-inconsistent", "error", __doc__, check, needs=("meshes",))

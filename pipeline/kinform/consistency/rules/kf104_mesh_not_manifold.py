@@ -11,16 +11,13 @@ Example: two cubes in one file that share an edge: the edge has four facets.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
     """Closed, consistently wound meshes whose manifold status is not "NoError"."""
-    closed = [u for u in context.meshes if u.mesh.health.watertight and u.mesh.health.consistent_winding]
-    if not closed:
-        return skipped("no mesh is closed")
     return decided(
         RULE.finding(
             use.subject,
@@ -30,9 +27,9 @@ def check(context: Context) -> Outcome:
             declared=use.parts[0].source,
             remedy="Remove facets that cross or touch others of the same part, and export the mesh again.",
         )
-        for use in closed
+        for use in context.closed_meshes
         if use.mesh.health.manifold_status != "NoError"
     )
 
 
-RULE = Rule("KF104", "mesh-not-manifold", "warning", __doc__, check)
+RULE = Rule("KF104", "mesh-not-manifold", "warning", __doc__, check, needs=("closed meshes",))

@@ -10,7 +10,7 @@ Example: three facets whose corners were rounded to the same point.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import counted, length
 
 __all__ = ["RULE"]
@@ -18,8 +18,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Meshes with facets that collapsed when vertices were welded."""
-    if not context.meshes:
-        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             use.subject,
@@ -36,4 +34,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF105", "mesh-facets-degenerate", "note", __doc__, check)
+RULE = Rule("KF105", "mesh-facets-degenerate", "note", __doc__, check, needs=("meshes",))

@@ -11,7 +11,7 @@ Example: an STL made by concatenating two exports of the same part.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
@@ -19,8 +19,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Meshes with duplicate facets."""
-    if not context.meshes:
-        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             use.subject,
@@ -35,4 +33,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF106", "mesh-facets-duplicate", "warning", __doc__, check)
+RULE = Rule("KF106", "mesh-facets-duplicate", "warning", __doc__, check, needs=("meshes",))

@@ -11,15 +11,13 @@ Example: a bearing exported with rings and balls in one file.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
     """Meshes of more than one shell."""
-    if not context.meshes:
-        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             use.subject,
@@ -34,4 +32,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF107", "mesh-several-shells", "note", __doc__, check)
+RULE = Rule("KF107", "mesh-several-shells", "note", __doc__, check, needs=("meshes",))

@@ -28,10 +28,9 @@ def check(context: Context) -> Outcome:
     if not context.meshes and len(placed) < 2:
         return skipped("no part has a mesh, and fewer than two joints have a point")
     return decided(
-        RULE.finding(
+        RULE.at(doubt.severity).finding(
             doubt.subject,
             doubt.message,
-            severity=doubt.severity,
             found=doubt.found,
             intended=f"a plausible size in {context.units}",
             declared=doubt.source,

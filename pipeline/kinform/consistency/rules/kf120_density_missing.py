@@ -35,10 +35,9 @@ def check(context: Context) -> Outcome:
     demand = "a dynamic simulation needs it" if severity == "error" else "motion is simulated without forces"
     ground = _ground(context)
     return decided(
-        RULE.finding(
+        RULE.at(severity).finding(
             [part.name],
             f"{quoted([part.name])} has no mass ({_lack(part)}): {demand}",
-            severity=severity,
             found=_lack(part),
             intended="a density, or mass with centre of mass and inertia",
             place=part.X_WP[:3, 3],

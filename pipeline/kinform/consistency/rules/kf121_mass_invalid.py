@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.constants import TRIANGLE_ROUNDING
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.foundation.words import mass, number, quoted
@@ -24,16 +25,14 @@ from kinform.model.mass import MassProperties
 
 __all__ = ["RULE"]
 
-SLACK = 1e-9
-"""Relative rounding that the triangle inequality of the moments is allowed (thin discs reach equality)."""
-
 
 def check(context: Context) -> Outcome:
     """Known masses that are impossible, and problems of the mass stage that no other rule explains."""
-    report = context.mass
-    if isinstance(report, Outcome):
+    lacking = context.lacks("mass")
+    if lacking is not None:
         weighed = any(part.density is not None or part.override is not None for part in context.assembly.parts)
-        return report if weighed else skipped("no part has a density or a stated mass")
+        return lacking if weighed else skipped("no part has a density or a stated mass")
+    report = context.mass
     known = [properties for properties in report.parts if properties.mass is not None]
     if not known and not report.problems:
         return skipped("no part has a mass")
@@ -71,9 +70,13 @@ def _impossible(properties: MassProperties) -> str:
         return "the inertia is not a number"
     low, middle, high = sorted(float(m) for m in moments)
     shown = f"principal moments {number(low)}, {number(middle)} and {number(high)} kg·m²"
-    if low < -SLACK * high or high <= 0.0:
+    if low < -TRIANGLE_ROUNDING * high or high <= 0.0:
         return f"{shown}: none may be negative"
-    return f"{shown}: the largest exceeds the sum of the others" if high > (low + middle) * (1.0 + SLACK) else ""
+    return (
+        f"{shown}: the largest exceeds the sum of the others"
+        if high > (low + middle) * (1.0 + TRIANGLE_ROUNDING)
+        else ""
+    )
 
 
 def _explained(part: Part) -> bool:

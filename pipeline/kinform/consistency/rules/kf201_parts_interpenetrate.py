@@ -24,10 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Overlaps that are not mated fits."""
-    contacts = context.contacts
-    if isinstance(contacts, Outcome):
-        return contacts
-    return decided(_finding(context, overlap) for overlap in contacts.interferences if not overlap.mated)
+    return decided(_finding(context, overlap) for overlap in context.contacts.interferences if not overlap.mated)
 
 
 def _finding(context: Context, overlap: Interference) -> Finding:
@@ -35,10 +32,9 @@ def _finding(context: Context, overlap: Interference) -> Finding:
     measured = overlap.volume == overlap.volume
     size = f"{depth} deep" + (f", {volume(overlap.volume, context.units)}" if measured else "")
     relation, severity = _relation(context, overlap.parts)
-    return RULE.finding(
+    return RULE.at(severity).finding(
         overlap.parts,
         f"{quoted(overlap.parts)} overlap by {size}{relation}",
-        severity=severity,
         found=size if measured else f"{size}; volume unknown, a mesh is not closed",
         intended="no overlap",
         place=overlap.place,
@@ -60,4 +56,4 @@ def _relation(context: Context, parts: tuple[str, str]) -> tuple[str, str]:
     return "", "error"
 
 
-RULE = Rule("KF201", "parts-interpenetrate", "error", __doc__, check)
+RULE = Rule("KF201", "parts-interpenetrate", "error", __doc__, check, needs=("contacts",))

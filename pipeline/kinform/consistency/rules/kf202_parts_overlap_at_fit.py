@@ -18,9 +18,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Overlaps that lie at mating surfaces."""
-    contacts = context.contacts
-    if isinstance(contacts, Outcome):
-        return contacts
     return decided(
         RULE.finding(
             overlap.parts,
@@ -31,9 +28,9 @@ def check(context: Context) -> Outcome:
             declared=context.assembly.part(overlap.parts[0]).source,
             remedy="Nothing for a press fit; give parts that shall move a clearance.",
         )
-        for overlap in contacts.interferences
+        for overlap in context.contacts.interferences
         if overlap.mated
     )
 
 
-RULE = Rule("KF202", "parts-overlap-at-fit", "note", __doc__, check)
+RULE = Rule("KF202", "parts-overlap-at-fit", "note", __doc__, check, needs=("contacts",))

@@ -15,10 +15,13 @@ Example: a camera whose bracket was left out hangs 3 mm above its ring.
 
 from __future__ import annotations
 
+import numpy as np
+
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 
@@ -27,12 +30,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Clusters of parts that are not connected with the ground."""
-    if len(context.assembly.parts) < 2:
-        return skipped("the assembly has only one part")
-    contacts = context.contacts
-    if isinstance(contacts, Outcome):
-        return contacts
-    clusters = _clusters(context.assembly, contacts)
+    clusters = _clusters(context.assembly, context.contacts)
     home = _home(context, clusters)
     findings = []
     for cluster in clusters:
@@ -100,13 +98,12 @@ def _intended(assembly: Assembly, cluster: tuple[str, ...]) -> bool:
     return any(first != second for first, second in ends)
 
 
-def _middle(assembly: Assembly, name: str) -> tuple[float, float, float]:
+def _middle(assembly: Assembly, name: str) -> Array:
     """Middle of the part's box in the world (m)."""
     part = assembly.part(name)
     assert part.mesh is not None
     low, high = part.mesh.placed_box(part.X_WP)
-    x, y, z = (float(v) for v in 0.5 * (low + high))
-    return (x, y, z)
+    return np.asarray(0.5 * (low + high))
 
 
-RULE = Rule("KF203", "part-touches-nothing", "error", __doc__, check)
+RULE = Rule("KF203", "part-touches-nothing", "error", __doc__, check, needs=("several parts", "contacts"))

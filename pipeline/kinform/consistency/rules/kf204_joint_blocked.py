@@ -15,7 +15,7 @@ Example: an elbow of which 6 % of the contact area, beside the journal, forbids 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
@@ -25,12 +25,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Joints whose status is blocked."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    if not context.meshes:
-        return skipped("no part has a mesh")
-    return decided(_finding(context, joint) for joint in kinematics.joints if joint.status == "blocked")
+    return decided(_finding(context, joint) for joint in context.kinematics.joints if joint.status == "blocked")
 
 
 def _finding(context: Context, joint: Joint) -> Finding:
@@ -62,4 +57,4 @@ def _joins(context: Context, joint: Joint, between: tuple[str, str]) -> bool:
     return {context.body(name) for name in between} == set(joint.bodies)
 
 
-RULE = Rule("KF204", "joint-blocked", "warning", __doc__, check)
+RULE = Rule("KF204", "joint-blocked", "warning", __doc__, check, needs=("kinematics", "meshes"))

@@ -11,7 +11,7 @@ Example: a servo horn that lies flat on a bracket: the common centre of their ri
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import listed, quoted
 
 __all__ = ["RULE"]
@@ -22,11 +22,6 @@ STATED = frozenset({"assumption", "function"})
 
 def check(context: Context) -> Outcome:
     """Joints whose status is inferred, except from statements."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    if not context.meshes:
-        return skipped("no part has a mesh")
     return decided(
         RULE.finding(
             [joint.name],
@@ -37,9 +32,9 @@ def check(context: Context) -> Outcome:
             place=context.place_of(joint),
             remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
         )
-        for joint in kinematics.joints
+        for joint in context.kinematics.joints
         if joint.status == "inferred" and not STATED.intersection(joint.evidence)
     )
 
 
-RULE = Rule("KF205", "joint-inferred", "note", __doc__, check)
+RULE = Rule("KF205", "joint-inferred", "note", __doc__, check, needs=("kinematics", "meshes"))

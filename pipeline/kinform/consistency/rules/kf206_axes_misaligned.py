@@ -13,7 +13,7 @@ Example: a shaft tilted by 0.15° in a bearing of 40 mm length with 0.02 mm of c
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import angle, length, listed, quoted
 
 __all__ = ["RULE"]
@@ -21,13 +21,8 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Joints whose axes were mated beyond what the clearance allows."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    if not context.meshes:
-        return skipped("no part has a mesh")
     findings = []
-    for name, tilt, offset in kinematics.misaligned:
+    for name, tilt, offset in context.kinematics.misaligned:
         joint = context.joint(name)
         parts = []
         if tilt > 0.0:
@@ -41,11 +36,11 @@ def check(context: Context) -> Outcome:
                 f"the axes of the two sides of {quoted([name])} differ by {excess} more than the clearance allows",
                 found=excess,
                 intended="axes that agree within the clearance",
-                place=context.place_of(joint) if joint is not None else None,
+                place=context.place_of(joint),
                 remedy="Make both sides coaxial, or give the joint more clearance.",
             )
         )
     return decided(findings)
 
 
-RULE = Rule("KF206", "axes-misaligned", "warning", __doc__, check)
+RULE = Rule("KF206", "axes-misaligned", "warning", __doc__, check, needs=("kinematics", "meshes"))

@@ -10,7 +10,7 @@ Example: a horn assumed fixed to a bracket because they are screwed together at 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import quoted
 
 __all__ = ["RULE"]
@@ -18,8 +18,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Every assumption of the manifest."""
-    if not context.assembly.assumptions:
-        return skipped("the manifest assumes nothing")
     return decided(
         RULE.finding(
             assumption.between,
@@ -36,4 +34,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF207", "joint-assumed", "note", __doc__, check)
+RULE = Rule("KF207", "joint-assumed", "note", __doc__, check, needs=("stated assumptions",))

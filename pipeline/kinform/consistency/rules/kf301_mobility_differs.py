@@ -17,8 +17,9 @@ Example: a gimbal that shall turn about two axes has three freedoms, because the
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import counted, quoted
+from kinform.model.assembly import Source
 from kinform.model.kinematics import Kinematics
 
 __all__ = ["RULE"]
@@ -26,25 +27,20 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Stated against effective mobility."""
-    intended = context.function.mobility
-    if intended is None:
-        return skipped("the function states no mobility")
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
+    intended, kinematics = context.function.mobility or 0, context.kinematics
     ambiguous = [joint.name for joint in kinematics.joints if joint.status == "ambiguous"]
     if ambiguous:
         return inconclusive(f"the mobility depends on joints that are ambiguous: {quoted(ambiguous)}")
     mobility = kinematics.mobility
     if mobility.effective == intended:
         return decided(reason=f"{counted(intended, 'freedom')}, as intended")
+    whole, line = context.assembly.source, context.function.mobility_line
     finding = RULE.finding(
         (context.assembly.name,),
         f"the assembly has {counted(mobility.effective, 'freedom')}, intended are {intended}{_details(kinematics)}",
         found=str(mobility.effective),
         intended=str(intended),
-        declared=context.assembly.source,
-        line=context.function.mobility_line,
+        declared=Source(whole.file, whole.line if line is None else line),
         remedy="See the freedoms with `kinform show F.h5 mobility`; correct the joints, or `mobility`.",
     )
     return decided([finding])
@@ -64,4 +60,4 @@ def _details(kinematics: Kinematics) -> str:
     return f" ({'; '.join(notes)})" if notes else ""
 
 
-RULE = Rule("KF301", "mobility-differs", "error", __doc__, check)
+RULE = Rule("KF301", "mobility-differs", "error", __doc__, check, needs=("stated mobility", "kinematics"))

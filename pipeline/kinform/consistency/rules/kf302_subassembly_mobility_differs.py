@@ -11,7 +11,7 @@ Example: a motor with `mobility = 1` whose rotor is fused to its stator by a wro
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import mobility_within
 
@@ -21,11 +21,7 @@ __all__ = ["RULE"]
 def check(context: Context) -> Outcome:
     """Stated against derived mobility of each sub-assembly."""
     stated = [s for s in context.assembly.subassemblies if s.mobility is not None]
-    if not stated:
-        return skipped("no sub-assembly states a mobility")
     kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
     findings, unknown = [], []
     for sub in stated:
         parts = tuple(p.name for p in context.assembly.parts if p.name.startswith(f"{sub.name}/"))
@@ -34,14 +30,14 @@ def check(context: Context) -> Outcome:
         if any(joint.status == "ambiguous" for joint in inside):
             unknown.append(sub.name)
             continue
-        found = mobility_within(kinematics, parts)
-        if found != sub.mobility:
+        mobility = mobility_within(kinematics, parts)
+        if mobility != sub.mobility:
             findings.append(
                 RULE.finding(
                     [sub.name],
-                    f"the sub-assembly {quoted([sub.name])} has {counted(found, 'freedom')} of its own, "
+                    f"the sub-assembly {quoted([sub.name])} has {counted(mobility, 'freedom')} of its own, "
                     f"intended are {sub.mobility}",
-                    found=str(found),
+                    found=str(mobility),
                     intended=str(sub.mobility),
                     declared=sub.source,
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
@@ -52,4 +48,11 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-RULE = Rule("KF302", "subassembly-mobility-differs", "error", __doc__, check)
+RULE = Rule(
+    "KF302",
+    "subassembly-mobility-differs",
+    "error",
+    __doc__,
+    check,
+    needs=("stated mobility of sub-assemblies", "kinematics"),
+)

@@ -24,10 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Redundancy of the whole assembly."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    redundant = kinematics.mobility.redundant
+    redundant = context.kinematics.mobility.redundant
     if redundant <= 0:
         return decided()
     finding = RULE.finding(
@@ -42,4 +39,4 @@ def check(context: Context) -> Outcome:
     return decided([finding])
 
 
-RULE = Rule("KF303", "constraints-redundant", "note", __doc__, check)
+RULE = Rule("KF303", "constraints-redundant", "note", __doc__, check, needs=("kinematics",))

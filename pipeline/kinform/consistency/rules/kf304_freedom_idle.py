@@ -22,8 +22,6 @@ __all__ = ["RULE"]
 def check(context: Context) -> Outcome:
     """Idle bodies."""
     kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
     bodies = {body.name: body for body in kinematics.bodies}
     return decided(
         RULE.finding(
@@ -38,4 +36,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF304", "freedom-idle", "note", __doc__, check)
+RULE = Rule("KF304", "freedom-idle", "note", __doc__, check, needs=("kinematics",))

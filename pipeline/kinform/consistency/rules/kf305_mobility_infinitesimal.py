@@ -26,10 +26,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Freedoms that exist at first order only, block by block."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    mobility = kinematics.mobility
+    mobility = context.kinematics.mobility
     findings = []
     for certificate in mobility.certificates:
         if not certificate.infinitesimal:
@@ -53,4 +50,4 @@ def check(context: Context) -> Outcome:
     return decided(findings, "" if findings else mobility.finite_reason)
 
 
-RULE = Rule("KF305", "mobility-infinitesimal", "warning", __doc__, check)
+RULE = Rule("KF305", "mobility-infinitesimal", "warning", __doc__, check, needs=("kinematics",))

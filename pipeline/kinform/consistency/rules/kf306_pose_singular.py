@@ -23,11 +23,8 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Blocks whose pose has more freedoms than the branches that lead out of it."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
     findings = []
-    for certificate in kinematics.mobility.certificates:
+    for certificate in context.kinematics.mobility.certificates:
         if not certificate.singular:
             continue
         ways = certificate.branches
@@ -36,7 +33,6 @@ def check(context: Context) -> Outcome:
             if len(ways) > 1
             else f"beside it {ways[0]}"
         )
-        first = context.joint(certificate.joints[0])
         findings.append(
             RULE.finding(
                 certificate.joints,
@@ -44,7 +40,7 @@ def check(context: Context) -> Outcome:
                 f"{branches}",
                 found="bifurcation" if len(ways) > 1 else "singular pose",
                 intended="a regular pose",
-                place=context.place_of(first) if first is not None else None,
+                place=context.place_of(context.joint(certificate.joints[0])),
                 declared=context.assembly.source,
                 remedy="Draw the assembly in another pose; guide the device where it passes this one.",
             )
@@ -52,4 +48,4 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-RULE = Rule("KF306", "pose-singular", "warning", __doc__, check)
+RULE = Rule("KF306", "pose-singular", "warning", __doc__, check, needs=("kinematics",))

@@ -23,9 +23,6 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Intended joints without any contact."""
-    compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return compared
     return decided(
         (
             RULE.finding(
@@ -37,10 +34,10 @@ def check(context: Context) -> Outcome:
                 declared=c.intended,
                 remedy="Check poses and clearances, add the part that carries the joint, or correct `between`.",
             )
-            for c in compared
+            for c in context.comparisons
             if c.state == "absent"
         ),
-        reason=f"{counted(len(compared), 'joint')} compared",
+        reason=f"{counted(len(context.comparisons), 'joint')} compared",
     )
 
 
@@ -60,4 +57,4 @@ def _named(body: Body) -> str:
     return quoted([body.name])
 
 
-RULE = Rule("KF401", "joint-missing", "error", __doc__, check)
+RULE = Rule("KF401", "joint-missing", "error", __doc__, check, needs=("comparisons",))

@@ -31,12 +31,9 @@ FREEDOMS = {
 
 def check(context: Context) -> Outcome:
     """Intended joints of which another type was found."""
-    compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return compared
-    present = [c for c in compared if c.state in ("found", "one body")]
+    present = [c for c in context.comparisons if c.state in ("found", "one body")]
     findings = [_finding(context, c) for c in present if not c.right_type]
-    unknown = [f"'{c.intended.name}': {c.reason}" for c in compared if c.state == "undecided"]
+    unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
     if unknown:
         return inconclusive("; ".join(unknown), findings)
     return decided(findings, reason=f"{counted(len(present), 'joint')} compared")
@@ -83,4 +80,4 @@ def _remedy(c: Comparison) -> str:
     return "See the evidence with `kinform show F.h5 joints`; correct the mating surfaces, or the intended type."
 
 
-RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check)
+RULE = Rule("KF402", "joint-wrong-type", "error", __doc__, check, needs=("comparisons",))

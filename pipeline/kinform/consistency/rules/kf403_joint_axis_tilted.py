@@ -25,12 +25,9 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Angles between intended and found axes."""
-    compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return compared
     limit = context.assembly.tolerances.alignment
     findings, unknown, count = [], [], 0
-    for c in compared:
+    for c in context.comparisons:
         off = c.angle
         if off is None:
             continue
@@ -58,4 +55,4 @@ def _finding(c: Comparison, off: float, limit: float) -> Finding:
     )
 
 
-RULE = Rule("KF403", "joint-axis-tilted", "error", __doc__, check)
+RULE = Rule("KF403", "joint-axis-tilted", "error", __doc__, check, needs=("comparisons",))

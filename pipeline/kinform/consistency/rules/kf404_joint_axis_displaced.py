@@ -25,12 +25,9 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Distances between intended and found axes or centres."""
-    compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return compared
     units = context.units
     findings, unknown, count = [], [], 0
-    for c in compared:
+    for c in context.comparisons:
         off = c.offset
         if off is None:
             continue
@@ -61,4 +58,4 @@ def _finding(c: Comparison, off: float, units: str) -> Finding:
     )
 
 
-RULE = Rule("KF404", "joint-axis-displaced", "error", __doc__, check)
+RULE = Rule("KF404", "joint-axis-displaced", "error", __doc__, check, needs=("comparisons",))

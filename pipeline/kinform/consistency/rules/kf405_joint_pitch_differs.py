@@ -11,28 +11,23 @@ Example: an M6 lead screw with a pitch of 1 mm where 1.25 mm is intended.
 
 from __future__ import annotations
 
+from kinform.consistency.constants import SAME_PITCH
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.foundation.words import length
 
 __all__ = ["RULE"]
 
-ALLOWED = 1e-3
-"""Relative difference of pitches that counts as equal."""
-
 
 def check(context: Context) -> Outcome:
     """Pitches of screw joints."""
-    compared = context.comparisons
-    if isinstance(compared, Outcome):
-        return compared
     findings, count = [], 0
-    for c in compared:
+    for c in context.comparisons:
         wanted = c.intended.pitch
         if not c.right_type or c.type != "screw" or wanted is None or c.pitch is None:
             continue
         count += 1
-        if abs(c.pitch - wanted) > ALLOWED * abs(wanted):
+        if abs(c.pitch - wanted) > SAME_PITCH * abs(wanted):
             found, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
             findings.append(
                 RULE.finding(
@@ -48,4 +43,4 @@ def check(context: Context) -> Outcome:
     return decided(findings) if count else skipped("no screw joint to compare")
 
 
-RULE = Rule("KF405", "joint-pitch-differs", "error", __doc__, check)
+RULE = Rule("KF405", "joint-pitch-differs", "error", __doc__, check, needs=("comparisons",))

@@ -13,7 +13,7 @@ Example: a cable duct on the arm fits around the base like a bearing.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.unintended import unintended
+from kinform.consistency.comparisons.unintended import unintended_joints
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import direction, quoted
@@ -25,9 +25,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Lower pairs, other than planar, between bodies of the function that no intended joint joins."""
-    joints = unintended(context)
-    if isinstance(joints, Outcome):
-        return joints
+    joints = unintended_joints(context)
     findings = [_finding(context, joint) for joint in joints if joint.type not in ("planar", "general")]
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
     if unknown:
@@ -48,4 +46,4 @@ def _finding(context: Context, joint: Joint) -> Finding:
     )
 
 
-RULE = Rule("KF406", "joint-unintended", "error", __doc__, check)
+RULE = Rule("KF406", "joint-unintended", "error", __doc__, check, needs=("stated joints", "kinematics"))

@@ -12,7 +12,7 @@ Example: the side of a link slides along the base.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.unintended import unintended
+from kinform.consistency.comparisons.unintended import unintended_joints
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import area, counted, quoted
@@ -24,9 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Planar and general contact between bodies of the function that no intended joint joins."""
-    joints = unintended(context)
-    if isinstance(joints, Outcome):
-        return joints
+    joints = unintended_joints(context)
     touching = [j for j in joints if j.type in ("planar", "general") and j.status != "ambiguous"]
     return decided(_finding(context, joint) for joint in touching)
 
@@ -46,4 +44,4 @@ def _finding(context: Context, joint: Joint) -> Finding:
     )
 
 
-RULE = Rule("KF407", "contact-unintended", "warning", __doc__, check)
+RULE = Rule("KF407", "contact-unintended", "warning", __doc__, check, needs=("stated joints", "kinematics"))

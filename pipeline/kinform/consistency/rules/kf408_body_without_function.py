@@ -12,7 +12,7 @@ Example: a cover that was added to the assembly, and not to the function.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
@@ -20,11 +20,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Bodies that no intended joint names."""
-    if not context.function.joints:
-        return skipped("the function states no joint")
     kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
     return decided(
         RULE.finding(
             [body.name],
@@ -41,4 +37,4 @@ def check(context: Context) -> Outcome:
     )
 
 
-RULE = Rule("KF408", "body-without-function", "note", __doc__, check)
+RULE = Rule("KF408", "body-without-function", "note", __doc__, check, needs=("stated joints", "kinematics"))

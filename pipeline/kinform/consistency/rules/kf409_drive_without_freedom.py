@@ -13,18 +13,15 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.actuated import without_freedom
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, skipped
+from kinform.consistency.rule import Outcome, Rule
 
 __all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:
     """The freedom of every drive."""
-    drives = context.function.drives
-    if not drives:
-        return skipped("the function states no drive")
     remedy = "Correct `joint` of the drive, or the geometry of the joint."
-    return without_freedom(context, RULE, drives, lambda drive: f"{drive.kind} drive on", remedy)
+    return without_freedom(context, RULE, context.function.drives, lambda drive: f"{drive.kind} drive on", remedy)
 
 
-RULE = Rule("KF409", "drive-without-freedom", "error", __doc__, check)
+RULE = Rule("KF409", "drive-without-freedom", "error", __doc__, check, needs=("stated drives", "kinematics"))

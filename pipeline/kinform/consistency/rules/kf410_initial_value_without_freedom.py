@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.actuated import without_freedom
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, skipped
+from kinform.consistency.rule import Outcome, Rule
 
 __all__ = ["RULE"]
 
@@ -21,10 +21,11 @@ __all__ = ["RULE"]
 def check(context: Context) -> Outcome:
     """The freedom of every initial value."""
     request = context.assembly.simulation
-    if request is None or not request.initial:
-        return skipped("no initial value is stated")
+    initial = () if request is None else request.initial
     remedy = "Correct the name in [simulation.initial], or the geometry of the joint."
-    return without_freedom(context, RULE, request.initial, lambda _: "initial value of", remedy)
+    return without_freedom(context, RULE, initial, lambda _: "initial value of", remedy)
 
 
-RULE = Rule("KF410", "initial-value-without-freedom", "error", __doc__, check)
+RULE = Rule(
+    "KF410", "initial-value-without-freedom", "error", __doc__, check, needs=("stated initial values", "kinematics")
+)

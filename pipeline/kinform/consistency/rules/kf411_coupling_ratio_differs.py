@@ -25,31 +25,27 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Every coupling that can be derived."""
-    couplings = context.function.couplings
-    if not couplings:
-        return skipped("the function states no coupling")
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
     findings, count = [], 0
-    for coupling in couplings:
-        found = derived_ratio(context, kinematics, coupling)
-        if isinstance(found, str):
+    for coupling in context.function.couplings:
+        derived = derived_ratio(context, coupling)
+        if isinstance(derived, str):
             continue
         count += 1
-        if abs(found.value - coupling.ratio) > found.allowed:
-            has, wanted = (shown_ratio(context, coupling, ratio) for ratio in (found.value, coupling.ratio))
+        if abs(derived.value - coupling.ratio) > derived.allowed:
+            has, wanted = (shown_ratio(context, coupling, ratio) for ratio in (derived.value, coupling.ratio))
             findings.append(
                 RULE.finding(
                     coupling.joints,
-                    f"{quoted(coupling.joints)} are coupled with the {has} through {quoted(found.through)}, intended is {wanted}",
+                    f"{quoted(coupling.joints)} are coupled with the {has} through {quoted(derived.through)}, "
+                    f"intended is {wanted}",
                     found=has,
                     intended=wanted,
                     declared=coupling,
-                    remedy="Correct the teeth or the pitch, or `ratio`: value of the first for one of the second; mind the sign.",
+                    remedy="Correct the teeth or the pitch, or `ratio`: value of the first for one of the second; "
+                    "mind the sign.",
                 )
             )
     return decided(findings) if count else skipped("no coupling can be compared")
 
 
-RULE = Rule("KF411", "coupling-ratio-differs", "error", __doc__, check)
+RULE = Rule("KF411", "coupling-ratio-differs", "error", __doc__, check, needs=("stated couplings", "kinematics"))

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import math
 
-from kinform.consistency.comparisons.ranged import Ranged, ranged, shown
+from kinform.consistency.comparisons.ranged import StatedRange, shown, stated_ranges
+from kinform.consistency.constants import SHORT_SLIDE, SHORT_TURN
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.foundation.words import quoted
@@ -23,22 +24,19 @@ from kinform.model.findings import Finding
 
 __all__ = ["RULE"]
 
-ANGLE = math.radians(0.02)
-"""rad by which a turn may fall short: a stop on facets is not where it is on the surface."""
-SHARE = 1e-3
-"""Share of a stated length by which a slide may fall short."""
-
 
 def check(context: Context) -> Outcome:
     """Both sides of every stated range."""
-    known = [item for item in ranged(context) if not item.reason]
+    known = [item for item in stated_ranges(context) if not item.reason]
     if not known:
         return skipped("no range to compare")
     findings = []
     for item in known:
         lower, upper = item.intended.range or (-math.inf, math.inf)
         allowed = (
-            SHARE * (upper - lower) if item.intended.type == "prismatic" and math.isfinite(upper - lower) else ANGLE
+            SHORT_SLIDE * (upper - lower)
+            if item.intended.type == "prismatic" and math.isfinite(upper - lower)
+            else SHORT_TURN
         )
         for side, stated, end, toward in (("lower", lower, item.lower, -1.0), ("upper", upper, item.upper, 1.0)):
             if end is None or end.value is None or end.status != "found":
@@ -49,7 +47,7 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-def _finding(context: Context, item: Ranged, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
+def _finding(context: Context, item: StatedRange, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
     joint = item.intended
     found, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
     by = f"{quoted(end.parts)} meet" if end.parts else end.reason

@@ -17,10 +17,11 @@ import math
 
 import numpy as np
 
-from kinform.consistency.comparisons.peaks import coarse
+from kinform.consistency.comparisons.limits import coarse
 from kinform.consistency.comparisons.ranged import matched, shown
+from kinform.consistency.constants import BEYOND
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import number, quoted, telling
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
@@ -29,26 +30,15 @@ from kinform.model.simulation import Simulation
 
 __all__ = ["RULE"]
 
-SHARE = 1e-6
-"""Share of the range by which a motion may pass its end: a drive to just there is no finding."""
-
 
 def check(context: Context) -> Outcome:
     """Both sides of every stated range beside the run."""
     stated = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
-    if not stated:
-        return skipped("no range is stated")
     run = context.simulation
-    if isinstance(run, Outcome):
-        return run
-    if len(run.time) < 2:
-        return skipped("nothing moved")
-    if isinstance(context.comparisons, Outcome):
-        return context.comparisons
-    found = {item.intended.name: matched(item) for item in context.comparisons}
+    joints = {item.intended.name: matched(item) for item in context.comparisons}
     findings, unknown = [], []
     for intended in stated:
-        match = found[intended.name]
+        match = joints[intended.name]
         if match is None or match[0].name not in run.joint_names:
             unknown.append(intended.name)
             continue
@@ -67,7 +57,7 @@ def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: J
     """A finding for each side that the motion passes."""
     values = sign * run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)])]
     lower, upper = intended.range or (-math.inf, math.inf)
-    allowed = SHARE * (upper - lower) if math.isfinite(upper - lower) else SHARE
+    allowed = BEYOND * (upper - lower) if math.isfinite(upper - lower) else BEYOND
     findings = []
     for side, end, toward, k in (
         ("lower", lower, -1.0, int(values.argmin())),
@@ -92,4 +82,4 @@ def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: J
     return findings
 
 
-RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check)
+RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check, needs=("stated ranges", "motion", "comparisons"))

@@ -20,55 +20,53 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinform.consistency.comparisons.plausibility import extent
+from kinform.consistency.constants import REACHED_ANGLE, REACHED_SHARE, SAMPLED_FREEDOMS
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, met, requirement_rule, stated_as, undecided, violated
-from kinform.consistency.rule import Outcome
+from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, stated_as, undecided, violated
 from kinform.foundation.words import angle, counted, direction, length, place, quoted
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.function.configurations import Chain, chain_between
-from kinform.function.coverage import cover
+from kinform.function.coverage import Coverage, cover
 from kinform.function.regions import Targets, targets_of
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import Reach
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
-NEAR = 1e-3
-SAMPLED = 2
-"""Freedoms of closed loops up to which sampling is dense enough for a "no"."""
-NEAR_ANGLE = math.radians(0.1)
+OTHERWISE = "Check it by other means, or require `follow` of a simulated motion."
 REMEDY = "Widen a range, lengthen a link, or move the base."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Reach) -> Answer:
     """The targets of the region that are not reached."""
-    values = requirement.values
-    pointing = "direction" in values
-    if pointing == ("point" in values):
+    pointing = requirement.direction is not None
+    carried = requirement.direction if pointing else requirement.point
+    if carried is None or (pointing and requirement.point is not None):
         return undecided("it needs either a point or a direction", "State one of them.")
-    targets = targets_of(values["region"], direction=pointing)
+    targets = targets_of(requirement.region, direction=pointing)
     if isinstance(targets, str):
         return undecided(targets, "Correct the requirement.")
-    chain = _chain(context, values["part"])
+    chain = _chain(context, requirement.part)
     if isinstance(chain, Answer):
         return chain
-    body = context.body(values["part"]) or ""
+    body = context.body(requirement.part) or ""
     if not chain.looped and not _finite(chain):
         return undecided(_endless(context, chain), "State the `range` of its [[function.joint]].")
-    near = values.get("angle_tolerance" if pointing else "tolerance")
+    near = requirement.angle_tolerance if pointing else requirement.tolerance
     if near is None:
-        near = NEAR_ANGLE if pointing else NEAR * (extent(context.assembly) or 1.0)
-    carried = np.array(values["direction" if pointing else "point"])
-    found = cover(chain, body, carried, targets.values, directions=pointing, near=near)
-    missed = np.flatnonzero(~(found.distance <= near))
-    if len(missed) and chain.looped and chain.freedoms > SAMPLED:
+        near = REACHED_ANGLE if pointing else REACHED_SHARE * (extent(context.assembly) or 1.0)
+    coverage = cover(chain, body, carried, targets.values, directions=pointing, near=near)
+    missed = np.flatnonzero(~(coverage.distance <= near))
+    if len(missed) and chain.looped and chain.freedoms > SAMPLED_FREEDOMS:
         return undecided(
             f"{len(missed)} of {len(targets.values)} places were not reached, but {chain.freedoms} freedoms in closed "
-            "loops are too many to be sampled densely", "Check it by other means, or require `follow` of a simulated motion.",
-        )  # fmt: skip
+            "loops are too many to be sampled densely",
+            OTHERWISE,
+        )
     if len(missed):
-        return _missed(context, targets, found.distance, missed, near, found.samples)
+        return _missed(context, targets, coverage, missed, near)
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
     unknown = [stated_as(context, name)[0] for name in chain.undetermined(body)]
     if unknown:
@@ -79,29 +77,26 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     tied = _tied(context, chain)
     if tied:
         return undecided(
-            f"{text}, but only if {quoted(tied)} move without each other: their coupling is stated and no geometry shows it",
-            "Check it by other means, or require `follow` of a simulated motion.",
+            f"{text}, but only if {quoted(tied)} move without each other: their coupling is stated and no geometry "
+            "shows it",
+            OTHERWISE,
         )
     return met(text)
 
 
 def _tied(context: Context, chain: Chain) -> tuple[str, ...]:
     """Names of stated joints of the chain that a stated coupling ties, where no contact of the chain does."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return ()
     moving = {coordinate.joint for coordinate in chain.coordinates}
     for coupling in context.function.couplings:
-        ends = [resolve(context.assembly, kinematics, name).joint for name in coupling.joints]
+        ends = [resolve_joint(context.assembly, context.kinematics, name).joint for name in coupling.joints]
         if any(joint is not None and joint.name in moving for joint in ends):
             return coupling.joints
     return ()
 
 
 def _chain(context: Context, part: str) -> Chain | Answer:
+    """The joints between the ground and the part."""
     kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return undecided(kinematics.reason, "Run `kinform joints`.")
     body = kinematics.body_of(context.assembly.parts_of(part)[0])
     ground = next((b.name for b in kinematics.bodies if b.ground), None)
     if ground is None or body.ground:
@@ -126,10 +121,9 @@ def _bound(context: Context, targets: Targets) -> str:
     return f"; between them holes of up to {size} in radius can be missed"
 
 
-def _missed(
-    context: Context, targets: Targets, distance: np.ndarray, missed: np.ndarray, near: float, samples: int
-) -> Answer:
-    units = context.units
+def _missed(context: Context, targets: Targets, coverage: Coverage, missed: NDArray[np.intp], near: float) -> Answer:
+    """The requirement is violated; `missed` are the targets that are farther than `near` (m or rad) from all poses."""
+    units, distance = context.units, coverage.distance
     worst = int(missed[np.argmax(distance[missed])])
     aim = targets.values[worst]
     shown = direction(np.round(aim, 4)) if targets.directions else place(aim, units)
@@ -137,7 +131,7 @@ def _missed(
     share = f"{len(missed)} of {len(targets.values)}"
     return violated(
         f"{share} places of the region are not reached; the nearest to {shown} is {size(float(distance[worst]))} off, "
-        f"found from {samples} sampled configurations",
+        f"found from {coverage.samples} sampled configurations",
         found=f"{share} not reached, {size(float(distance[worst]))} off at most",
         intended=f"all, within {size(near)}",
         place=None if targets.directions else aim,
@@ -145,4 +139,4 @@ def _missed(
     )
 
 
-RULE = requirement_rule("KF421", "region-not-reached", "reach", __doc__, judge)
+RULE = requirement_rule("KF421", "region-not-reached", Reach, __doc__, judge, JOINTS)

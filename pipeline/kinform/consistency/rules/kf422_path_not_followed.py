@@ -13,72 +13,69 @@ Example: `kind = "follow"` of a coupler point whose crank is 0.5 mm too short.
 
 from __future__ import annotations
 
-import numpy as np
-
+from kinform.consistency.constants import SAME_TIME
 from kinform.consistency.context import Context
 from kinform.consistency.requirements import Answer, met, requirement_rule, simulated, undecided, violated
 from kinform.foundation.words import angle, length, number, telling
 from kinform.function.paths import Deviation, deviation
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import Follow
+from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 REMEDY = "Correct the drives or the geometry, or the path."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Follow) -> Answer:
     """The greatest deviation beside the tolerance."""
-    values = requirement.values
     simulation = simulated(context)
     if isinstance(simulation, Answer):
         return simulation
-    body = context.body(values["part"])
+    body = context.body(requirement.part)
     if body is None or body not in simulation.body_names:
-        return undecided(f"the simulation does not have '{values['part']}'", "See KF501.")
-    path = np.array(values.get("rows", []))
-    if path.ndim != 2 or len(path) < 2:
+        return undecided(f"the simulation does not have '{requirement.part}'", "See KF501.")
+    path = requirement.rows
+    if len(path) < 2:
         return undecided("the path has no rows", "Give a CSV file of time, x, y, z.")
-    if values.get("angle_tolerance") is not None and path.shape[1] != 8:
-        return undecided(
-            "angle_tolerance is stated, but the path has no orientation", "Add qw, qx, qy, qz to its rows."
-        )
-    early = path[:, 0] <= simulation.time[-1] * (1.0 + 1e-9)
-    found = _deviation(simulation, body, values["point"], path[early])
-    if found is not None and (worse := _violation(context, requirement, found)) is not None:
-        return worse
-    if not early.all() or path[0, 0] < 0.0:
+    if requirement.angle_tolerance is not None and path.shape[1] != 8:
+        unknown = "angle_tolerance is stated, but the path has no orientation"
+        return undecided(unknown, "Add qw, qx, qy, qz to its rows.")
+    early = path[:, 0] <= simulation.time[-1] * (1.0 + SAME_TIME)
+    greatest = _deviation(simulation, body, requirement.point, path[early])
+    violation = None if greatest is None else _violation(context, requirement, greatest)
+    if violation is not None:
+        return violation
+    if greatest is None or not early.all() or path[0, 0] < 0.0:
         return undecided(
             f"the simulation ends at t = {number(float(simulation.time[-1]))} s, the path at "
             f"{number(float(path[-1, 0]))} s", "Simulate as long as the path takes.",
         )  # fmt: skip
-    assert found is not None
-    text = f"the greatest distance from the path is {length(found.distance, context.units)}"
-    if found.distance + found.error > values["tolerance"]:
-        return undecided(
-            f"{text}, give or take {length(found.error, context.units)} between output times",
-            "Simulate with a shorter step.",
-        )
-    return met(f"{text}, at t = {number(found.time)} s")
+    text = f"the greatest distance from the path is {length(greatest.distance, context.units)}"
+    if greatest.distance + greatest.error > requirement.tolerance:
+        doubt = f"{text}, give or take {length(greatest.error, context.units)} between output times"
+        return undecided(doubt, "Simulate with a shorter step.")
+    return met(f"{text}, at t = {number(greatest.time)} s")
 
 
-def _deviation(simulation: Simulation, body: str, point: list[float], path: np.ndarray) -> Deviation | None:
+def _deviation(simulation: Simulation, body: str, point: Array, path: Array) -> Deviation | None:
     if len(path) < 2:
         return None
     b = simulation.body_names.index(body)
-    return deviation(simulation.time, simulation.p_WB[:, b], simulation.q_WB[:, b], np.array(point), path)
+    return deviation(simulation.time, simulation.p_WB[:, b], simulation.q_WB[:, b], point, path)
 
 
-def _violation(context: Context, requirement: Requirement, found: Deviation) -> Answer | None:
+def _violation(context: Context, requirement: Follow, found: Deviation) -> Answer | None:
     """What is certainly outside of the tolerances."""
-    values, units = requirement.values, context.units
-    if found.distance - found.error > values["tolerance"]:
-        shown = telling(lambda value, digits: length(value, units, digits), found.distance, values["tolerance"])
+    units = context.units
+    if found.distance - found.error > requirement.tolerance:
+        shown = telling(lambda value, digits: length(value, units, digits), found.distance, requirement.tolerance)
         return violated(
             f"the point is {shown(found.distance)} from the path at t = {number(found.time)} s",
-            found=shown(found.distance), intended=f"within {shown(values['tolerance'])}", place=found.place, remedy=REMEDY,
+            found=shown(found.distance), intended=f"within {shown(requirement.tolerance)}",
+            place=found.place, remedy=REMEDY,
         )  # fmt: skip
-    wanted = values.get("angle_tolerance")
+    wanted = requirement.angle_tolerance
     if wanted is not None and found.angle is not None and found.angle > wanted:
         shown = telling(angle, found.angle, wanted)
         return violated(
@@ -88,4 +85,4 @@ def _violation(context: Context, requirement: Requirement, found: Deviation) -> 
     return None
 
 
-RULE = requirement_rule("KF422", "path-not-followed", "follow", __doc__, judge)
+RULE = requirement_rule("KF422", "path-not-followed", Follow, __doc__, judge)

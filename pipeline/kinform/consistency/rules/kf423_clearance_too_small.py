@@ -18,57 +18,51 @@ Example: `kind = "clear"`, `between = ["camera", "housing"]`, `distance = 1` for
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from kinform.consistency.context import Context
+from kinform.consistency.context import Context, Need
 from kinform.consistency.requirements import (
+    JOINTS,
     Answer,
-    common,
     met,
     requirement_rule,
+    shared_parts,
     shown_value,
     simulated,
     stated_as,
     undecided,
     violated,
 )
-from kinform.consistency.rule import Outcome
 from kinform.foundation.words import counted, length, number, quoted, telling
 from kinform.function.clearances import Apart
 from kinform.function.configurations import Chain, chain_between
+from kinform.function.requirement_kinds import Clear
 from kinform.function.sweeps import Swept, along, over
 from kinform.model.arrays import Array
-from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 
 REMEDY = "Cut material away, or narrow the motion or the range."
 Pair = tuple[Body, Sequence[str], Body, Sequence[str]]
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Clear) -> Answer:
     """Every pair of the two groups of parts, or of all bodies."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return undecided(kinematics.reason, "Run `kinform joints`.")
-    if isinstance(context.contacts, Outcome):
-        return undecided(context.contacts.reason, "Give the parts meshes.")
-    motion = requirement.values.get("over", "motion") == "motion"
-    simulation = simulated(context) if motion else None
+    simulation = simulated(context) if requirement.over == "motion" else None
     if isinstance(simulation, Answer):
         return simulation
-    between = requirement.values.get("between")
-    if between is not None and (shared := common(context, between)):
+    between = requirement.between
+    if between is not None and (shared := shared_parts(context, between)):
         return undecided(f"{quoted(shared)} would be on both sides", "Name two that share no part.")
-    pairs = _pairs(context, kinematics, between)
-    answers = [_one(context, kinematics, requirement, pair, simulation) for pair in pairs]
-    known = [one for one in answers if one is not None]
+    pairs = _pairs(context, context.kinematics, between)
+    answers = [_of_pair(context, requirement, pair, simulation) for pair in pairs]
+    known = [answer for answer in answers if answer is not None]
     short = [one for one in known if one.state == "violated"]
     if short:
         more = f"; {counted(len(short) - 1, 'more pair')} of bodies too" if len(short) > 1 else ""
@@ -98,29 +92,26 @@ def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | No
     return [(a, own, b, other) for a, own in sides[0] for b, other in sides[1]]
 
 
-def _one(
-    context: Context, kinematics: Kinematics, requirement: Requirement, pair: Pair, simulation: Simulation | None
-) -> Answer | None:
-    """One pair; None where one of the two has no mesh."""
+def _of_pair(context: Context, requirement: Clear, pair: Pair, simulation: Simulation | None) -> Answer | None:
+    """The answer for one pair, over the ranges where there is no simulation; None where one of the two has no mesh."""
     from kinform.function.clearances import apart
 
     a, own, b, other = pair
-    contacts = context.design.contacts
-    assert contacts is not None
-    groups = apart(context.assembly, contacts, context.design.surfaces, own, other)
+    groups = apart(context.assembly, context.contacts, context.design.surfaces, own, other)
     if groups is None:
         return None
+    names = quoted([*own[:2], *other[:2]])
     if not any(p.tests for p in groups.pairs):
-        return undecided(f"all surfaces of {quoted([*own[:2], *other[:2]])} mate: nothing else can come near", "None.")
-    required = float(requirement.values.get("distance", 0.0))
+        return undecided(f"all surfaces of {names} mate: nothing else can come near", "None.")
+    required = float(requirement.distance)
     if simulation is not None:
         swept = along(groups, _displaced(simulation, a), _displaced(simulation, b), required)
-        return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), _time(simulation, swept))
+        return _answer(context, groups, swept, required, names, _time(simulation, swept))
     if a.name == b.name:
         still = np.eye(4)[None]
         swept = along(groups, still, still, required)
-        return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), "")
-    chain = chain_between(context.assembly, kinematics, a.name, b.name, "stated")
+        return _answer(context, groups, swept, required, names, "")
+    chain = chain_between(context.assembly, context.kinematics, a.name, b.name, "stated")
     if isinstance(chain, str):
         return undecided(chain, "See KF401 and KF901.")
     box = _ranges(context, chain)
@@ -128,7 +119,7 @@ def _one(
         return box
     swept = over(groups, chain, a.name, b.name, *box, required)
     values = _values(context, chain, swept)
-    return _answer(context, groups, swept, required, quoted([*own[:2], *other[:2]]), values)
+    return _answer(context, groups, swept, required, names, values)
 
 
 def _ranges(context: Context, chain: Chain) -> tuple[Array, Array] | Answer:
@@ -163,6 +154,7 @@ def _displaced(simulation: Simulation, body: Body) -> Array:
 
 
 def _answer(context: Context, groups: Apart, swept: Swept, required: float, names: str, where: str) -> Answer:
+    """What the sweep of a pair says; `where` is the time or the joint values of its worst pose, in words."""
     units, near = context.units, swept.worst
     told = telling(lambda value, digits: length(value, units, digits), near.distance, required)
     shown = told(near.distance)
@@ -179,8 +171,7 @@ def _answer(context: Context, groups: Apart, swept: Swept, required: float, name
             f"{names} pass each other so closely that {swept.poses} measured poses do not certify them",
             "Lower the distance, or check it by other means.", found=f"nearest measured {shown}",
         )  # fmt: skip
-    few = counted(swept.poses, "measured pose")
-    text = f"{names} stay clear, certain within {length(swept.floor, units)} by {few}"
+    text = f"{names} stay clear, certain within {length(swept.floor, units)} by {counted(swept.poses, 'measured pose')}"
     return met(f"{text}; not counted: surfaces by which {_mating(groups)} mate" if groups.left_out else text)
 
 
@@ -197,8 +188,7 @@ def _time(simulation: Simulation, swept: Swept) -> str:
 
 
 def _values(context: Context, chain: Chain, swept: Swept) -> str:
-    kinematics = context.design.kinematics
-    joints: dict[str, Joint] = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
+    joints: dict[str, Joint] = {joint.name: joint for joint in context.kinematics.joints}
     shown = []
     for coordinate, value in zip(chain.coordinates, swept.values, strict=True):
         name, sign = stated_as(context, coordinate.joint)
@@ -206,4 +196,5 @@ def _values(context: Context, chain: Chain, swept: Swept) -> str:
     return f" at {', '.join(shown)}"
 
 
-RULE = requirement_rule("KF423", "clearance-too-small", "clear", __doc__, judge)
+SUPPLIED_BY: Mapping[Need, str] = {**JOINTS, "contacts": "Give the parts meshes."}
+RULE = requirement_rule("KF423", "clearance-too-small", Clear, __doc__, judge, SUPPLIED_BY)

@@ -14,82 +14,79 @@ Example: `kind = "hold"`, `joint = "shoulder"`, `limit = 1.5`, `poses = [{should
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 
 import numpy as np
 
+from kinform.consistency.constants import AT_END
 from kinform.consistency.context import Context
 from kinform.consistency.requirements import (
+    SINGLE,
     Answer,
     effort,
     met,
     requirement_rule,
-    resolved,
     shown_value,
+    single_joint,
     stated_as,
     undecided,
     violated,
 )
-from kinform.consistency.rule import Outcome
 from kinform.foundation.words import counted, telling
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.function.configurations import Chain, mechanism_of
-from kinform.function.holding import holding_effort, posed
+from kinform.function.holding import Force, holding_effort, posed
+from kinform.function.requirement_kinds import Hold
 from kinform.model.arrays import Array
-from kinform.model.function import Requirement, SimulationRequest
-from kinform.model.kinematics import Joint, Kinematics
-from kinform.model.mass import MassReport
+from kinform.model.function import SimulationRequest
+from kinform.model.kinematics import Joint
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 
-AT_END = 1e-6
-"""rad or m: a pose at the very end of a range is inside."""
 REMEDY = "Balance the joint, lighten what it carries, or take a stronger drive."
 STATE = "State masses, drives and joints so that the load is determined."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Hold) -> Answer:
     """The greatest holding effort of all poses beside the limit."""
-    values, name = requirement.values, requirement.values["joint"]
-    found = resolved(context, name)
-    if isinstance(found, Answer):
-        return found
-    joint, kinematics, mass = found[0], context.kinematics, context.mass
-    if isinstance(mass, Outcome) or isinstance(kinematics, Outcome):
+    name = requirement.joint
+    joint = single_joint(context, name)
+    if isinstance(joint, Answer):
+        return joint
+    if context.lacks("mass"):
         return undecided("masses have not been computed", "Run `kinform mass`.")
-    chain = mechanism_of(context.assembly, kinematics)
+    chain = mechanism_of(context.assembly, context.kinematics)
     if isinstance(chain, str):
         return undecided(chain, "See KF401 and KF901.")
     worst, where = -1.0, ""
-    poses = values.get("poses") or [{}]
+    poses = requirement.poses or [{}]
     for pose in poses:
-        held = _held(context, kinematics, mass, chain, joint, pose)
+        held = _held(context, chain, joint, pose)
         if isinstance(held, str):
-            told = held.replace(f"'{joint.name}'", f"'{name}'")
-            return undecided(f"at {_shown(context, kinematics, pose)}: {told}", STATE)
+            why = held.replace(f"'{joint.name}'", f"'{name}'")
+            return undecided(f"at {_shown(context, pose)}: {why}", STATE)
         if abs(held) > worst:
-            worst, where = abs(held), _shown(context, kinematics, pose)
-    shown = telling(lambda value, digits: effort(value, joint, digits), worst, values["limit"])
+            worst, where = abs(held), _shown(context, pose)
+    shown = telling(lambda value, digits: effort(value, joint, digits), worst, requirement.limit)
     text = f"joint '{name}' takes {shown(worst)} to hold {where}"
-    limit = f"at most {shown(values['limit'])}"
-    if worst > values["limit"]:
+    limit = f"at most {shown(requirement.limit)}"
+    if worst > requirement.limit:
         return violated(
             f"{text}, required is {limit}", found=shown(worst), intended=limit, place=joint.point, remedy=REMEDY
         )
     return met(f"{text}, the most of {counted(len(poses), 'pose')}", found=shown(worst), intended=limit)
 
 
-def _held(
-    context: Context, kinematics: Kinematics, mass: MassReport, chain: Chain, joint: Joint, pose: dict[str, float]
-) -> float | str:
-    """The effort in one pose."""
+def _held(context: Context, chain: Chain, joint: Joint, pose: Mapping[str, float]) -> float | str:
+    """The effort in one pose, or why it is not determined."""
+    assembly, kinematics = context.assembly, context.kinematics
     wanted: dict[str, float] = {}
     for name, value in pose.items():
-        found = resolve(context.assembly, kinematics, name)
-        if found.joint is None:
-            return f"joint '{name}' is not found: {found.reason}"
-        wanted[found.joint.name] = found.sign * value
+        resolution = resolve_joint(assembly, kinematics, name)
+        if resolution.joint is None:
+            return f"joint '{name}' is not found: {resolution.reason}"
+        wanted[resolution.joint.name] = resolution.sign * value
     for coordinate in chain.coordinates:
         asked = wanted.get(coordinate.joint)
         if asked is not None and not coordinate.lower - AT_END <= asked <= coordinate.upper + AT_END:
@@ -101,40 +98,40 @@ def _held(
     drives: list[str] = []
     springs: dict[str, float] = {}
     for drive in context.function.drives:
-        found = resolve(context.assembly, kinematics, drive.joint)
-        if found.joint is None:
+        resolution = resolve_joint(assembly, kinematics, drive.joint)
+        driven = resolution.joint
+        if driven is None:
             continue
         if drive.kind == "spring":
-            rest = found.sign * drive.parameters.get("rest", 0.0) * drive.scale(found.joint.type != "prismatic")
-            pull = drive.parameters["stiffness"] * (rest - values.get(found.joint.name, 0.0))
-            springs[found.joint.name] = springs.get(found.joint.name, 0.0) + pull
+            rest = resolution.sign * drive.parameters.get("rest", 0.0) * drive.scale(driven.type != "prismatic")
+            pull = drive.parameters["stiffness"] * (rest - values.get(driven.name, 0.0))
+            springs[driven.name] = springs.get(driven.name, 0.0) + pull
         elif drive.kind != "damper":
-            drives.append(found.joint.name)
-    return holding_effort(chain, q, joint.name, drives, springs, _force(context, kinematics, mass))
+            drives.append(driven.name)
+    return holding_effort(chain, q, joint.name, drives, springs, _force(context))
 
 
-def _force(
-    context: Context, kinematics: Kinematics, mass: MassReport
-) -> Callable[[str, Array], tuple[Array, Array] | None]:
+def _force(context: Context) -> Force:
     """Gravity and loads on a body that is displaced by X."""
+    kinematics = context.kinematics
     gravity = np.asarray((context.assembly.simulation or SimulationRequest()).gravity, dtype=np.float64)
-    properties = {p.name: p for p in mass.bodies}
+    properties = {p.name: p for p in context.mass.bodies}
     loads = [
         (kinematics.body_of(context.assembly.parts_of(load.part)[0]).name, load) for load in context.function.loads
     ]
 
     def force(body: str, X: Array) -> tuple[Array, Array] | None:
-        own = properties[body]
-        if own.mass is None:
+        weight = properties[body]
+        if weight.mass is None:
             return None
         R, p = X[:3, :3], X[:3, 3]
-        total = own.mass * gravity
-        moment = np.cross(R @ own.centre_of_mass + p, total)
+        total = weight.mass * gravity
+        moment = np.cross(R @ weight.centre_of_mass + p, total)
         for name, load in loads:
             if name != body:
                 continue
             turn = R if load.frame == "body" else np.eye(3)
-            point = R @ (own.centre_of_mass if load.point is None else load.point) + p
+            point = R @ (weight.centre_of_mass if load.point is None else load.point) + p
             if load.force is not None:
                 total = total + turn @ load.force
                 moment = moment + np.cross(point, turn @ load.force)
@@ -145,15 +142,15 @@ def _force(
     return force
 
 
-def _shown(context: Context, kinematics: Kinematics, pose: dict[str, float]) -> str:
+def _shown(context: Context, pose: Mapping[str, float]) -> str:
     """The pose in words."""
     if not pose:
         return "the pose of the meshes"
     shown = []
     for name, value in sorted(pose.items()):
-        joint = resolve(context.assembly, kinematics, name).joint
+        joint = resolve_joint(context.assembly, context.kinematics, name).joint
         shown.append(f"{name} = {value:g}" if joint is None else f"{name} = {shown_value(value, joint, context.units)}")
     return ", ".join(shown)
 
 
-RULE = requirement_rule("KF424", "holding-effort-exceeded", "hold", __doc__, judge)
+RULE = requirement_rule("KF424", "holding-effort-exceeded", Hold, __doc__, judge, SINGLE)

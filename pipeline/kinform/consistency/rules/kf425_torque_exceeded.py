@@ -16,32 +16,30 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency.comparisons.peaks import of_joint, peak
+from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, effort, requirement_rule, undecided
-from kinform.function import resolve
-from kinform.model.function import Requirement
+from kinform.consistency.requirements import SINGLE, Answer, effort, requirement_rule, undecided
+from kinform.function import resolve_joint
+from kinform.function.requirement_kinds import Torque
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
+
+REMEDY = "Slow the motion, balance what moves, or take a stronger drive."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Torque) -> Answer:
     """The peak effort beside its limit."""
-    name = requirement.values["joint"]
-    found = of_joint(context, requirement, dynamic=True)
-    if isinstance(found, Answer):
-        return found
-    joint, simulation, column = found
-    kinematics = context.design.kinematics
-    assert kinematics is not None
-    driven = {resolve(context.assembly, kinematics, drive.joint).joint for drive in context.function.drives}
+    run = run_of_joint(context, requirement, dynamic=True)
+    if isinstance(run, Answer):
+        return run
+    joint, simulation, column = run
+    drives = context.function.drives
+    driven = {resolve_joint(context.assembly, context.kinematics, drive.joint).joint for drive in drives}
     if joint not in driven:
-        return undecided(f"nothing drives the joint '{name}'", "Add a [[function.drive]] for it.")
-    values = np.abs(simulation.joint_effort[:, column])
-    return peak(
-        simulation, values, requirement.values["limit"], f"the effort of joint '{name}'",
-        lambda v, digits: effort(v, joint, digits), "Slow the motion, balance what moves, or take a stronger drive.", joint.point,
-    )  # fmt: skip
+        return undecided(f"nothing drives the joint '{requirement.joint}'", "Add a [[function.drive]] for it.")
+    name = f"the effort of joint '{requirement.joint}'"
+    quantity = Quantity(name, lambda value, digits: effort(value, joint, digits), REMEDY, joint.point)
+    return peak_beside_limit(quantity, simulation, np.abs(simulation.joint_effort[:, column]), requirement.limit)
 
 
-RULE = requirement_rule("KF425", "torque-exceeded", "torque", __doc__, judge)
+RULE = requirement_rule("KF425", "torque-exceeded", Torque, __doc__, judge, SINGLE)

@@ -16,26 +16,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency.comparisons.peaks import of_joint, peak
+from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, requirement_rule, shown_value
-from kinform.model.function import Requirement
+from kinform.consistency.requirements import SINGLE, Answer, requirement_rule, shown_value
+from kinform.function.requirement_kinds import Speed
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Speed) -> Answer:
     """The peak speed beside its limit."""
-    found = of_joint(context, requirement)
-    if isinstance(found, Answer):
-        return found
-    joint, simulation, column = found
-    name = requirement.values["joint"]
-    values = np.abs(simulation.joint_velocity[:, column])
-    return peak(
-        simulation, values, requirement.values["limit"], f"the speed of joint '{name}'",
-        lambda v, digits: f"{shown_value(v, joint, context.units, digits)}/s", "Slow the drive.", joint.point,
-    )  # fmt: skip
+    run = run_of_joint(context, requirement)
+    if isinstance(run, Answer):
+        return run
+    joint, simulation, column = run
+
+    def shown(value: float, digits: int) -> str:
+        return f"{shown_value(value, joint, context.units, digits)}/s"
+
+    quantity = Quantity(f"the speed of joint '{requirement.joint}'", shown, "Slow the drive.", joint.point)
+    return peak_beside_limit(quantity, simulation, np.abs(simulation.joint_velocity[:, column]), requirement.limit)
 
 
-RULE = requirement_rule("KF426", "speed-exceeded", "speed", __doc__, judge)
+RULE = requirement_rule("KF426", "speed-exceeded", Speed, __doc__, judge, SINGLE)

@@ -12,24 +12,24 @@ Example: `kind = "mass"`, `of = "camera"`, `maximum = 0.2` for a camera of 230 g
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.weighed import amount, compared, whose
+from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, requirement_rule
+from kinform.consistency.requirements import MASSES, Answer, requirement_rule
 from kinform.foundation.words import mass
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import Mass
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
+
+REMEDY = "Change the shape, the material or the bound."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Mass) -> Answer:
     """The mass beside its bounds."""
-    found = amount(context, requirement.values.get("of"))
-    if isinstance(found, Answer):
-        return found
-    low, high = requirement.values.get("minimum"), requirement.values.get("maximum")
-    text = f"the mass of {whose(requirement.values.get('of'))} is"
-    remedy = "Change the shape, the material or the bound."
-    return compared(found.mass, found.bound * found.mass, low, high, text, mass, remedy, found.centre)
+    whole = amount(context, requirement.of)
+    if isinstance(whole, Answer):
+        return whole
+    quantity = Quantity(f"the mass of {whose(requirement.of)}", mass, REMEDY, whole.centre)
+    return beside_bounds(quantity, whole.mass, whole.bound * whole.mass, requirement.minimum, requirement.maximum)
 
 
-RULE = requirement_rule("KF428", "mass-out-of-bounds", "mass", __doc__, judge)
+RULE = requirement_rule("KF428", "mass-out-of-bounds", Mass, __doc__, judge, MASSES)

@@ -11,35 +11,31 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.consistency.comparisons.weighed import amount, whose
+from kinform.consistency.comparisons.limits import amount, whose
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, met, requirement_rule, violated
+from kinform.consistency.requirements import MASSES, Answer, met, requirement_rule, violated
 from kinform.foundation.words import length, place, telling
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import CentreOfMass
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: CentreOfMass) -> Answer:
     """The distance of the centre of mass from its point."""
-    values, units = requirement.values, context.units
-    found = amount(context, values.get("of"))
-    if isinstance(found, Answer):
-        return found
-    wanted = np.array(values["point"])
-    distance = float(np.linalg.norm(found.centre - wanted))
-    shown = telling(lambda value, digits: length(value, units, digits), distance, values["tolerance"])
-    text = (
-        f"the centre of mass of {whose(values.get('of'))} is at {place(found.centre, units)}, "
-        f"{shown(distance)} from {place(wanted, units)}"
-    )
-    intended = f"within {shown(values['tolerance'])} of {place(wanted, units)}"
-    if distance <= values["tolerance"]:
+    units = context.units
+    whole = amount(context, requirement.of)
+    if isinstance(whole, Answer):
+        return whole
+    distance = float(np.linalg.norm(whole.centre - requirement.point))
+    shown = telling(lambda value, digits: length(value, units, digits), distance, requirement.tolerance)
+    centre, wanted, within = place(whole.centre, units), place(requirement.point, units), shown(requirement.tolerance)
+    text = f"the centre of mass of {whose(requirement.of)} is at {centre}, {shown(distance)} from {wanted}"
+    if distance <= requirement.tolerance:
         return met(text)
     return violated(
-        f"{text}, required is within {shown(values['tolerance'])}", found=place(found.centre, units), intended=intended, place=found.centre,
-        remedy="Move material, or correct the point.",
+        f"{text}, required is within {within}", found=centre, intended=f"within {within} of {wanted}",
+        place=whole.centre, remedy="Move material, or correct the point.",
     )  # fmt: skip
 
 
-RULE = requirement_rule("KF429", "centre-of-mass-off", "centre_of_mass", __doc__, judge)
+RULE = requirement_rule("KF429", "centre-of-mass-off", CentreOfMass, __doc__, judge, MASSES)

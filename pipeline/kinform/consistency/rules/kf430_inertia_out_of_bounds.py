@@ -12,37 +12,34 @@ Example: `kind = "inertia"`, `of = "rotor"`, `axis = [0, 0, 1]`, `maximum = 2e-5
 
 from __future__ import annotations
 
-import numpy as np
-
-from kinform.consistency.comparisons.weighed import amount, compared, whose
+from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
+from kinform.consistency.constants import INERTIA_SPREAD
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, requirement_rule
+from kinform.consistency.requirements import MASSES, Answer, requirement_rule
 from kinform.foundation.words import direction, number
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import Inertia
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
-SPREAD = 5.0 / 3.0
-"""An error of the shape that adds so much to the mass adds so much more to the inertia, at equal proportions."""
+REMEDY = "Move material, or change the bound."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Inertia) -> Answer:
     """The moment of inertia beside its bounds."""
-    values = requirement.values
-    found = amount(context, values.get("of"))
-    if isinstance(found, Answer):
-        return found
-    axis, point = np.array(values["axis"]), values.get("point")
-    value = found.about(axis, None if point is None else np.array(point))
+    whole = amount(context, requirement.of)
+    if isinstance(whole, Answer):
+        return whole
+    axis, point = requirement.axis, requirement.point
+    value = whole.about(axis, point)
     through = "the centre of mass" if point is None else "the point"
-    text = f"the moment of inertia of {whose(values.get('of'))} about {direction(axis)} through {through} is"
-    remedy = "Move material, or change the bound."
-    low, high = values.get("minimum"), values.get("maximum")
-    return compared(value, SPREAD * found.bound * value, low, high, text, _shown, remedy, found.centre)
+    name = f"the moment of inertia of {whose(requirement.of)} about {direction(axis)} through {through}"
+    quantity = Quantity(name, _shown, REMEDY, whole.centre)
+    error = INERTIA_SPREAD * whole.bound * value
+    return beside_bounds(quantity, value, error, requirement.minimum, requirement.maximum)
 
 
 def _shown(value: float, digits: int) -> str:
     return f"{number(value, digits)} kg·m²"
 
 
-RULE = requirement_rule("KF430", "inertia-out-of-bounds", "inertia", __doc__, judge)
+RULE = requirement_rule("KF430", "inertia-out-of-bounds", Inertia, __doc__, judge, MASSES)

@@ -11,60 +11,55 @@ Example: `kind = "balance"`, `of = "inner"`, `joint = "pitch"`, `limit = 1e-5` f
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from kinform.consistency.comparisons.weighed import amount
+from kinform.consistency.comparisons.limits import amount
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, met, requirement_rule, undecided, violated
-from kinform.consistency.rule import Outcome
+from kinform.consistency.requirements import JOINTS, MASSES, Answer, met, requirement_rule, undecided, violated
 from kinform.foundation.words import length, mass, number, quoted, telling
-from kinform.function import resolve
-from kinform.model.function import Requirement
+from kinform.function import resolve_joint
+from kinform.function.requirement_kinds import Balance
+from kinform.model.arrays import Array
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Balance) -> Answer:
     """The imbalance beside its limit."""
-    values = requirement.values
-    found = amount(context, values["of"])
-    if isinstance(found, Answer):
-        return found
+    whole = amount(context, requirement.of)
+    if isinstance(whole, Answer):
+        return whole
     line = _line(context, requirement)
     if isinstance(line, Answer):
         return line
-    distance = found.distance(*line)
-    imbalance = found.mass * distance
-    shown = telling(lambda value, digits: f"{number(value, digits)} kg·m", imbalance, values["limit"])
-    limit = f"at most {shown(values['limit'])}"
+    distance = whole.distance(*line)
+    imbalance = whole.mass * distance
+    shown = telling(lambda value, digits: f"{number(value, digits)} kg·m", imbalance, requirement.limit)
+    limit = f"at most {shown(requirement.limit)}"
     text = (
-        f"the imbalance of {quoted([values['of']])} is {shown(imbalance)}: {mass(found.mass)}, "
+        f"the imbalance of {quoted([requirement.of])} is {shown(imbalance)}: {mass(whole.mass)}, "
         f"{length(distance, context.units)} off the axis"
     )
-    if imbalance <= values["limit"]:
+    if imbalance <= requirement.limit:
         return met(text)
     return violated(
-        f"{text}, required is {limit}", found=shown(imbalance), intended=limit, place=found.centre,
+        f"{text}, required is {limit}", found=shown(imbalance), intended=limit, place=whole.centre,
         remedy="Move material across the axis, or add a counterweight.",
     )  # fmt: skip
 
 
-def _line(context: Context, requirement: Requirement) -> tuple[NDArray[np.float64], NDArray[np.float64]] | Answer:
+def _line(context: Context, requirement: Balance) -> tuple[Array, Array] | Answer:
     """Axis and point: of the derived joint, else as stated."""
-    values = requirement.values
-    if "joint" not in values:
-        if "axis" not in values or "point" not in values:
+    if requirement.joint is None:
+        if requirement.axis is None or requirement.point is None:
             return undecided("it names neither a joint nor axis and point", "Name a joint, or give axis and point.")
-        return np.array(values["axis"]), np.array(values["point"])
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return undecided(kinematics.reason, "Run `kinform joints`.")
-    found = resolve(context.assembly, kinematics, values["joint"])
-    for line in (found.joint, found.intended):
+        return requirement.axis, requirement.point
+    lacking = context.lacks("kinematics")
+    if lacking is not None:
+        return undecided(lacking.reason, JOINTS["kinematics"])
+    resolution = resolve_joint(context.assembly, context.kinematics, requirement.joint)
+    for line in (resolution.joint, resolution.intended):
         if line is not None and line.axis is not None and line.point is not None:
             return line.axis, line.point
-    return undecided(f"joint '{values['joint']}' has no axis: {found.reason}", "Give axis and point.")
+    return undecided(f"joint '{requirement.joint}' has no axis: {resolution.reason}", "Give axis and point.")
 
 
-RULE = requirement_rule("KF431", "unbalanced", "balance", __doc__, judge)
+RULE = requirement_rule("KF431", "unbalanced", Balance, __doc__, judge, MASSES)

@@ -16,28 +16,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.constants import NO_TURN, SAME_DIRECTION
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, met, requirement_rule, undecided, violated
-from kinform.consistency.rule import Outcome
+from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, undecided, violated
 from kinform.foundation.words import direction, quoted
+from kinform.function.requirement_kinds import Retained
 from kinform.model.arrays import Array
-from kinform.model.function import Requirement
 from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
-SAME = np.cos(np.radians(1.0))
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Retained) -> Answer:
     """Ways to leave that are not listed."""
     kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return undecided(kinematics.reason, "Run `kinform joints`.")
-    if isinstance(context.contacts, Outcome):
+    if context.lacks("contacts"):
         return undecided("without contacts nothing says whether it is held", "Give the parts meshes.")
-    name, listed = requirement.values["part"], np.array(requirement.values.get("directions", [])).reshape(-1, 3)
+    name, listed = requirement.part, requirement.directions.reshape(-1, 3)
     parts = set(context.assembly.parts_of(name))
     bodies = [body for body in kinematics.bodies if parts & set(body.parts)]
     if all(body.ground for body in bodies):
@@ -45,15 +42,15 @@ def judge(context: Context, requirement: Requirement) -> Answer:
     ways = [
         (way, separation)
         for separation in kinematics.separations
-        if any(parts & _parts(context, kinematics, member) for member in separation.bodies)
+        if any(parts & _parts(context, member) for member in separation.bodies)
         for way in separation.releases
         if not (way.kind == "slide" and _listed(way.direction, listed))
     ]
     if ways:
         return _leaves(context, name, *ways[0], more=len(ways) - 1)
     for body in bodies:
-        if not body.ground and (found := _slides(kinematics, body, listed)) is not None:
-            return found
+        if not body.ground and (slide := _slides(kinematics, body, listed)) is not None:
+            return slide
     if kinematics.separations_reason:
         return undecided(kinematics.separations_reason, "Group what is fastened, or export finer meshes.")
     doubtful = [j for j in kinematics.joints if j.held is None and any(b.name in j.bodies for b in bodies)]
@@ -64,7 +61,8 @@ def judge(context: Context, requirement: Requirement) -> Answer:
 
 
 def _leaves(context: Context, name: str, way: Release, separation: Separation, more: int) -> Answer:
-    others = [b for b in separation.bodies if name not in (b, *_parts(context, context.design.kinematics, b))]
+    """The requirement is violated by a way out, alone or with what leaves together."""
+    others = [b for b in separation.bodies if name not in (b, *_parts(context, b))]
     together = f" together with {quoted(others)}" if others else ""
     also = f", and in {more} more ways" if more else ""
     return violated(
@@ -74,9 +72,9 @@ def _leaves(context: Context, name: str, way: Release, separation: Separation, m
     )  # fmt: skip
 
 
-def _parts(context: Context, kinematics: Kinematics | None, member: str) -> set[str]:
+def _parts(context: Context, member: str) -> set[str]:
     """Parts of what a separation names: a body, a group or a part."""
-    for body in kinematics.bodies if kinematics is not None else ():
+    for body in context.kinematics.bodies:
         if body.name == member:
             return set(body.parts)
     try:
@@ -86,28 +84,27 @@ def _parts(context: Context, kinematics: Kinematics | None, member: str) -> set[
 
 
 def _listed(way: Array, listed: Array) -> bool:
-    return bool(len(listed) and (listed @ way).max() > SAME)
+    return bool(len(listed) and (listed @ way).max() > SAME_DIRECTION)
 
 
 def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
     """Slides that keep contact: without an end they lead out of it."""
-    own = [joint for joint in kinematics.joints if body.name in joint.bodies]
-    if not own:
+    joints = [joint for joint in kinematics.joints if body.name in joint.bodies]
+    if not joints:
         return violated(
             f"'{body.name}' touches nothing and can leave every way", found="free", intended="held", remedy=REMEDY
         )
     index = [b.name for b in kinematics.bodies].index(body.name)
-    twists = kinematics.mobility.freedoms[:, index, :]
     open_: Answer | None = None
-    for line in _pure_slides(twists):
+    for line in _pure_slides(kinematics.mobility.freedoms[:, index, :]):
         for way in (line, -line):
             if _listed(way, listed):
                 continue
-            ends = [_end(joint, body, way) for joint in own]
+            ends = [_end(joint, body, way) for joint in joints]
             if "held" in ends:
                 continue
             if "free" in ends:
-                guide = own[ends.index("free")]
+                guide = joints[ends.index("free")]
                 return violated(
                     f"'{body.name}' slides along {direction(way)} without an end", found=direction(way),
                     intended="held, but for the listed directions", place=guide.point, remedy=REMEDY,
@@ -121,7 +118,7 @@ def _slides(kinematics: Kinematics, body: Body, listed: Array) -> Answer | None:
 
 def _end(joint: Joint, body: Body, way: Array) -> str:
     """Whether a slide of the body along its joint, that way, has an end: held, free, or "" where that is not known."""
-    if joint.type != "prismatic" or joint.axis is None or abs(float(joint.axis @ way)) <= SAME:
+    if joint.type != "prismatic" or joint.axis is None or abs(float(joint.axis @ way)) <= SAME_DIRECTION:
         return ""
     if joint.range_status not in ("found", "unbounded"):
         return ""
@@ -136,10 +133,10 @@ def _pure_slides(twists: Array) -> Array:
     if not len(twists):
         return np.zeros((0, 3))
     _, values, right = np.linalg.svd(twists[:, :3].T)
-    rank = int(np.count_nonzero(values > 1e-6 * max(values.max(initial=0.0), 1e-300)))
+    rank = int(np.count_nonzero(values > NO_TURN * max(values.max(initial=0.0), 1e-300)))
     moving = right[rank:] @ twists[:, 3:]
     _, sizes, ways = np.linalg.svd(moving, full_matrices=False)
-    return np.asarray(ways[sizes > 1e-6 * max(float(np.abs(twists[:, 3:]).max(initial=0.0)), 1e-300)])
+    return np.asarray(ways[sizes > NO_TURN * max(float(np.abs(twists[:, 3:]).max(initial=0.0)), 1e-300)])
 
 
-RULE = requirement_rule("KF432", "not-retained", "retained", __doc__, judge)
+RULE = requirement_rule("KF432", "not-retained", Retained, __doc__, judge, JOINTS)

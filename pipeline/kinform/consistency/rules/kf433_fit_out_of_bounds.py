@@ -14,47 +14,44 @@ Example: `kind = "fit"`, `between = ["shaft", "bush"]`, `minimum = 0.01`, `maxim
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.weighed import compared
-from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, common, met, requirement_rule, undecided
-from kinform.consistency.rule import Outcome
+from collections.abc import Mapping
+
+from kinform.consistency.comparisons.limits import Quantity, beside_bounds
+from kinform.consistency.context import Context, Need
+from kinform.consistency.requirements import Answer, met, requirement_rule, shared_parts, undecided, worst_of
 from kinform.foundation.words import counted, length, quoted
 from kinform.function.fits import clearances
-from kinform.model.function import Requirement
+from kinform.function.requirement_kinds import Fit
 
-__all__ = ["RULE", "judge"]
+__all__ = ["RULE"]
 
 KINDS = {"radial": "radial clearance", "both sides": "clearance between planes", "gap": "gap between planes"}
+REMEDY = "Change one of the two sizes."
+SUPPLIED_BY: Mapping[Need, str] = {"contacts": "Give both parts meshes."}
 
 
-def judge(context: Context, requirement: Requirement) -> Answer:
+def judge(context: Context, requirement: Fit) -> Answer:
     """Every fit of the two beside the bounds."""
-    contacts, values = context.contacts, requirement.values
-    if isinstance(contacts, Outcome):
-        return undecided(contacts.reason, "Give both parts meshes.")
-    if shared := common(context, values["between"]):
+    between = requirement.between
+    if shared := shared_parts(context, between):
         return undecided(f"{quoted(shared)} would be on both sides", "Name two that share no part.")
-    first, second = (context.assembly.parts_of(name) for name in values["between"])
-    found = clearances(contacts, first, second)
-    if not found:
+    first, second = (context.assembly.parts_of(name) for name in between)
+    fits = clearances(context.contacts, first, second)
+    if not fits:
         return undecided(
-            f"no surfaces of {quoted(values['between'])} mate within the contact tolerance",
+            f"no surfaces of {quoted(between)} mate within the contact tolerance",
             "Raise [tolerances] contact, or see KF203.",
         )
-    answers = [
-        compared(
-            fit.value, fit.error, values.get("minimum"), values.get("maximum"),
-            f"the {KINDS[fit.kind]} of {quoted(values['between'])} is",
-            lambda v, digits: length(v, context.units, digits), "Change one of the two sizes.", fit.place,
-            "by the fit of the surfaces",
-        )
-        for fit in found
-    ]  # fmt: skip
-    for state in ("violated", "undecided"):
-        for one in answers:
-            if one.state == state:
-                return one
-    return met(f"{counted(len(found), 'fit')} within bounds; {answers[0].message}")
+
+    def shown(value: float, digits: int) -> str:
+        return length(value, context.units, digits)
+
+    answers = []
+    for fit in fits:
+        name = f"the {KINDS[fit.kind]} of {quoted(between)}"
+        quantity = Quantity(name, shown, REMEDY, fit.place, cause="by the fit of the surfaces")
+        answers.append(beside_bounds(quantity, fit.value, fit.error, requirement.minimum, requirement.maximum))
+    return worst_of(answers) or met(f"{counted(len(fits), 'fit')} within bounds; {answers[0].message}")
 
 
-RULE = requirement_rule("KF433", "fit-out-of-bounds", "fit", __doc__, judge)
+RULE = requirement_rule("KF433", "fit-out-of-bounds", Fit, __doc__, judge, SUPPLIED_BY)

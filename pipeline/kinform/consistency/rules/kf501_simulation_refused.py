@@ -15,23 +15,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinform.consistency.comparisons.actuated import loose
+from kinform.consistency.comparisons.actuated import loose_carriers
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Declared, Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import quoted
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.findings import Finding
 
 __all__ = ["RULE"]
 
+SPEAKS_FOR = ("KF413", "KF502", "KF503", "KF504", "KF505", "KF506", "KF507")
 GROUP = "Fasten what is loose, such as a pin, to one of the two parts with a [[group]]."
 
 
 def check(context: Context) -> Outcome:
     """Refusals, of the whole simulation or of single elements."""
     simulation = context.simulation
-    if isinstance(simulation, Outcome):
-        return simulation
     if simulation.status != "refused" and not simulation.failures:
         return decided()
     failures = simulation.failures or ((context.assembly.name, simulation.reason),)
@@ -42,18 +41,17 @@ def check(context: Context) -> Outcome:
 
 def _finding(context: Context, subject: str, reason: str) -> Finding:
     names = _joints_in(context, subject)
-    joint = context.joint(names[0])
     request = context.assembly.simulation
     asked = request if request is not None and request.file is not None else None
     level = request.level if request is not None else None
-    carried = next(filter(None, (loose(context, name) for name in names)), "")
-    told = f"{reason}; {carried}" if carried else reason
+    carried = next(filter(None, (loose_carriers(context, name) for name in names)), "")
+    why = f"{reason}; {carried}" if carried else reason
     return RULE.finding(
         names,
-        f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {told}",
+        f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {why}",
         found="not simulated",
         intended=f"a {level} simulation" if level else "a simulation",
-        place=context.place_of(joint) if joint is not None else None,
+        place=context.place_of(context.joint(names[0])),
         declared=_declaring(context, subject, names) or asked or context.assembly.source,
         remedy=GROUP if carried else "Remove the cause, or ask for a lower `level`.",
     )
@@ -67,13 +65,13 @@ def _joints_in(context: Context, subject: str) -> list[str]:
 
 def _declaring(context: Context, subject: str, names: Sequence[str]) -> Declared | None:
     """What in the manifest acts on the subject: a drive, a coupling, a load, or an initial value."""
-    function, kinematics = context.function, context.kinematics
-    if isinstance(kinematics, Outcome):
+    function = context.function
+    if context.lacks("kinematics"):
         return None
 
     def stands_for(stated: str) -> bool:
-        found = resolve(context.assembly, kinematics, stated).joint
-        return stated in names or (found is not None and found.name in names)
+        joint = resolve_joint(context.assembly, context.kinematics, stated).joint
+        return stated in names or (joint is not None and joint.name in names)
 
     request = context.assembly.simulation
     acting: list[tuple[bool, Declared]] = [(stands_for(drive.joint), drive) for drive in function.drives]
@@ -83,4 +81,4 @@ def _declaring(context: Context, subject: str, names: Sequence[str]) -> Declared
     return next((item for matches, item in acting if matches), None)
 
 
-RULE = Rule("KF501", "simulation-refused", "note", __doc__, check)
+RULE = Rule("KF501", "simulation-refused", "note", __doc__, check, needs=("simulation",), speaks_for=SPEAKS_FOR)

@@ -20,8 +20,6 @@ __all__ = ["RULE"]
 def check(context: Context) -> Outcome:
     """A run that stopped early."""
     simulation = context.simulation
-    if isinstance(simulation, Outcome):
-        return simulation
     if simulation.status != "stopped":
         return decided()
     request = context.assembly.simulation
@@ -40,4 +38,4 @@ def check(context: Context) -> Outcome:
     return decided([finding])
 
 
-RULE = Rule("KF502", "simulation-stopped", "error", __doc__, check)
+RULE = Rule("KF502", "simulation-stopped", "error", __doc__, check, needs=("simulation",))

@@ -14,28 +14,24 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency.comparisons.plausibility import extent
+from kinform.consistency.constants import LOOP_RESIDUAL
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.foundation.words import number
 
 __all__ = ["RULE"]
 
-ALLOWED = 1e-6
-"""Residual relative to the size of the assembly (m), and absolute (rad)."""
-
 
 def check(context: Context) -> Outcome:
     """The greatest constraint residual of the run."""
     simulation = context.simulation
-    if isinstance(simulation, Outcome):
-        return simulation
     residual = simulation.residual
     if not len(residual):
         return skipped("nothing was simulated")
     if not np.isfinite(residual).all():
         return inconclusive("the residual of the constraints was not recorded at every time")
     worst = int(np.argmax(residual))
-    limit = ALLOWED * min(1.0, extent(context.assembly) or 1.0)
+    limit = LOOP_RESIDUAL * min(1.0, extent(context.assembly) or 1.0)
     if float(residual[worst]) <= limit:
         return decided(reason=f"largest residual {number(float(residual[worst]), 2)}")
     finding = RULE.finding(
@@ -50,4 +46,4 @@ def check(context: Context) -> Outcome:
     return decided([finding])
 
 
-RULE = Rule("KF503", "simulation-residual-large", "error", __doc__, check)
+RULE = Rule("KF503", "simulation-residual-large", "error", __doc__, check, needs=("simulation",))

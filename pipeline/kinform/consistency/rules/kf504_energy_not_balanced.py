@@ -14,25 +14,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.consistency.constants import ENERGY_DRIFT, ENERGY_SOLVED, NO_ENERGY
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.foundation.words import number
 
 __all__ = ["RULE"]
 
-ALLOWED = 1e-3
-"""Drift relative to the energy exchanged."""
-SOLVED = 1e-6
-"""Share of the greatest kinetic energy that solving leaves: output times may catch the motion where nothing is exchanged."""
-NOTHING = 1e-15
-"""Energy exchanged (J) below which there is nothing to compare."""
-
 
 def check(context: Context) -> Outcome:
     """Drift of the energy balance."""
     simulation = context.simulation
-    if isinstance(simulation, Outcome):
-        return simulation
     if simulation.level != "dynamic" or not len(simulation.energy):
         return skipped("no dynamic simulation was run")
     if not np.isfinite(simulation.energy).all():
@@ -41,19 +33,19 @@ def check(context: Context) -> Outcome:
     drift = np.abs(balance - balance[0])
     exchanged = float(np.ptp(simulation.energy, axis=0).max())
     worst = int(np.argmax(drift))
-    rounding = SOLVED * float(simulation.energy[:, 0].max())
-    if float(drift[worst]) <= max(ALLOWED * exchanged, rounding, NOTHING):
+    rounding = ENERGY_SOLVED * float(simulation.energy[:, 0].max())
+    if float(drift[worst]) <= max(ENERGY_DRIFT * exchanged, rounding, NO_ENERGY):
         return decided(reason=f"drift {number(float(drift[worst]), 2)} J of {number(exchanged, 3)} J exchanged")
     finding = RULE.finding(
         (context.assembly.name,),
         f"the energy balance is off by {number(float(drift[worst]), 3)} J "
         f"at t = {number(float(simulation.time[worst]))} s, of {number(exchanged, 3)} J exchanged",
         found=f"{number(float(drift[worst]), 3)} J",
-        intended=f"at most {number(ALLOWED * exchanged, 3)} J",
+        intended=f"at most {number(ENERGY_DRIFT * exchanged, 3)} J",
         declared=context.assembly.source,
         remedy="Check the mass properties, and report the case.",
     )
     return decided([finding])
 
 
-RULE = Rule("KF504", "energy-not-balanced", "warning", __doc__, check)
+RULE = Rule("KF504", "energy-not-balanced", "warning", __doc__, check, needs=("simulation",))

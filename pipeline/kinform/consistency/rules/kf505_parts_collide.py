@@ -13,7 +13,7 @@ Example: a camera scans by ±45°, and its gimbal hits the housing at 39°.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import counted, length, number, place, quoted
 
 __all__ = ["RULE"]
@@ -21,13 +21,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Every pair of parts that meets in the run."""
-    if not context.meshes:
-        return skipped("no part has a mesh")
     run = context.simulation
-    if isinstance(run, Outcome):
-        return run
-    if len(run.time) < 2:
-        return skipped("nothing moved")
     if run.collisions is None:
         return inconclusive("collisions have not been looked for: run `kinform simulate`")
     findings = [
@@ -42,8 +36,8 @@ def check(context: Context) -> Outcome:
         )
         for item in run.collisions
     ]
-    known = context.contacts
-    overlapping = set() if isinstance(known, Outcome) else {found.parts for found in known.interferences}
+    overlaps = () if context.lacks("contacts") else context.contacts.interferences
+    overlapping = {overlap.parts for overlap in overlaps}
     # what overlaps from the start is a finding of KF201 or KF202 already
     untested = [item for item in run.uncollided if item[:2] not in overlapping]
     if untested:
@@ -53,4 +47,4 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-RULE = Rule("KF505", "parts-collide", "error", __doc__, check)
+RULE = Rule("KF505", "parts-collide", "error", __doc__, check, needs=("meshes", "motion"))

@@ -32,18 +32,13 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """The first separation of each joint."""
-    for known in (context.contacts, context.kinematics):
-        if isinstance(known, Outcome):
-            return known
     run = context.simulation
-    if isinstance(run, Outcome):
-        return run
     if run.level != "dynamic" or not len(run.time):
         return skipped("without a dynamic run there are no reactions")
     if len(run.F_B) != len(run.time):
         return inconclusive("the run has no reactions: run `kinform simulate`")
-    found, shared, aside = lifts(context.design)
-    findings = [_finding(lift) if lift.certain else _doubt(lift) for lift in found]
+    separations, shared, aside = lifts(context.design)
+    findings = [_finding(lift) if lift.certain else _doubt(lift) for lift in separations]
     if shared is not None and (shared.time is not None or not shared.certain):
         findings.append(_shared(shared))
     reason = "" if not aside else f"not found in contact, and not looked at: {quoted(aside)}"
@@ -64,11 +59,10 @@ def _finding(lift: Lift) -> Finding:
 
 
 def _doubt(lift: Lift) -> Finding:
-    return RULE.finding(
+    return RULE.at("note").finding(
         (lift.joint.name,),
         f"whether '{lift.joint.name}' would separate at t = {number(lift.time, 6)} s is not certain: it is within 1 % "
         "of what its contacts can carry",
-        severity="note",
         place=lift.joint.point,
     )
 
@@ -77,19 +71,17 @@ def _shared(shared: Sharing) -> Finding:
     """Of joints whose reactions redundant constraints leave open."""
     names = shared.joints
     if shared.time is None:
-        return RULE.finding(
+        return RULE.at("note").finding(
             names,
             f"whether {quoted(names)} would separate is not known: redundant constraints leave the reaction open",
-            severity="note",
             remedy="Remove the redundant constraints: see KF303.",
         )
     when = f"t = {number(shared.time, 6)} s"
     if not shared.certain:
-        return RULE.finding(
+        return RULE.at("note").finding(
             names,
             f"whether {quoted(names)} would separate at {when} is not certain: however redundant constraints share the "
             "load, it is within 1 % of what their contacts can carry",
-            severity="note",
         )
     return RULE.finding(
         names,
@@ -97,8 +89,9 @@ def _shared(shared: Sharing) -> Finding:
         "their contacts cannot carry it by pushing alone",
         found=when,
         intended="contact that pushes",
-        remedy="Hold the parts by something that pulls, or drive them more gently; state fasteners that are not modelled.",
+        remedy="Hold the parts by something that pulls, or drive them more gently; state fasteners that are not "
+        "modelled.",
     )
 
 
-RULE = Rule("KF506", "joint-would-separate", "warning", __doc__, check)
+RULE = Rule("KF506", "joint-would-separate", "warning", __doc__, check, needs=("contacts", "kinematics", "simulation"))

@@ -24,10 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Joints whose status is ambiguous."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
-    ambiguous = [joint for joint in kinematics.joints if joint.status == "ambiguous"]
+    ambiguous = [joint for joint in context.kinematics.joints if joint.status == "ambiguous"]
     wanted = {joint.name: _wanted(context, joint) for joint in ambiguous}
     findings = [_finding(context, joint, wanted[joint.name]) for joint in ambiguous]
     intended = [want.name for want in wanted.values() if want is not None]
@@ -45,10 +42,9 @@ def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:
 
 def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> Finding:
     values = ", ".join(f"{value:.2g}" for value in joint.singular_values)
-    return RULE.finding(
+    return RULE.at("warning" if intended is None else RULE.severity).finding(
         [joint.name if intended is None else intended.name],
         f"the joint of {quoted(joint.bodies)} is ambiguous: {joint.reason}",
-        severity="warning" if intended is None else None,
         found=f"{joint.type}, or another; singular values {values}",
         intended=intended.type if intended is not None else None,
         place=context.place_of(joint),
@@ -57,4 +53,4 @@ def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> 
     )
 
 
-RULE = Rule("KF901", "joint-ambiguous", "note", __doc__, check)
+RULE = Rule("KF901", "joint-ambiguous", "note", __doc__, check, needs=("kinematics",))

@@ -25,15 +25,13 @@ __all__ = ["RULE"]
 def check(context: Context) -> Outcome:
     """Every coupling."""
     couplings = context.function.couplings
-    if not couplings:
-        return skipped("the function states no coupling")
     if not context.meshes:
         return skipped(
             f"no part has a mesh: {counted(len(couplings), 'coupling')} given by the function, nothing to compare"
         )
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
-        return kinematics
+    lacking = context.lacks("kinematics")
+    if lacking is not None:
+        return lacking
     findings = [
         RULE.finding(
             coupling.joints,
@@ -44,9 +42,9 @@ def check(context: Context) -> Outcome:
             remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )
         for coupling in couplings
-        if isinstance(reason := derived_ratio(context, kinematics, coupling), str)
+        if isinstance(reason := derived_ratio(context, coupling), str)
     ]
     return inconclusive(f"{counted(len(findings), 'coupling')} not checked", findings) if findings else decided()
 
 
-RULE = Rule("KF903", "coupling-not-checked", "note", __doc__, check)
+RULE = Rule("KF903", "coupling-not-checked", "note", __doc__, check, needs=("stated couplings",), speaks_for=("KF411",))

@@ -14,7 +14,7 @@ Example: `range = [-110, 110]` for a shoulder whose motor overlaps its bracket i
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.ranged import Ranged, ranged, shown
+from kinform.consistency.comparisons.ranged import StatedRange, shown, stated_ranges
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
 from kinform.foundation.words import counted
@@ -24,7 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Every intended range."""
-    items = ranged(context)
+    items = stated_ranges(context)
     if not items:
         return skipped("no intended joint states a range")
     open_ = [item for item in items if not item.given]
@@ -36,13 +36,13 @@ def check(context: Context) -> Outcome:
     for item in open_:
         why = _unknown(item)
         if why:
-            lower, upper = item.intended.range or (0.0, 0.0)
+            lower, upper = (shown(end, item.intended, context.units) for end in item.intended.range or (0.0, 0.0))
             findings.append(
                 RULE.finding(
                     [item.intended.name],
                     f"the range of joint '{item.intended.name}' is not known: {why}",
                     found="not known",
-                    intended=f"{shown(lower, item.intended, context.units)} to {shown(upper, item.intended, context.units)}",
+                    intended=f"{lower} to {upper}",
                     place=item.intended.point,
                     declared=item.intended,
                     remedy="Follow the reason, or check it by other means.",
@@ -53,7 +53,7 @@ def check(context: Context) -> Outcome:
     return decided()
 
 
-def _unknown(item: Ranged) -> str:
+def _unknown(item: StatedRange) -> str:
     """Why the range is not known; empty where it is."""
     if item.reason:
         return item.reason
@@ -65,4 +65,4 @@ def _unknown(item: Ranged) -> str:
     return f"without {few}, which overlap from the start, it is; with them it may be shorter"
 
 
-RULE = Rule("KF904", "range-not-checked", "note", __doc__, check)
+RULE = Rule("KF904", "range-not-checked", "note", __doc__, check, speaks_for=("KF412",))

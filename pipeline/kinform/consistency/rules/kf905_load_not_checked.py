@@ -14,7 +14,7 @@ Example: a force of 5 N on the gripper of an arm that is simulated kinematically
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
 from kinform.foundation.words import counted, quoted
 from kinform.model.function import Load
 
@@ -26,8 +26,6 @@ MOVE = "Put it on a part that moves, or make what the ground stands on a part of
 def check(context: Context) -> Outcome:
     """Loads without a dynamic run that ended, or that no run feels."""
     loads = context.function.loads
-    if not loads:
-        return skipped("the function states no load")
     simulation = context.design.simulation
     carried = simulation is not None and simulation.status == "done" and simulation.level == "dynamic"
     findings = []
@@ -58,4 +56,4 @@ def _on_ground(context: Context, load: Load) -> bool:
     return kinematics is not None and kinematics.body_of(context.assembly.parts_of(load.part)[0]).ground
 
 
-RULE = Rule("KF905", "load-not-checked", "note", __doc__, check)
+RULE = Rule("KF905", "load-not-checked", "note", __doc__, check, needs=("stated loads",))

@@ -15,7 +15,7 @@ Example: `[fasteners] infer = true`, and two brackets with four aligned holes.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Outcome, Rule, decided
 from kinform.foundation.words import quoted
 from kinform.model.contacts import Suggestion
 from kinform.model.kinematics import Kinematics
@@ -25,13 +25,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Suggestions that were applied, and those that were not because something else is stated."""
-    if not context.assembly.infer_fasteners:
-        return skipped("the manifest does not ask to infer fasteners")
     contacts, kinematics = context.contacts, context.kinematics
-    if isinstance(contacts, Outcome):
-        return contacts
-    if isinstance(kinematics, Outcome):
-        return kinematics
     said = ((hint, _became(hint, kinematics)) for hint in contacts.suggestions)
     return decided(
         RULE.finding(
@@ -60,4 +54,6 @@ def _became(hint: Suggestion, kinematics: Kinematics) -> str:
     return "are taken to turn about an axis" if turned else ""
 
 
-RULE = Rule("KF906", "fasteners-inferred", "note", __doc__, check)
+RULE = Rule(
+    "KF906", "fasteners-inferred", "note", __doc__, check, needs=("inferred fasteners", "contacts", "kinematics")
+)

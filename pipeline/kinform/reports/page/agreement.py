@@ -10,8 +10,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from kinform.consistency import Comparison, compare, words
+from kinform.consistency import Comparison, compare_joint
 from kinform.design import Design
+from kinform.foundation import words
 from kinform.model.findings import SEVERITIES
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
@@ -66,7 +67,9 @@ class _Table:
         wanted = sorted(self.design.assembly.function.joints, key=lambda joint: joint.name)
         if kinematics is not None:
             yield self._mobility(kinematics)
-            compared = {j.name: compare(self.design.assembly, self.design.contacts, kinematics, j) for j in wanted}
+            compared = {
+                j.name: compare_joint(self.design.assembly, self.design.contacts, kinematics, j) for j in wanted
+            }
             matched = {c.joint.name for c in compared.values() if c.joint is not None}
             for joint in wanted:
                 yield self._intended(joint, compared[joint.name])

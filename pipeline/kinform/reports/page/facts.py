@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from kinform.consistency import explain, words
+from kinform.consistency import explain
 from kinform.design import Design
+from kinform.foundation import words
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint

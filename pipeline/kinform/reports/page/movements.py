@@ -14,7 +14,7 @@ import numpy as np
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.names import PartName
@@ -157,7 +157,7 @@ class _Spans:
         assert kinematics is not None
         asked = {}
         for intended in self.design.assembly.function.joints:
-            found = resolve(self.design.assembly, kinematics, intended.name)
+            found = resolve_joint(self.design.assembly, kinematics, intended.name)
             if found.joint is not None and intended.range is not None:
                 asked[found.joint.name] = sorted(found.sign * end for end in intended.range)
         out: dict[str, Span] = {}

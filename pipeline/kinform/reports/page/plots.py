@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.design import Design
 from kinform.foundation.units import metres_per
-from kinform.function import resolve
+from kinform.function import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 from kinform.reports.page.subjects import wanted_names
@@ -112,7 +112,7 @@ def _required(design: Design, name: str) -> tuple[float, float] | None:
     """The stated range of the joint that kinform names so, in its own sense (rad or m)."""
     assert design.kinematics is not None
     for intended in design.assembly.function.joints:
-        found = resolve(design.assembly, design.kinematics, intended.name)
+        found = resolve_joint(design.assembly, design.kinematics, intended.name)
         if found.joint is not None and found.joint.name == name and intended.range is not None:
             low, high = sorted(found.sign * end for end in intended.range)
             return low, high

@@ -14,7 +14,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["Resolution", "resolve"]
+__all__ = ["Resolution", "resolve_joint"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Resolution:
     reason: str = ""
 
 
-def resolve(assembly: Assembly, kinematics: Kinematics, name: str) -> Resolution:
+def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Resolution:
     """The joint that `name` stands for; never raises, a miss says its reason.
 
     A `[[function.joint]]` of that name goes before a joint that kinform names so.

@@ -8,16 +8,17 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Declared, Outcome
-from kinform.function import resolve
+from kinform.consistency.outcome import triple
+from kinform.consistency.rule import Declared
+from kinform.function import resolve_joint
 from kinform.model.assembly import Part
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
 
-__all__ = ["located"]
+__all__ = ["with_place"]
 
 
-def located(context: Context, finding: Finding) -> Finding:
+def with_place(context: Context, finding: Finding) -> Finding:
     """The finding with a place, where its subject is a part, body or joint, and with a file and line of the manifest."""
     joint = _joint(context, finding.subject)
     place = finding.place
@@ -31,23 +32,22 @@ def located(context: Context, finding: Finding) -> Finding:
 
 def _joint(context: Context, subject: Sequence[str]) -> Joint | None:
     """The first joint of the subject, by the name that kinform or the designer gave it."""
-    kinematics = context.kinematics
-    if isinstance(kinematics, Outcome):
+    if context.lacks("kinematics"):
         return None
     stated = {joint.name for joint in context.function.joints}
     for name in subject:
-        found = context.joint(name)
-        if found is None and name in stated:
-            found = resolve(context.assembly, kinematics, name).joint
-        if found is not None:
-            return found
+        joint = context.joint(name)
+        if joint is None and name in stated:
+            joint = resolve_joint(context.assembly, context.kinematics, name).joint
+        if joint is not None:
+            return joint
     return None
 
 
 def _parts(context: Context, subject: Sequence[str]) -> list[Part]:
     """The parts that the subject names, and the first of each body or group that it names."""
-    found = (_part(context, name) for name in subject)
-    return [part for part in found if part is not None]
+    parts = (_part(context, name) for name in subject)
+    return [part for part in parts if part is not None]
 
 
 def _part(context: Context, name: str) -> Part | None:
@@ -70,18 +70,16 @@ def _middle(parts: Sequence[Part]) -> tuple[float, float, float] | None:
     if part.mesh is not None and len(part.mesh.vertices):
         low, high = part.mesh.bare.box
         at = 0.5 * (low + high)
-    x, y, z = (float(v) for v in part.X_WP[:3, :3] @ at + part.X_WP[:3, 3])
-    return (x, y, z)
+    return triple(part.X_WP[:3, :3] @ at + part.X_WP[:3, 3])
 
 
 def _declared(context: Context, subject: Sequence[str], joint: Joint | None) -> Declared:
     """Where the manifest speaks of the subject: the intended joint, a part of the joint, a part; else the assembly."""
-    kinematics = context.kinematics
-    if joint is not None and not isinstance(kinematics, Outcome):
+    if joint is not None:
         for intended in context.function.joints:
-            if resolve(context.assembly, kinematics, intended.name).joint is joint:
+            if resolve_joint(context.assembly, context.kinematics, intended.name).joint is joint:
                 return intended
-        second = next(body for body in kinematics.bodies if body.name == joint.bodies[1])
+        second = next(body for body in context.kinematics.bodies if body.name == joint.bodies[1])
         return context.assembly.part(second.parts[0]).source
     parts = _parts(context, subject)
     return parts[0].source if parts else context.assembly.source

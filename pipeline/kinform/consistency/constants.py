@@ -1,0 +1,113 @@
+"""Numbers by which rules decide, by the module that uses them. What users may set is in `Tolerances`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+# --- comparisons/coupled ----------------------------------------------------------------------------------------------
+
+UNCOUNTED_TEETH = 1e-2
+"""Relative: what the ratio of teeth at one pose may be off."""
+COUNTED_TEETH = 1e-3
+"""Relative: what a stated ratio may be rounded by where the teeth are counted."""
+SCREW_PITCH = 1e-3
+"""Relative: what the pitch of a screw may be off."""
+UNCERTAIN_RATIO = 0.05
+"""Relative uncertainty, for each coupling of a chain, beyond which a ratio says nothing."""
+DEVIATIONS = 3.0
+"""Standard uncertainties of a derived ratio within which a stated one agrees."""
+
+# --- comparisons/limits -----------------------------------------------------------------------------------------------
+
+RATE_RESOLVED = 0.1
+"""Share of the greatest rate by which a rate may miss what its derivatives at both ends of a step make of it; a sine is
+within it from six output times a period."""
+MOST_STEPS = 0.2
+"""Share of the steps that may miss by more: single kinks and jumps of a law are no reason to doubt."""
+QUIET = 1e-9
+"""rad/s or m/s below which nothing moves."""
+BENT_ALIKE = 0.25
+"""Share of its curvature that a peak's neighbours must have for a parabola to say how high it is; a choice."""
+
+# --- comparisons/plausibility -----------------------------------------------------------------------------------------
+
+HUGE = 100.0
+"""Diagonal (m) above which the units are taken to be wrong."""
+LARGE = 20.0
+"""Diagonal (m) above which the units are doubted."""
+MASSIVE = 1000.0
+"""Volume of solid material (m³) above which the units are taken to be wrong."""
+TINY: Mapping[str, float] = {"um": 1e-6}
+"""Diagonal (m) below which the units are taken to be wrong, for each unit; `TINY_ELSE` where not listed."""
+TINY_ELSE = 1e-3
+"""m."""
+SMALL = 3.0
+"""Below so many times that the units are doubted."""
+OUTLIER = 100.0
+"""A part so many times larger than all others together is doubted."""
+
+# --- rules/kf121_mass_invalid -----------------------------------------------------------------------------------------
+
+TRIANGLE_ROUNDING = 1e-9
+"""Relative rounding that the triangle inequality of the moments is allowed (thin discs reach equality)."""
+
+# --- rules/kf405_joint_pitch_differs ----------------------------------------------------------------------------------
+
+SAME_PITCH = 1e-3
+"""Relative difference of pitches that counts as equal."""
+
+# --- rules/kf412_joint_range_short, rules/kf413_range_exceeded --------------------------------------------------------
+
+SHORT_TURN = math.radians(0.02)
+"""rad by which a turn may fall short: a stop on facets is not where it is on the surface."""
+SHORT_SLIDE = 1e-3
+"""Share of a stated length by which a slide may fall short."""
+BEYOND = 1e-6
+"""Share of the range (rad or m where it is endless) by which a motion may pass its end: a drive to just there is no
+finding."""
+
+# --- rules/kf421_region_not_reached -----------------------------------------------------------------------------------
+
+REACHED_SHARE = 1e-3
+"""Share of the assembly's size within which a place is reached, where no tolerance is stated; a choice."""
+REACHED_ANGLE = math.radians(0.1)
+"""rad within which a direction is reached, where no tolerance is stated; a choice."""
+SAMPLED_FREEDOMS = 2
+"""Freedoms of closed loops up to which sampling is dense enough for a "no"."""
+
+# --- rules/kf422_path_not_followed ------------------------------------------------------------------------------------
+
+SAME_TIME = 1e-9
+"""Share of the simulated time by which a path may be longer: rounding."""
+
+# --- rules/kf424_holding_effort_exceeded ------------------------------------------------------------------------------
+
+AT_END = 1e-6
+"""rad or m: a pose at the very end of a range is inside."""
+NO_EFFORT = 1e-12
+"""N·m or N below which an effort is shown as nothing: rounding."""
+
+# --- rules/kf430_inertia_out_of_bounds --------------------------------------------------------------------------------
+
+INERTIA_SPREAD = 5.0 / 3.0
+"""An error of the shape that adds so much to the mass adds so much more to the inertia, at equal proportions."""
+
+# --- rules/kf432_not_retained -----------------------------------------------------------------------------------------
+
+SAME_DIRECTION = math.cos(math.radians(1.0))
+"""Cosine of the angle within which directions agree."""
+NO_TURN = 1e-6
+"""Share of the greatest rate below which a freedom does not turn, or does not slide; a choice."""
+
+# --- rules/kf503_simulation_residual_large, rules/kf504_energy_not_balanced -------------------------------------------
+
+LOOP_RESIDUAL = 1e-6
+"""Residual relative to the size of the assembly (m), and absolute (rad)."""
+ENERGY_DRIFT = 1e-3
+"""Drift relative to the energy exchanged."""
+ENERGY_SOLVED = 1e-6
+"""Share of the greatest kinetic energy that solving leaves: output times may catch the motion where nothing is
+exchanged."""
+NO_ENERGY = 1e-15
+"""Energy exchanged (J) below which there is nothing to compare."""

@@ -1,0 +1,79 @@
+"""What a rule may answer of a design, and what may become of one requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from kinform.model.findings import Finding
+
+__all__ = ["Answer", "Outcome", "decided", "inconclusive", "met", "skipped", "triple", "undecided", "violated"]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Answer of one rule: `kind` is decided, inconclusive or skipped.
+
+    An inconclusive rule may carry findings too: about what it could decide, and notes that say what
+    it could not.
+    """
+
+    kind: str
+    findings: tuple[Finding, ...] = ()
+    reason: str = ""
+
+    @property
+    def name(self) -> str:
+        """passed, failed, inconclusive or skipped; notes alone do not fail a rule."""
+        if self.kind != "decided":
+            return self.kind
+        return "failed" if any(f.severity != "note" for f in self.findings) else "passed"
+
+
+def decided(findings: Iterable[Finding] = (), reason: str = "") -> Outcome:
+    """The rule ran to its end; no finding of more than a note: passed."""
+    return Outcome("decided", tuple(findings), reason)
+
+
+def inconclusive(reason: str, findings: Iterable[Finding] = ()) -> Outcome:
+    """Something that the rule is about could not be decided."""
+    return Outcome("inconclusive", tuple(findings), reason)
+
+
+def skipped(reason: str) -> Outcome:
+    """The rule does not apply to this design."""
+    return Outcome("skipped", (), reason)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What became of one requirement. `message` ends the sentence "requirement 'name': …"."""
+
+    state: str
+    """met, violated or undecided."""
+    message: str
+    found: str | None = None
+    intended: str | None = None
+    place: tuple[float, float, float] | None = None
+    remedy: str | None = None
+
+
+def met(message: str, *, found: str | None = None, intended: str | None = None) -> Answer:
+    """The requirement holds; the message says how this is known."""
+    return Answer("met", message, found, intended)
+
+
+def violated(message: str, *, found: str, intended: str, remedy: str, place: Iterable[float] | None = None) -> Answer:
+    """The requirement does not hold."""
+    return Answer("violated", message, found, intended, None if place is None else triple(place), remedy)
+
+
+def undecided(message: str, remedy: str, *, found: str | None = None, intended: str | None = None) -> Answer:
+    """What is missing, and what would decide it."""
+    return Answer("undecided", message, found, intended, None, remedy)
+
+
+def triple(point: Iterable[float]) -> tuple[float, float, float]:
+    """Three coordinates as plain numbers."""
+    x, y, z = (float(value) for value in point)
+    return (x, y, z)

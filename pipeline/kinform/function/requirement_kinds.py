@@ -1,0 +1,214 @@
+"""Kinds of requirements: what each asks for, typed, SI and radians, world frame at the pose of the meshes.
+
+The manifest's tables are in `form/manifest/require.py`, which also says what every key means. A stored requirement has
+their values by key (`kinform.model.function.Requirement`); `Kind.read` makes them what a judge reads. Keys that a newer
+table has besides are left aside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from kinform.model.arrays import Array
+
+__all__ = [
+    "Balance", "Box", "CentreOfMass", "Clear", "Cone", "Fit", "Follow", "Hold", "Inertia", "Kind", "Mass", "Poses", "Reach",
+    "Reaction", "Region", "Retained", "Speed", "Torque",
+]  # fmt: skip
+
+
+VECTORS = ("X_WF", "axis", "direction", "directions", "lower", "point", "points", "rows", "upper")
+"""Keys whose values are arrays."""
+
+
+def _values_of(record: type, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Of the stored values those that the record has, lists of numbers as arrays."""
+    keys = [f.name for f in fields(record) if values.get(f.name) is not None]
+    return {key: np.array(values[key], dtype=np.float64) if key in VECTORS else values[key] for key in keys}
+
+
+@dataclass(frozen=True, eq=False)
+class Cone:
+    """Directions within `half_angle` (rad) of the unit `axis` (3,)."""
+
+    axis: Array
+    half_angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box between two corners (3,) m along the axes of a frame with the pose `X_WF` (4, 4)."""
+
+    lower: Array
+    upper: Array
+    X_WF: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Single places (n, 3) m, or single directions (n, 3)."""
+
+    points: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+
+Region = Cone | Box | Poses
+REGIONS: Mapping[str, type[Region]] = {"cone": Cone, "box": Box, "poses": Poses}
+
+
+class Kind:
+    """One kind of requirement; a subclass is the record of what it asks for."""
+
+    kind: ClassVar[str]
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> Self:
+        """The record of the values that a requirement is stored with."""
+        return cls(**_values_of(cls, values))
+
+
+@dataclass(frozen=True, eq=False)
+class Reach(Kind):
+    """A point (3,) m, or a direction (3,), that a part carries covers a region."""
+
+    kind = "reach"
+    part: str
+    region: Region
+    point: Array | None = None
+    direction: Array | None = None
+    tolerance: float | None = None
+    angle_tolerance: float | None = None
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> Self:
+        """The record, with its region."""
+        region = values["region"]
+        shape = REGIONS[region["type"]]
+        return super().read({**values, "region": shape(**_values_of(shape, region))})
+
+
+@dataclass(frozen=True, eq=False)
+class Follow(Kind):
+    """A point (3,) m that a part carries follows `rows` (n, 4) of t, x, y, z or (n, 8) with qw, qx, qy, qz."""
+
+    kind = "follow"
+    part: str
+    point: Array
+    tolerance: float
+    angle_tolerance: float | None = None
+    rows: Array = field(default_factory=lambda: np.zeros((0, 4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Clear(Kind):
+    """Two parts or groups, or all bodies, keep a distance (m) over the "motion" or the "ranges"."""
+
+    kind = "clear"
+    between: Sequence[str] | None = None
+    over: str = "motion"
+    distance: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Hold(Kind):
+    """A joint takes at most `limit` (N·m or N) to hold poses: joint values by name, none for the pose of the meshes."""
+
+    kind = "hold"
+    joint: str
+    limit: float
+    poses: Sequence[Mapping[str, float]] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Torque(Kind):
+    """A joint takes at most `limit` (N·m or N) in the simulation."""
+
+    kind = "torque"
+    joint: str
+    limit: float
+
+
+@dataclass(frozen=True, eq=False)
+class Speed(Kind):
+    """A joint moves with at most `limit` (rad/s or m/s) in the simulation."""
+
+    kind = "speed"
+    joint: str
+    limit: float
+
+
+@dataclass(frozen=True, eq=False)
+class Reaction(Kind):
+    """A joint carries at most a force (N), at most a torque (N·m), in the simulation."""
+
+    kind = "reaction"
+    joint: str
+    force: float | None = None
+    torque: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Mass(Kind):
+    """A part, a group or the whole (None) has a mass between bounds (kg)."""
+
+    kind = "mass"
+    of: str | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CentreOfMass(Kind):
+    """A centre of mass is within `tolerance` (m) of a point (3,) m."""
+
+    kind = "centre_of_mass"
+    point: Array
+    tolerance: float
+    of: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Inertia(Kind):
+    """A moment of inertia about a unit axis (3,), through a point (3,) m or the centre of mass, between bounds (kg·m²)."""
+
+    kind = "inertia"
+    axis: Array
+    of: str | None = None
+    point: Array | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Balance(Kind):
+    """An imbalance of at most `limit` (kg·m) about a joint's axis, or about an axis (3,) through a point (3,) m."""
+
+    kind = "balance"
+    of: str
+    limit: float
+    joint: str | None = None
+    axis: Array | None = None
+    point: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Retained(Kind):
+    """A part can leave in the listed directions (n, 3) only."""
+
+    kind = "retained"
+    part: str
+    directions: Array = field(default_factory=lambda: np.zeros((0, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class Fit(Kind):
+    """A clearance between two parts or groups, between bounds (m); negative is press."""
+
+    kind = "fit"
+    between: Sequence[str]
+    minimum: float | None = None
+    maximum: float | None = None
