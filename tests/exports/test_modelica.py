@@ -14,9 +14,8 @@ from validators import package
 from kinform.behaviour import Constant, Node, System, VoltageController, VoltageSource
 from kinform.behaviour.shafts import Controller
 from kinform.exports import export, modelica, write
-from kinform.exports.loops import loops
+from kinform.exports.equations import equations_of
 from kinform.exports.model import export_model
-from kinform.exports.tree import grow
 from kinform.simulation import Course, simulate_system
 
 
@@ -145,7 +144,7 @@ def test_a_twin_with_another_mass_moves_otherwise(tmp_path):
 def test_as_many_rows_are_held_as_are_independent(name, rows):
     """A planar loop of journals has six conditions, three of them independent; a spatial one is not redundant."""
     model = export_model(known(name))
-    found = loops(model, grow(model.system))
+    found = equations_of(model)
     (closure,) = found.closures
     assert sum(closure.place) + sum(closure.turn) == rows
     assert len(found.free) == 1

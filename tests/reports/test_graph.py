@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from kinform.exports.graph.drawing import graph_dot, graph_svg
-from kinform.exports.graph.layout import placed
+from kinform.exports.graph.layout import box_centres
 from kinform.kinematics.pair.joint import stated_joint
 from kinform.model.kinematics import Body, ConstraintMatrix, Freedom, Kinematics, Misfit, Mobility, Redundancy
 
@@ -101,7 +101,7 @@ def test_boxes_do_not_overlap(seed):
     nodes = 30
     edges = [(int(rng.integers(k)), k) for k in range(1, nodes)] + [(k, k + 7) for k in range(0, 20, 5)]
     sizes = np.stack([rng.uniform(40, 160, nodes), np.full(nodes, 30.0)], axis=1)
-    at = placed(sizes, edges, 0, 105.0)
+    at = box_centres(sizes, edges, 0, 105.0)
     for k in range(nodes):
         for n in range(k):
             assert (np.abs(at[k] - at[n]) >= 0.5 * (sizes[k] + sizes[n])).any()
@@ -109,13 +109,13 @@ def test_boxes_do_not_overlap(seed):
 
 def test_a_ring_is_drawn_round():
     nodes = 8
-    at = placed(np.full((nodes, 2), 30.0), [(k, (k + 1) % nodes) for k in range(nodes)], 0, 105.0)
+    at = box_centres(np.full((nodes, 2), 30.0), [(k, (k + 1) % nodes) for k in range(nodes)], 0, 105.0)
     radius = np.linalg.norm(at - at.mean(axis=0), axis=1)
     assert radius.min() > 0.8 * radius.max()
 
 
 def test_parts_that_nothing_connects_are_drawn_beside():
-    at = placed(np.full((4, 2), 30.0), [(0, 1), (2, 3)], 0, 105.0)
+    at = box_centres(np.full((4, 2), 30.0), [(0, 1), (2, 3)], 0, 105.0)
     assert at[2:, 0].min() > at[:2, 0].max() + 30.0
 
 

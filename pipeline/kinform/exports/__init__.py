@@ -7,8 +7,7 @@ on clock, host or path.
 
 from __future__ import annotations
 
-from kinform.exports.exported import Exported, ExportError, LostError
+from kinform.exports.exported import Exported, ExportError, LostError, write
 from kinform.exports.registry import FORMATS, Format, export
-from kinform.exports.write import write
 
 __all__ = ["FORMATS", "ExportError", "Exported", "Format", "LostError", "export", "write"]

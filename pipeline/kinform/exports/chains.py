@@ -1,16 +1,26 @@
-"""Joints as chains of turns and slides with links without mass between them, for URDF and SDF."""
+"""What URDF and SDF have in common: joints as chains of turns and slides with links without mass between them, and what
+formats of trees of links cannot say."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
 from kinform.behaviour.primitives import Ball, OneFreedom
-from kinform.exports.robot import Robot, RobotLink
+from kinform.exports.robot import Driver, Robot, RobotLink
 from kinform.model.arrays import Array
 
-__all__ = ["Hinge", "chain"]
+__all__ = ["Hinge", "chain", "tree_losses"]
+
+_DRIVES: dict[type[Driver], str] = {
+    MotionDrive: "its motion follows a law",
+    EffortDrive: "its effort follows a law",
+    Servo: "a servo with its gains and target",
+    DcMotor: "a DC motor with its voltage",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +82,21 @@ def _free(name: str, taken: set[str]) -> str:
         name += "_"
     taken.add(name)
     return name
+
+
+def tree_losses(robot: Robot, format: str, *, springs: bool = False) -> Iterator[str]:
+    """Loops, laws of drives, springs, loads and initial values. `springs`: the format has them."""
+    for closing in robot.closing:
+        yield f"{closing.joint.subject}: the joint closes a loop, and {format} has trees only; it is left out"
+        for actor in robot.model.system.actors(closing.joint.name):
+            yield f"{closing.joint.subject}: what acts on it ({type(actor).__name__}) is left out with it"
+    for link in robot.links:
+        for drive in link.drives:
+            yield f"{drive.subject}: {_DRIVES[type(drive)]}, which {format} does not have; only that it is driven"
+        if not springs:
+            for spring in link.springs:
+                yield f"{spring.subject}: a spring of {spring.stiffness:g} N·m/rad or N/m"
+    for load in robot.loads:
+        yield f"{load.subject}: a load"
+    if robot.moved:
+        yield "the initial positions and velocities; zero is the pose of the meshes"

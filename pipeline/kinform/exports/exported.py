@@ -1,12 +1,15 @@
-"""What an exporter gives back: files, and what their format could not carry."""
+"""What an exporter gives back: files, and what their format could not carry; and how the files come into a folder."""
 
 from __future__ import annotations
 
+import os
+import secrets
 from dataclasses import dataclass
+from pathlib import Path
 
 from kinform.errors import KinformError
 
-__all__ = ["ExportError", "Exported", "LostError"]
+__all__ = ["ExportError", "Exported", "LostError", "write"]
 
 
 @dataclass(frozen=True)
@@ -30,3 +33,30 @@ class LostError(KinformError):
     def __init__(self, format: str, lost: tuple[str, ...]):
         self.format, self.lost = format, lost
         super().__init__("\n".join(lost))
+
+
+def write(exported: Exported, folder: str | Path) -> tuple[Path, ...]:
+    """Write the files, each in one step, making folders as needed; a file with the same bytes is kept.
+
+    Returns their paths, sorted. Raises OSError.
+    """
+    out = []
+    for name, data in sorted(exported.files.items()):
+        target = Path(folder) / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.is_file() and target.stat().st_size == len(data) and target.read_bytes() == data:
+            os.utime(target)
+        else:
+            _replace(target, data)
+        out.append(target)
+    return tuple(out)
+
+
+def _replace(target: Path, data: bytes) -> None:
+    draft = target.parent / f".kinform-{secrets.token_hex(8)}.tmp"
+    try:
+        draft.write_bytes(data)
+        os.replace(draft, target)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.exports.exported import Exported
-from kinform.exports.looks import Shape, shapes
+from kinform.exports.looks import Shape, shapes_of
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.foundation.algebra.spatial import quaternions
@@ -56,7 +56,7 @@ class _File:
             "accessors", bufferView=view, componentType=component, count=len(packed), type=type, min=low, max=high
         )
 
-    def packed(self) -> bytes:
+    def encoded(self) -> bytes:
         """The file: header, JSON chunk, binary chunk."""
         self.data["buffers"] = [{"byteLength": len(self.binary)}]
         text = json.dumps(self.data, ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode("utf-8")
@@ -70,7 +70,7 @@ class _File:
 def export(model: ExportModel) -> Exported:
     """NAME.glb."""
     file = _File({"asset": {"version": "2.0", "generator": f"kinform {__version__}"}, "scene": 0})
-    seen = shapes(model)
+    shapes = shapes_of(model)
     meshes = _Meshes(file)
     half = float(np.sqrt(0.5))
     file.add("scenes", name=model.name, nodes=[0])
@@ -80,7 +80,7 @@ def export(model: ExportModel) -> Exported:
         nodes[str(body.name)] = file.add("nodes", name=str(body.name), extras={"kind": "body", "ground": body.ground})
     below: dict[int, list[int]] = {node: [] for node in nodes.values()}
     for name, node in nodes.items():
-        below[node] += [_part(file, meshes, shape) for shape in seen[name]]
+        below[node] += [_part(file, meshes, shape) for shape in shapes[name]]
     length = model.mechanism.length
     for joint in model.kinematics.joints:
         if joint.axis is not None and joint.point is not None:
@@ -93,7 +93,7 @@ def export(model: ExportModel) -> Exported:
     if lost:
         file.data["asset"]["extras"] = {"not carried": list(lost)}
     name = identifiers([model.name], FILES)[model.name]
-    return Exported({f"{name}.glb": file.packed()}, lost)
+    return Exported({f"{name}.glb": file.encoded()}, lost)
 
 
 class _Meshes:

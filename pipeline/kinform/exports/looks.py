@@ -12,11 +12,11 @@ from kinform.exports.names import FILES, identifiers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 
-__all__ = ["Shape", "shapes", "stl"]
+__all__ = ["Shape", "shapes_of", "stl"]
 
 Colour = tuple[float, float, float, float]
 
-_KNOWN: dict[str, tuple[float, float, float]] = {
+_COLOURS: dict[str, tuple[float, float, float]] = {
     "steel": (0.55, 0.57, 0.60),
     "stainless": (0.68, 0.69, 0.70),
     "aluminium": (0.77, 0.78, 0.80),
@@ -54,30 +54,30 @@ class Shape:
     """(F, 3)."""
 
     @property
-    def placed(self) -> Array:
+    def in_world(self) -> Array:
         """(V, 3) vertices in the world at the pose of the meshes."""
         return np.asarray(self.vertices @ self.X_WP[:3, :3].T + self.X_WP[:3, 3])
 
 
-def shapes(model: ExportModel) -> dict[str, tuple[Shape, ...]]:
+def shapes_of(model: ExportModel) -> dict[str, tuple[Shape, ...]]:
     """The shapes of each body, by its name; bodies without meshes have none."""
     files = identifiers((part.name for part in model.assembly.parts), FILES)
     colours = _colours(model.assembly.parts)
     out = {}
     for body in model.kinematics.bodies:
-        found = []
+        looks = []
         for name in body.parts:
             part = model.assembly.part(name)
             if part.mesh is None or not len(part.mesh.faces):
                 continue
             mesh, material = part.mesh, part.material or ""
-            found.append(
+            looks.append(
                 Shape(
                     part.name, files[part.name], material, colours[material], mesh.digest, part.X_WP,
                     mesh.vertices, mesh.faces,
                 )
             )  # fmt: skip
-        out[str(body.name)] = tuple(found)
+        out[str(body.name)] = tuple(looks)
     return out
 
 
@@ -96,7 +96,7 @@ def stl(vertices: Array, faces: NDArray[np.int64]) -> bytes:
 
 def _colours(parts: tuple[Part, ...]) -> dict[str, Colour]:
     """By material: its own colour where that is known, else the next of the palette, in the order of names."""
-    used = sorted({part.material or "" for part in parts})
-    unknown = [name for name in used if name not in _KNOWN]
+    materials = sorted({part.material or "" for part in parts})
+    unknown = [name for name in materials if name not in _COLOURS]
     palette = {name: _PALETTE[k % len(_PALETTE)] for k, name in enumerate(unknown)}
-    return {name: (*(_KNOWN.get(name) or palette[name]), 1.0) for name in used}
+    return {name: (*(_COLOURS.get(name) or palette[name]), 1.0) for name in materials}

@@ -3,7 +3,7 @@
 Body frames have their origin on the joint that carries them and the axes of the world at the pose of the
 meshes; joints of a body act in the order in which they are listed, from the parent. A loop closes in a
 ball (`connect`), a hinge (two `connect` on its axis) or a weld; where only another kind of joint could close
-it, a body is made of two halves that are welded. Meshes are for the eye: mating surfaces always touch, so
+it, a body is robot of two halves that are welded. Meshes are for the eye: mating surfaces always touch, so
 they must not collide.
 """
 
@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 
 from kinform.behaviour.primitives import Ball
+from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, STEP, STEP_OF_LOOPS
 from kinform.exports.exported import Exported
-from kinform.exports.losses import of_teeth
 from kinform.exports.mjcf_drives import actuators, gears, load
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MJCF
-from kinform.exports.robot import Robot, RobotLink, robot
+from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render, vector
 from kinform.exports.tree import Closing, Link, Motion
 from kinform.foundation.algebra.spatial import to_matrix
@@ -31,14 +31,6 @@ __all__ = ["export"]
 
 
 CLOSABLE = ("spherical", "revolute", "fixed")
-LEAST_MOMENT = 1e-14
-"""kg·m²: below 1e-15 MuJoCo refuses a moment of inertia."""
-GRAIN = 1e-9
-"""kg and kg·m², of bodies whose mass is not known."""
-MOST_FACETS = 200_000
-"""More than these MuJoCo does not read from STL."""
-STEP, STEP_OF_LOOPS = 0.001, 0.0002
-"""s, of RK4; loops are stiff springs to MuJoCo and need the shorter one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,43 +80,43 @@ class _Equality:
 
 def export(model: ExportModel) -> Exported:
     """NAME.xml and meshes/."""
-    made = robot(model, MJCF, CLOSABLE)
-    lost = [*model.lost, *_losses(made)]
-    made = _with_moments(made, lost)
-    root, twins = _bodies(made)
-    equalities = [row for closing in made.closing for row in _closure(made, closing, twins)]
-    rows = actuators(made, lost)
+    robot = robot_of(model, MJCF, CLOSABLE)
+    lost = [*model.lost, *_losses(robot)]
+    robot = _with_moments(robot, lost)
+    root, twins = _bodies(robot)
+    equalities = [row for closing in robot.closing for row in _closure(robot, closing, twins)]
+    rows = actuators(robot, lost)
     ordered = list(_walk(root))
-    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged, *of_teeth(model.system)]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
     text = render(
-        "model.mjcf.j2", robot=made, root=root, equalities=equalities, actuators=rows, lost=lost,
-        remarks=remarks, materials=_materials(made), step=STEP_OF_LOOPS if equalities else STEP,
+        "model.mjcf.j2", robot=robot, root=root, equalities=equalities, actuators=rows, lost=lost,
+        remarks=remarks, materials=robot.materials, step=STEP_OF_LOOPS if equalities else STEP,
         qpos=[x for body in ordered for x in body.qpos], qvel=[x for body in ordered for x in body.qvel],
-        loads=[load(made, one) for one in made.loads], most=MOST_FACETS, inf=np.inf,
-        screws=[screw for body in ordered for screw in _screws(body)], gears=gears(made, lost),
-        ctrl=[*(row["start"] for row in rows), *(1.0 for _ in made.loads)],
+        loads=[load(robot, one) for one in robot.loads], most=MOST_FACETS, inf=np.inf,
+        screws=[screw for body in ordered for screw in _screws(body)], gears=gears(robot, lost),
+        ctrl=[*(row["start"] for row in rows), *(1.0 for _ in robot.loads)],
     )  # fmt: skip
-    return Exported({f"{made.stem}.xml": text, **made.meshes}, tuple(lost), tuple(remarks))
+    return Exported({f"{robot.stem}.xml": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def _losses(made: Robot) -> list[str]:
+def _losses(robot: Robot) -> list[str]:
     out = []
-    for link in made.links:
+    for link in robot.links:
         for visual in link.visuals:
             if visual.facets > MOST_FACETS:
                 out.append(f"{visual.name}: its mesh; MuJoCo reads up to {MOST_FACETS} facets")
-    for closing in made.closing:
-        if closing.joint.kind.name in CLOSABLE and made.model.system.actors(closing.joint.name):
+    for closing in robot.closing:
+        if closing.joint.kind.name in CLOSABLE and robot.model.system.actors(closing.joint.name):
             out.append(f"{closing.joint.subject}: what acts on it; it closes a loop and has no coordinate in MJCF")
     return out
 
 
-def _with_moments(made: Robot, lost: list[str]) -> Robot:
+def _with_moments(robot: Robot, lost: list[str]) -> Robot:
     """Moments of inertia that are zero, and masses that are not known, raised to what MuJoCo accepts."""
     links = []
-    for k, link in enumerate(made.links):
+    for k, link in enumerate(robot.links):
         if k and link.mass is None:
             link = replace(link, mass=GRAIN, inertia=GRAIN * np.eye(3))
             lost.append(f"{link.name}: a body without mass, which MuJoCo refuses; it has {GRAIN:g} kg")
@@ -134,25 +126,25 @@ def _with_moments(made: Robot, lost: list[str]) -> Robot:
                 link = replace(link, inertia=link.inertia + (LEAST_MOMENT - min(least, 0.0)) * np.eye(3))
                 lost.append(f"{link.name}: a moment of inertia of zero; it is {LEAST_MOMENT:g} kg·m²")
         links.append(link)
-    return replace(made, links=tuple(links))
+    return replace(robot, links=tuple(links))
 
 
-def _bodies(made: Robot) -> tuple[_Body, dict[str, str]]:
+def _bodies(robot: Robot) -> tuple[_Body, dict[str, str]]:
     """The nested bodies, and for joints that cut a body the name of its second half."""
-    bodies = [_Body(link, _joints(made, link)) for link in made.links]
-    for k, link in enumerate(made.links):
+    bodies = [_Body(link, _joints(robot, link)) for link in robot.links]
+    for k, link in enumerate(robot.links):
         if k:
             bodies[max(link.link.parent, 0)].children.append(bodies[k])
-        _state(made, bodies[k])
+        _state(robot, bodies[k])
     twins: dict[str, str] = {}
-    names = {link.name for link in made.links}
-    for closing in made.closing:
+    names = {link.name for link in robot.links}
+    for closing in robot.closing:
         if closing.joint.kind.name not in CLOSABLE:
-            twins[closing.joint.subject] = _cut(made, closing, bodies, names)
+            twins[closing.joint.subject] = _cut(robot, closing, bodies, names)
     return bodies[0], twins
 
 
-def _cut(made: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -> str:
+def _cut(robot: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -> str:
     """Half of the second body (the first where that is the ground), carried by the closing joint."""
     forward = closing.b != 0
     parent, cut = (closing.a, closing.b) if forward else (closing.b, closing.a)
@@ -166,28 +158,28 @@ def _cut(made: Robot, closing: Closing, bodies: list[_Body], names: set[str]) ->
     link = Link(whole.link.link.body, parent, closing.joint, forward, origin)
     shift = whole.link.link.origin - origin
     half = replace(
-        whole.link, link=link, name=name, offset=origin - made.tree.links[parent].origin,
-        centre=whole.link.centre + shift, visuals=(), actors=made.model.system.actors(closing.joint.name),
-        range=made.model.ranges.get(closing.joint.subject),
+        whole.link, link=link, name=name, offset=origin - robot.tree.links[parent].origin,
+        centre=whole.link.centre + shift, visuals=(), actors=robot.model.system.actors(closing.joint.name),
+        range=robot.model.ranges.get(closing.joint.subject),
     )  # fmt: skip
     # Every cut halves what is left, so that the whole body keeps its mass.
     whole.share *= 0.5
-    body = _Body(half, _joints(made, half), whole.share, True)
-    _state(made, body)
+    body = _Body(half, _joints(robot, half), whole.share, True)
+    _state(robot, body)
     bodies[parent].children.append(body)
     return name
 
 
-def _joints(made: Robot, link: RobotLink) -> list[_Joint]:
+def _joints(robot: Robot, link: RobotLink) -> list[_Joint]:
     if link.link.joint is None:
         return []
     point = link.link.joint.geometry.point
     position = np.zeros(3) if point is None else point - link.link.origin
-    return [row for motion in link.link.motions for row in _joint(made, link, motion, position)]
+    return [row for motion in link.link.motions for row in _joint(robot, link, motion, position)]
 
 
-def _joint(made: Robot, link: RobotLink, motion: Motion, position: Array) -> list[_Joint]:
-    name, primitive = made.joint_names[motion.name], motion.primitive
+def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> list[_Joint]:
+    name, primitive = robot.joint_names[motion.name], motion.primitive
     if isinstance(primitive, Ball):
         return [_Joint(name, "ball", position, np.zeros(3))]
     single = link.link.joint is not None and link.link.joint.kind.rates == 1
@@ -200,14 +192,14 @@ def _joint(made: Robot, link: RobotLink, motion: Motion, position: Array) -> lis
     return [turn, _Joint(f"{name}.slide", "slide", position, primitive.omega)]
 
 
-def _state(made: Robot, body: _Body) -> None:
+def _state(robot: Robot, body: _Body) -> None:
     """Coordinates and rates of the body's joints at the start."""
     joint = body.link.link.joint
     if joint is None:
-        if body.link.link.parent < 0 and body.link.link.body is not made.tree.links[0].body:
+        if body.link.link.parent < 0 and body.link.link.body is not robot.tree.links[0].body:
             body.qpos, body.qvel = [*body.link.link.origin.tolist(), 1.0, 0.0, 0.0, 0.0], [0.0] * 6
         return
-    q, v = made.model.coordinates(joint.subject)
+    q, v = robot.model.coordinates(joint.subject)
     if joint.kind.name == "spherical":
         sign = 1.0 if body.link.link.forward else -1.0
         body.qpos = [float(q[0]), *(sign * q[1:]).tolist()]
@@ -229,10 +221,10 @@ def _walk(body: _Body) -> Iterator[_Body]:
         yield from _walk(child)
 
 
-def _closure(made: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equality]:
+def _closure(robot: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equality]:
     joint = closing.joint
-    a = made.links[closing.a]
-    first, second = ("world" if k == 0 else made.links[k].name for k in (closing.a, closing.b))
+    a = robot.links[closing.a]
+    first, second = ("world" if k == 0 else robot.links[k].name for k in (closing.a, closing.b))
     if joint.subject in twins:
         whole = second if closing.b != 0 else first
         return [_Equality("weld", f"{joint.subject} half", whole, twins[joint.subject], "")]
@@ -241,7 +233,7 @@ def _closure(made: Robot, closing: Closing, twins: dict[str, str]) -> list[_Equa
     point = np.asarray(joint.geometry.point) - a.link.origin
     if joint.kind.name == "spherical":
         return [_Equality("connect", joint.subject, first, second, vector(point))]
-    reach = 0.5 * made.model.mechanism.length * np.asarray(joint.geometry.axis)
+    reach = 0.5 * robot.model.mechanism.length * np.asarray(joint.geometry.axis)
     return [
         _Equality("connect", f"{joint.subject} {side}", first, second, vector(point + sign * reach))
         for side, sign in (("lower", -1.0), ("upper", 1.0))
@@ -256,7 +248,3 @@ def _screws(body: _Body) -> list[dict[str, Any]]:
         if not isinstance(primitive, Ball) and primitive.omega.any() and primitive.slide.any():
             out.append({"joint": joint.name, "lead": float(primitive.slide @ primitive.omega)})
     return out
-
-
-def _materials(made: Robot) -> dict[str, tuple[float, float, float, float]]:
-    return dict(sorted((visual.material, visual.rgba) for link in made.links for visual in link.visuals))

@@ -11,38 +11,36 @@ from kinform.behaviour import Constant, DcMotor, EffortDrive, LoadComponent, Mot
 from kinform.behaviour.primitives import Ball
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Signal
+from kinform.exports.constants import BANDWIDTH
 from kinform.exports.names import XML, identifiers
 from kinform.exports.robot import Robot, RobotLink
 
 __all__ = ["actuators", "gears", "load"]
 
-BANDWIDTH = 2.0 * np.pi * 10.0
-"""rad/s, of the position servos that stand for prescribed motions."""
 
-
-def gears(made: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
+def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     """Couplings with the names of both joints; those that MJCF cannot have are added to `lost`."""
     out = []
-    for gear, a, b in made.gears:
-        if made.link_of(a.subject) is None or made.link_of(b.subject) is None:
+    for gear, a, b in robot.gears:
+        if robot.link_of(a.subject) is None or robot.link_of(b.subject) is None:
             lost.append(f"{gear.subject}: one of its joints closes a loop and has no coordinate in MJCF")
             continue
-        out.append((gear, made.joint_names[a.subject], made.joint_names[b.subject]))
+        out.append((gear, robot.joint_names[a.subject], robot.joint_names[b.subject]))
     return out
 
 
-def actuators(made: Robot, lost: list[str]) -> list[dict[str, Any]]:
+def actuators(robot: Robot, lost: list[str]) -> list[dict[str, Any]]:
     """Drives, with what they hold at the start; what MuJoCo does otherwise is added to `lost`."""
     out: list[dict[str, Any]] = []
-    links = list(made.links)
+    links = list(robot.links)
     names = identifiers((drive.name for link in links for drive in link.drives), XML)
     for link in links:
         joint = link.link.joint
         for drive in link.drives:
             assert joint is not None
-            at = {"name": names[drive.name], "joint": made.joint_names[joint.subject], "bound": None}
+            at = {"name": names[drive.name], "joint": robot.joint_names[joint.subject], "bound": None}
             if isinstance(drive, MotionDrive):
-                inertia = _inertia_on(made, link)
+                inertia = _inertia_on(robot, link)
                 gains = {"kp": inertia * BANDWIDTH**2, "kv": 2.0 * inertia * BANDWIDTH}
                 out.append(at | gains | {"type": "position", "start": drive.signal.value(0.0)})
                 lost.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
@@ -55,7 +53,7 @@ def actuators(made: Robot, lost: list[str]) -> list[dict[str, Any]]:
             elif isinstance(drive, Servo):
                 out.append(at | _servo(drive.subject, drive.target, drive.controller, 1.0, 0.0, lost))
             else:
-                out.append(at | _motor(made, drive, lost))
+                out.append(at | _motor(robot, drive, lost))
     return out
 
 
@@ -79,13 +77,13 @@ def _servo(
     }
 
 
-def _motor(made: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
+def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     """A motor whose current follows its voltage at once; controlled by that, or by its controller's target."""
     if motor.inductance:
         lost.append(f"{motor.subject}: the inductance of its motor ({motor.inductance:g} H)")
     ratio = motor.constant * motor.gear / motor.resistance
     drag = ratio * motor.constant * motor.gear
-    supply = made.model.system.supply(motor.name)
+    supply = robot.model.system.supply(motor.name)
     if isinstance(supply, VoltageController):
         return _servo(motor.subject, supply.target, supply.controller, ratio, drag, lost)
     if not isinstance(supply.signal, Constant):
@@ -93,16 +91,16 @@ def _motor(made: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     return {"type": "general", "gain": ratio, "drag": drag, "start": supply.signal.value(0.0)}
 
 
-def _inertia_on(made: Robot, link: RobotLink) -> float:
+def _inertia_on(robot: Robot, link: RobotLink) -> float:
     """What a joint with one freedom moves if all others hold still (kg·m² or kg), at the pose of the meshes."""
     (motion,) = link.link.motions
     primitive = motion.primitive
     assert not isinstance(primitive, Ball)
-    total, queue = 0.0, [next(k for k, other in enumerate(made.links) if other is link)]
+    total, queue = 0.0, [next(k for k, other in enumerate(robot.links) if other is link)]
     while queue:
         k = queue.pop()
-        queue += made.tree.children(k)
-        other = made.links[k]
+        queue += robot.tree.children(k)
+        other = robot.links[k]
         if other.mass is None:
             continue
         if not primitive.omega.any():
@@ -113,10 +111,10 @@ def _inertia_on(made: Robot, link: RobotLink) -> float:
     return total if total > 0.0 else 1.0
 
 
-def load(made: Robot, given: LoadComponent) -> dict[str, Any]:
+def load(robot: Robot, given: LoadComponent) -> dict[str, Any]:
     """A load as an actuator at a site."""
-    body = made.model.system.body_at(given.name, "frame").subject
-    link = next(k for k in made.links if k.link.body.subject == body)
+    body = robot.model.system.body_at(given.name, "frame").subject
+    link = next(k for k in robot.links if k.link.body.subject == body)
     return {
         "name": given.name,
         "body": link.name,

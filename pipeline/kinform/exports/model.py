@@ -6,6 +6,7 @@ same thing: the same joints, drives and initial values.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,6 +83,16 @@ class ExportModel:
     def lost(self) -> tuple[str, ...]:
         """What formats other than the port model itself do not carry, whatever they can say."""
         return (*self.missing, *self.elsewhere)
+
+    @property
+    def teeth(self) -> tuple[str, ...]:
+        """What becomes of teeth where a format has gears as ratios between joints, in sentences."""
+        return tuple(
+            f"{gear.subject}: a ratio between its joints; what its teeth push on the bearings is left out"
+            + (", and that they end" if math.isfinite(gear.lower) or math.isfinite(gear.upper) else "")
+            for gear in self.system.gears
+            if gear.pitch_point is not None
+        )
 
     @property
     def name(self) -> str:
@@ -171,10 +182,10 @@ def _ranges(
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
     for stated in assembly.function.joints:
-        found = resolve_joint(assembly, kinematics, stated.name)
-        if stated.range is not None and found.joint is not None and found.joint.name in single:
-            low, high = stated.range if found.sign > 0 else (-stated.range[1], -stated.range[0])
-            out[found.joint.name] = (float(low), float(high))
+        derived = resolve_joint(assembly, kinematics, stated.name)
+        if stated.range is not None and derived.joint is not None and derived.joint.name in single:
+            low, high = stated.range if derived.sign > 0 else (-stated.range[1], -stated.range[0])
+            out[derived.joint.name] = (float(low), float(high))
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
             stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from kinform.behaviour import (
-    Component,
     Damper,
     DcMotor,
     EffortDrive,
@@ -24,20 +23,17 @@ from kinform.behaviour import (
     RigidBody,
     Servo,
     Spring,
-    System,
     VoltageController,
 )
 from kinform.behaviour.primitives import Ball, OneFreedom
 from kinform.behaviour.shafts import Controller
-from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
+from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table
+from kinform.exports.equations import Closure, Equations, equations_of, inertia_of, law_numbers, polynomials
 from kinform.exports.exported import Exported
-from kinform.exports.laws import pieces
-from kinform.exports.loops import Closure, Loops, held_rates, loops, singular
-from kinform.exports.losses import of_teeth
 from kinform.exports.model import ExportModel
 from kinform.exports.names import MODELICA, identifiers
 from kinform.exports.text import number, render, vector
-from kinform.exports.tree import Link, Tree, grow
+from kinform.exports.tree import Link
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.arrays import Array
 
@@ -55,51 +51,59 @@ _SUFFIXES = ("", "_closure", "_free", *(f"_held_{k}" for k in (1, 2, 3)))
 
 
 @dataclass
-class _Built:
-    """What the system is made of."""
+class _Package:
+    """What the system is made of, as it grows."""
 
+    equations: Equations
+    names: dict[str, str]
+    """Identifiers of components."""
     classes: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Closures and tables, by name of their class."""
     instances: list[tuple[str, str, str, str]] = field(default_factory=list)
     """(class, name, modifiers, comment)."""
     connections: list[tuple[str, str]] = field(default_factory=list)
 
+    @property
+    def model(self) -> ExportModel:
+        """What is written."""
+        return self.equations.model
+
+    def add(self, cls: str, name: str, modifiers: str, comment: str, **joined: str) -> None:
+        """Add an instance; `joined`: by connector of it, what that is connected with."""
+        self.instances.append((cls, name, modifiers, comment))
+        self.connections += [(f"{name}.{connector}", other) for connector, other in joined.items()]
+
+    def between(self, first: str, name: str, second: str) -> None:
+        """Connect a joint from the frame of one component to that of another."""
+        self.connections += [(f"{first}.frame", f"{name}.a"), (f"{name}.b", f"{second}.frame")]
+
 
 def export(model: ExportModel) -> Exported:
     """NAME.mo: the package NAME with the model NAME.System."""
-    tree = grow(model.system)
-    found = loops(model, tree)
+    equations = equations_of(model)
     names = identifiers(
         (component.name for component in model.system.components), MODELICA, beside=("gravity",), suffixes=_SUFFIXES
     )
-    lost = [*model.lost, *singular(model)]
-    remarks: list[str] = [*of_teeth(model.system)]
-    built = _Built()
-    for component in model.system.components:
-        if isinstance(component, Ground | RigidBody):
-            _body(built, component, names)
-    held = held_rates(model, found, lost, remarks)
-    for link in tree.links:
+    package = _Package(equations, names)
+    for body in model.system.bodies:
+        _body(package, body)
+    for link in equations.tree.links:
         if link.joint is not None:
-            _carried(built, model, tree, link, names, found, held)
+            _joint(package, link, names[link.joint.name])
+            package.between(
+                names[equations.tree.links[link.parent].body.name], names[link.joint.name], names[link.body.name]
+            )
         elif link.parent < 0 and not isinstance(link.body, Ground):
-            _adrift(built, model, link, names, tree)
-    for closure in found.closures:
-        _closed(built, model, tree, closure, names, found, held)
-    for closing in tree.closing:
-        if not closing.rigid and closing.joint.subject not in {c.joint.subject for c in found.closures}:
-            lost.append(f"{closing.joint.subject}: it closes a loop that is not connected with the ground")
-    _actors(built, model, names, found, lost, remarks)
-    if model.ranges:
-        remarks.append("joints do not stop at the ends of their ranges, as in our simulation")
-    if found.closures:
-        remarks.append("redundant constraints of loops are left out: closures hold independent directions only")
-    package = identifiers([model.name], MODELICA, beside=LIBRARY)[model.name]
+            _free_body(package, link)
+    for closure in equations.closures:
+        _closure(package, closure)
+    _actors(package)
+    title = identifiers([model.name], MODELICA, beside=LIBRARY)[model.name]
     text = render(
-        "package.mo.j2", package=package, model=model, built=built, lost=lost, remarks=remarks,
-        number_of_free=len(found.free), v=_array,
+        "package.mo.j2", package=title, model=model, built=package, lost=equations.lost, remarks=equations.remarks,
+        number_of_free=len(equations.free), v=_array,
     )  # fmt: skip
-    return Exported({f"{package}.mo": text}, tuple(lost), tuple(remarks))
+    return Exported({f"{title}.mo": text}, tuple(equations.lost), tuple(equations.remarks))
 
 
 def _array(values: Any) -> str:
@@ -110,106 +114,80 @@ def _matrix(values: Array) -> str:
     return "[" + "; ".join(vector(row, ", ") for row in values) + "]"
 
 
-def _body(built: _Built, body: Ground | RigidBody, names: dict[str, str]) -> None:
+def _body(package: _Package, body: Ground | RigidBody) -> None:
     if isinstance(body, Ground):
-        built.instances.append(("Ground", names[body.name], "", body.subject))
+        package.add("Ground", package.names[body.name], "", body.subject)
         return
-    known = body.mass is not None
-    mass, centre, inertia = (
-        (body.mass, body.centre_of_mass, body.inertia) if known else (0.0, np.zeros(3), np.zeros((3, 3)))
-    )
-    values = f"m={number(mass or 0.0)}, c={_array(centre)}, I={_matrix(inertia)}, g=gravity"
-    built.instances.append(("Body", names[body.name], values, body.subject))
+    mass, centre, inertia = inertia_of(body)
+    values = f"m={number(mass)}, c={_array(centre)}, I={_matrix(inertia)}, g=gravity"
+    package.add("Body", package.names[body.name], values, body.subject)
 
 
-def _carried(
-    built: _Built, model: ExportModel, tree: Tree, link: Link, names: dict[str, str], found: Loops, held: frozenset[int]
-) -> None:
-    assert link.joint is not None
-    name = names[link.joint.name]
-    parent = tree.links[link.parent].body
-    _joint(built, model, link, name, found, held)
-    built.connections.append((f"{names[parent.name]}.frame", f"{name}.a"))
-    built.connections.append((f"{name}.b", f"{names[link.body.name]}.frame"))
-
-
-def _closed(
-    built: _Built, model: ExportModel, tree: Tree, closure: Closure, names: dict[str, str], found: Loops,
-    held: frozenset[int],
-) -> None:  # fmt: skip
-    name = names[closure.joint.name]
-    first, second = tree.links[closure.a].body, tree.links[closure.b].body
-    _joint(built, model, Link(second, closure.a, closure.joint, True, closure.point), name, found, held)
+def _closure(package: _Package, closure: Closure) -> None:
+    """The joint that closes a loop, and what holds its end to the second body."""
+    name, links = package.names[closure.joint.name], package.equations.tree.links
+    first, second = (package.names[links[end].body.name] for end in (closure.a, closure.b))
+    _joint(package, Link(links[closure.b].body, closure.a, closure.joint, True, closure.point), name)
     kind = "Closure_" + "".join("01"[held] for held in (*closure.place, *closure.turn))
-    built.classes[kind] = {"kind": "closure", "place": closure.place, "turn": closure.turn}
+    package.classes[kind] = {"kind": "closure", "place": closure.place, "turn": closure.turn}
     values = f"s={_array(closure.point)}, e={_matrix(closure.axes.T)}"
-    built.instances.append((kind, f"{name}_closure", values, f"{closure.joint.subject} closes a loop"))
-    built.connections.append((f"{names[first.name]}.frame", f"{name}.a"))
-    built.connections.append((f"{name}.b", f"{name}_closure.a"))
-    built.connections.append((f"{name}_closure.b", f"{names[second.name]}.frame"))
+    package.add(kind, f"{name}_closure", values, f"{closure.joint.subject} closes a loop")
+    package.connections += [
+        (f"{first}.frame", f"{name}.a"), (f"{name}.b", f"{name}_closure.a"), (f"{name}_closure.b", f"{second}.frame"),
+    ]  # fmt: skip
 
 
-def _joint(built: _Built, model: ExportModel, link: Link, name: str, found: Loops, held: frozenset[int]) -> None:
+def _joint(package: _Package, link: Link, name: str) -> None:
     """The joint of a link, run through from its parent."""
-    joint = link.joint
+    joint, equations = link.joint, package.equations
     assert joint is not None
     kind = joint.kind.name
-    (slot,) = (s for s in model.mechanism.slots if s.name == joint.subject)
-    q, v = model.coordinates(joint.subject)
-    comment = joint.subject
+    rates = equations.rates_of(joint)
+    q, v = package.model.coordinates(joint.subject)
     if kind == "fixed":
-        built.instances.append(("Fixed", name, "", comment))
+        package.add("Fixed", name, "", joint.subject)
         return
     if kind == "spherical":
-        (primitive,) = (m.primitive for m in link.motions)
-        assert isinstance(primitive, Ball)
-        _ball(built, link, name, primitive, q, v, any(k in held for k in range(slot.v.start, slot.v.stop)))
+        (ball,) = (m.primitive for m in link.motions)
+        assert isinstance(ball, Ball)
+        _ball(package, link, name, ball, q, 0.0 * v if equations.held.intersection(rates) else v)
         return
     parts: dict[str, str] = {}
-    tied = _geared(model, found)
+    given = equations.led | equations.held | _geared(equations)
     for motion in link.motions:
-        screw = motion.primitive
+        screw, k = motion.primitive, motion.coordinate
         assert isinstance(screw, OneFreedom)
-        k = motion.coordinate
-        rate = slot.v.start + k
-        known = rate not in found.led and rate not in held and rate not in tied
-        parts[joint.kind.coordinates[k][0]] = _screw(screw, float(q[k]), float(v[k]), known)
-        if rate in held:
+        lead = float(screw.slide @ screw.omega)
+        parts[joint.kind.coordinates[k][0]] = _screw(screw, float(q[k]), float(v[k]), rates[k] not in given)
+        if rates[k] in equations.held:
             at = name if joint.kind.rates == 1 else f"{name}.{_PART[kind][k]}"
-            _drive(built, "Motion", f"{name}_held_{k + 1}", Constant(float(q[k])), f"{joint.subject} is held")
-            built.connections.append((f"{name}_held_{k + 1}.shaft", f"{at}.shaft"))
+            hold = f"{name}_held_{k + 1}"
+            _drive(package, "Motion", hold, Constant(float(q[k])), f"{joint.subject} is held", f"{at}.shaft")
     if joint.kind.rates == 1:
-        cls = {"revolute": "Revolute", "prismatic": "Prismatic", "screw": "Screw"}[kind]
         (values,) = parts.values()
         if kind == "screw":
-            (screw,) = (m.primitive for m in link.motions)
-            assert isinstance(screw, OneFreedom)
-            values += f", lead={number(float(screw.slide @ screw.omega))}"
-        built.instances.append((cls, name, values, comment))
+            values += f", lead={number(lead)}"
+        package.add(kind.capitalize(), name, values, joint.subject)
         return
-    cls = {"cylindrical": "Cylindrical", "planar": "Planar", "universal": "Universal"}[kind]
-    if kind == "planar" and not link.forward:
-        cls = "PlanarReversed"
-    inner = ", ".join(
-        f"{_PART[kind][k]}({parts[coordinate]})" for k, (coordinate, _) in enumerate(joint.kind.coordinates)
-    )
+    order = [(_PART[kind][k], coordinate) for k, (coordinate, _) in enumerate(joint.kind.coordinates)]
     if kind == "universal" and not link.forward:
-        inner = ", ".join(f"{part}({parts[c]})" for part, c in (("first", "angle2"), ("second", "angle")))
-    built.instances.append((cls, name, inner, comment))
+        order = [("first", "angle2"), ("second", "angle")]
+    inner = ", ".join(f"{part}({parts[coordinate]})" for part, coordinate in order)
+    reverse = "Reversed" if kind == "planar" and not link.forward else ""
+    package.add(kind.capitalize() + reverse, name, inner, joint.subject)
 
 
 _PART = {"cylindrical": ("turn", "slide"), "planar": ("turn", "u", "v"), "universal": ("first", "second")}
 """Names of the parts of joints with several freedoms, in the order of their coordinates."""
 
 
-def _geared(model: ExportModel, found: Loops) -> frozenset[int]:
+def _geared(equations: Equations) -> frozenset[int]:
     """Rates that gears give."""
-    slots = {slot.name: slot for slot in model.mechanism.slots}
+    system = equations.model.system
     given: set[int] = set()
-    for gear, kept in zip(model.system.gears, found.gears, strict=True):
-        rates = [slots[model.system.joint_at(gear.name, port).subject].v.start for port in ("a", "b")]
-        if kept:
-            given.add(next((k for k in rates if k not in found.led and k not in given), rates[0]))
+    for gear in equations.gears:
+        rates = [equations.rates_of(system.joint_at(gear.name, port))[0] for port in ("a", "b")]
+        given.add(next((k for k in rates if k not in equations.led and k not in given), rates[0]))
     return frozenset(given)
 
 
@@ -222,89 +200,70 @@ def _screw(screw: OneFreedom, q: float, v: float, known: bool) -> str:
     return f"n={_array(screw.omega)}, s={_array(screw.point)}, {start}"
 
 
-def _ball(built: _Built, link: Link, name: str, ball: Ball, q: Array, v: Array, resting: bool) -> None:
-    """A spherical joint; `resting`: it starts at rest, whatever the joint's rates."""
+def _ball(package: _Package, link: Link, name: str, ball: Ball, q: Array, v: Array) -> None:
+    """A spherical joint that starts at the quaternion q with the angular velocity v, both of the joint."""
     if not link.forward:
         v = -to_matrix(q).T @ v
         q = q * np.array([1.0, -1.0, -1.0, -1.0])
-    values = (
-        f"s={_array(ball.point)}, q(start={_array(q)}, each fixed=true), "
-        f"w(start={_array(0.0 * v if resting else v)}, each fixed=true)"
-    )
+    values = f"s={_array(ball.point)}, q(start={_array(q)}, each fixed=true), w(start={_array(v)}, each fixed=true)"
     assert link.joint is not None
-    built.instances.append(("Spherical", name, values, link.joint.subject))
+    package.add("Spherical", name, values, link.joint.subject)
 
 
-def _adrift(built: _Built, model: ExportModel, link: Link, names: dict[str, str], tree: Tree) -> None:
-    name = f"{names[link.body.name]}_free"
-    start = model.start[link.body.subject]
-    assert isinstance(link.body, RigidBody)
+def _free_body(package: _Package, link: Link) -> None:
+    """What carries a body that no joints connect with the ground."""
+    body = package.names[link.body.name]
+    start = package.model.start[link.body.subject]
     values = f"x(start={_array(start.position)}, each fixed=true), q(start={_array(start.quaternion)}, each fixed=true)"
-    built.instances.append(("Free", name, values, f"nothing connects {link.body.subject} with the ground"))
-    built.connections.append((f"{names[tree.links[0].body.name]}.frame", f"{name}.a"))
-    built.connections.append((f"{name}.b", f"{names[link.body.name]}.frame"))
+    package.add("Free", f"{body}_free", values, f"nothing connects {link.body.subject} with the ground")
+    package.between(package.names[package.equations.tree.links[0].body.name], f"{body}_free", body)
 
 
-def _actors(
-    built: _Built, model: ExportModel, names: dict[str, str], found: Loops, lost: list[str], remarks: list[str]
-) -> None:
-    system = model.system
+def _actors(package: _Package) -> None:
+    """What acts on joints, gears and loads."""
+    system, names = package.model.system, package.names
     for joint in system.joints:
-        led = False
-        for actor in system.actors(joint.name):
-            name = names[actor.name]
+        shaft = f"{names[joint.name]}.shaft"
+        for actor in package.equations.actors(joint):
+            name, about = names[actor.name], actor.subject
             if isinstance(actor, MotionDrive):
-                if led:
-                    lost.append(f"{actor.subject}: a second drive prescribes the motion of {joint.subject}")
-                    continue
-                led = True
-                signal = smooth(actor.signal) if model.with_forces else actor.signal
-                _drive(built, "Motion", name, signal, actor.subject)
+                _drive(package, "Motion", name, actor.signal, about, shaft)
             elif isinstance(actor, EffortDrive):
-                _drive(built, "Effort", name, actor.signal, actor.subject)
+                _drive(package, "Effort", name, actor.signal, about, shaft)
             elif isinstance(actor, Spring):
                 values = f"k={number(actor.stiffness)}, rest={number(actor.rest)}"
-                built.instances.append(("Spring", name, values, actor.subject))
+                package.add("Spring", name, values, about, shaft=shaft)
             elif isinstance(actor, Damper):
-                built.instances.append(("Damper", name, f"d={number(actor.damping)}", actor.subject))
+                package.add("Damper", name, f"d={number(actor.damping)}", about, shaft=shaft)
             elif isinstance(actor, Servo):
-                built.instances.append(("Servo", name, _controlled(actor.controller, actor.target), actor.subject))
+                package.add("Servo", name, _controlled(actor.controller, actor.target), about, shaft=shaft)
             elif isinstance(actor, DcMotor):
-                _motor(built, system, names, actor, f"{names[joint.name]}.shaft")
-            else:
-                continue
-            built.connections.append((f"{name}.shaft", f"{names[joint.name]}.shaft"))
-    for gear, held in zip(system.gears, found.gears, strict=True):
-        if not held:
-            remarks.append(f"{gear.subject}: it is redundant with the loops")
-            continue
-        built.instances.append(("Gear", names[gear.name], f"ratio={number(gear.ratio)}", gear.subject))
-        for port in ("a", "b"):
-            other = names[system.joint_at(gear.name, port).name]
-            built.connections.append((f"{names[gear.name]}.{port}", f"{other}.shaft"))
+                _motor(package, actor, shaft)
+    for gear in package.equations.gears:
+        ends = {port: f"{names[system.joint_at(gear.name, port).name]}.shaft" for port in ("a", "b")}
+        package.add("Gear", names[gear.name], f"ratio={number(gear.ratio)}", gear.subject, **ends)
     for load in system.loads:
         values = f"f={_array(load.force)}, t={_array(load.torque)}, s={_array(load.point)}, turning={int(load.turning)}"
-        built.instances.append(("Load", names[load.name], values, load.subject))
-        body: Component = system.body_at(load.name, "frame")
-        built.connections.append((f"{names[load.name]}.frame", f"{names[body.name]}.frame"))
+        frame = f"{names[system.body_at(load.name, 'frame').name]}.frame"
+        package.add("Load", names[load.name], values, load.subject, frame=frame)
 
 
-def _motor(built: _Built, system: System, names: dict[str, str], motor: DcMotor, shaft: str) -> None:
+def _motor(package: _Package, motor: DcMotor, shaft: str) -> None:
     """A motor, and at its terminal what supplies it."""
+    names, pin = package.names, f"{package.names[motor.name]}.pin"
     keys = ("resistance", "constant", "gear", *(("inductance",) if motor.inductance else ()))
     values = [f"{'k' if key == 'constant' else key}={number(getattr(motor, key))}" for key in keys]
-    kind = "Motor" if motor.inductance else "MotorWithoutCoil"
-    built.instances.append((kind, names[motor.name], ", ".join(values), motor.subject))
-    supply = system.supply(motor.name)
-    label = names[supply.name]
+    package.add(
+        "Motor" if motor.inductance else "MotorWithoutCoil", names[motor.name], ", ".join(values), motor.subject
+    )
+    supply = package.model.system.supply(motor.name)
     if isinstance(supply, VoltageController):
-        built.instances.append(
-            ("VoltageController", label, _controlled(supply.controller, supply.target), supply.subject)
-        )
-        built.connections.append((f"{label}.shaft", shaft))
+        control = _controlled(supply.controller, supply.target)
+        package.add("VoltageController", names[supply.name], control, supply.subject, shaft=shaft, pin=pin)
     else:
-        built.instances.append(("Voltage", label, f"given={_formula(supply.signal)}", f"voltage of {supply.subject}"))
-    built.connections.append((f"{label}.pin", f"{names[motor.name]}.pin"))
+        law = f"given={_formula(supply.signal)}"
+        package.add("Voltage", names[supply.name], law, f"voltage of {supply.subject}", pin=pin)
+    package.connections.append((f"{names[motor.name]}.shaft", shaft))
 
 
 def _controlled(controller: Controller, target: Signal) -> str:
@@ -326,7 +285,7 @@ def _formula(signal: Signal) -> str:
         return f"{number(signal.offset)} + ({number(signal.amplitude)})*sin({turn})"
     assert isinstance(signal, Table | Spline)
     out = ""
-    for end, start, coefficients in pieces(signal):
+    for end, start, coefficients in polynomials(signal):
         powers = (
             f"({number(c)})" + f"*(time - ({number(start)}))" * bool(k) + f"^{k}" * (k > 1)
             for k, c in enumerate(coefficients)
@@ -336,17 +295,12 @@ def _formula(signal: Signal) -> str:
     return out
 
 
-def _drive(built: _Built, kind: str, name: str, signal: Signal, comment: str) -> None:
+def _drive(package: _Package, kind: str, name: str, signal: Signal, comment: str, shaft: str) -> None:
     """A drive of the class of its law; tables have a class each."""
-    cls, values = f"Sine{kind}", ""
-    if isinstance(signal, Constant):
-        cls, values = f"Constant{kind}", f"level={number(signal.level)}"
-    elif isinstance(signal, Ramp):
-        cls, values = f"Ramp{kind}", f"offset={number(signal.offset)}, slope={number(signal.slope)}"
-    elif isinstance(signal, Sine):
-        values = ", ".join(f"{key}={number(getattr(signal, key))}" for key in ("offset", "amplitude", "speed", "phase"))
+    if isinstance(signal, Table | Spline):
+        cls, values = f"Table_{name}", ""
+        package.classes[cls] = {"kind": "table", "moving": kind == "Motion", "pieces": polynomials(signal)}
     else:
-        assert isinstance(signal, Table | Spline)
-        cls = f"Table_{name}"
-        built.classes[cls] = {"kind": "table", "moving": kind == "Motion", "pieces": pieces(signal)}
-    built.instances.append((cls, name, values, comment))
+        law, numbers = law_numbers(signal)
+        cls, values = f"{law.capitalize()}{kind}", ", ".join(f"{key}={number(value)}" for key, value in numbers.items())
+    package.add(cls, name, values, comment, shaft=shaft)

@@ -12,7 +12,7 @@ import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-__all__ = ["FILES", "MJCF", "MODELICA", "SDF", "VHDL", "XML", "Language", "comment", "identifiers", "one_line"]
+__all__ = ["FILES", "MJCF", "MODELICA", "SDF", "VHDL", "XML", "Language", "comment", "identifiers", "single_line"]
 
 
 @dataclass(frozen=True)
@@ -62,22 +62,22 @@ def identifiers(
     ordered = sorted(set(names))
     spelt = {name: language.spell(name) for name in ordered}
     for name in sorted(ordered, key=lambda n: (spelt[n] != n, n)):
-        found, number = spelt[name], 2
-        while any(language.key(found + end) in used for end in ends):
-            found, number = f"{spelt[name]}_{number}", number + 1
-        used.update(language.key(found + end) for end in ends)
-        out[name] = found
+        identifier, number = spelt[name], 2
+        while any(language.key(identifier + end) in used for end in ends):
+            identifier, number = f"{spelt[name]}_{number}", number + 1
+        used.update(language.key(identifier + end) for end in ends)
+        out[name] = identifier
     return out
 
 
-def one_line(text: str) -> str:
-    """Text without line breaks and control characters."""
+def single_line(text: str) -> str:
+    """The text with a blank in place of each line break and control character."""
     return "".join(" " if unicodedata.category(c) in ("Cc", "Zl", "Zp", "Cs") else c for c in text)
 
 
 def comment(text: str) -> str:
     """Text for a comment: on one line, and without two hyphens in a row or what ends a comment."""
-    flat = one_line(text).replace("*/", "* /")
+    flat = single_line(text).replace("*/", "* /")
     while "--" in flat:
         flat = flat.replace("--", "- -")
     return flat

@@ -15,30 +15,33 @@ __all__ = ["FORMATS", "Format", "export"]
 
 @dataclass(frozen=True)
 class Format:
-    """A format: its name on the command line, the module that writes it, and what for."""
+    """A format: its name on the command line, the module that writes it, what for, and the function that does so."""
 
     name: str
     module: str
     purpose: str
+    exporter: str = "export"
 
     @property
     def write(self) -> Callable[[ExportModel], Exported]:
         """Its exporter, imported when it is needed."""
-        found: Callable[[ExportModel], Exported] = import_module(f"kinform.exports.{self.module}").export
-        return found
+        exporter: Callable[[ExportModel], Exported] = getattr(
+            import_module(f"kinform.exports.{self.module}"), self.exporter
+        )
+        return exporter
 
 
 FORMATS: dict[str, Format] = {
-    known.name: known
-    for known in (
+    format.name: format
+    for format in (
         Format("csv", "series", "the motion as tables of bodies and joints"),
-        Format("dot", "dot", "the kinematic graph, for Graphviz"),
+        Format("dot", "graph.formats", "the kinematic graph, for Graphviz", "export_dot"),
         Format("glb", "glb", "shapes in motion, for viewers of glTF"),
         Format("json", "port_model", "the port model, with its schema"),
         Format("mjcf", "mjcf", "bodies, joints, loops and drives, for MuJoCo"),
         Format("modelica", "modelica", "components and connectors, for solvers of equations"),
         Format("sdf", "sdf", "links and joints, for Gazebo and Drake"),
-        Format("svg", "svg", "the kinematic graph, drawn"),
+        Format("svg", "graph.formats", "the kinematic graph, drawn", "export_svg"),
         Format("urdf", "urdf", "a tree of links and joints, for ROS and its relatives"),
         Format("vhdl-ams", "vhdl_ams", "entities of the standard IEEE 1076.1"),
     )
@@ -51,7 +54,7 @@ def export(design: Design, format: str, *, strict: bool = False) -> Exported:
     Raises StageError before joints are derived, ExportError when there is nothing to write, KeyError for
     an unknown format, and with `strict` LostError when the format cannot carry all of the model.
     """
-    made = FORMATS[format].write(export_model(design))
-    if strict and made.lost:
-        raise LostError(format, made.lost)
-    return made
+    exported = FORMATS[format].write(export_model(design))
+    if strict and exported.lost:
+        raise LostError(format, exported.lost)
+    return exported

@@ -21,13 +21,13 @@ from kinform.behaviour import (
     Spring,
 )
 from kinform.behaviour.components import Gear
-from kinform.exports.looks import Shape, shapes, stl
+from kinform.exports.looks import Shape, shapes_of, stl
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 from kinform.model.arrays import Array
 
-__all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot"]
+__all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot_of"]
 
 Driver = MotionDrive | EffortDrive | Servo | DcMotor
 """What drives a joint."""
@@ -111,6 +111,16 @@ class Robot:
         return tuple(closing for closing in self.tree.closing if not closing.rigid)
 
     @property
+    def materials(self) -> dict[str, tuple[float, float, float, float]]:
+        """Colour of each material that is used, by name."""
+        return dict(sorted((visual.material, visual.rgba) for link in self.links for visual in link.visuals))
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is to be said of ranges that are not known, and of teeth."""
+        return [*self.unranged, *self.model.teeth]
+
+    @property
     def loads(self) -> tuple[LoadComponent, ...]:
         """Forces on bodies."""
         return self.model.system.loads
@@ -141,35 +151,36 @@ class Robot:
         return bool(np.any(self.model.q != self.model.mechanism.start) or np.any(self.model.v))
 
 
-def robot(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> Robot:
+def robot_of(model: ExportModel, language: Language = XML, closable: Collection[str] = ()) -> Robot:
     """The tree of a model, with names for the language."""
     tree = grow(model.system, closable)
-    seen = shapes(model)
+    shapes = shapes_of(model)
     names = identifiers((link.body.subject for link in tree.links), language)
-    spoken = {name for joint in model.system.joints for name in (joint.subject, *coordinate_names(joint))}
-    joints = identifiers(spoken, language, suffixes=("", ".x", ".y", ".z", ".slide", " lower", " upper", " half"))
+    called = {name for joint in model.system.joints for name in (joint.subject, *coordinate_names(joint))}
+    joints = identifiers(called, language, suffixes=("", ".x", ".y", ".z", ".slide", " lower", " upper", " half"))
     links, meshes = [], {}
     for link in tree.links:
         parent = tree.links[link.parent].origin if link.parent >= 0 else np.zeros(3)
-        own = seen.get(link.body.subject, ())
-        for shape in own:
-            meshes[f"meshes/{shape.file}.stl"] = stl(shape.placed - link.origin, shape.faces)
-        links.append(_link(model, link, names[link.body.subject], link.origin - parent, own))
+        looks = shapes.get(link.body.subject, ())
+        for shape in looks:
+            meshes[f"meshes/{shape.file}.stl"] = stl(shape.in_world - link.origin, shape.faces)
+        links.append(_link(model, link, names[link.body.subject], link.origin - parent, looks))
     title = identifiers([model.name], language)[model.name]
     return Robot(model, title, identifiers([model.name], FILES)[model.name], tree, tuple(links), joints, meshes)
 
 
-def _link(model: ExportModel, link: Link, name: str, offset: Array, own: tuple[Shape, ...]) -> RobotLink:
+def _link(model: ExportModel, link: Link, name: str, offset: Array, shapes: tuple[Shape, ...]) -> RobotLink:
     body, mass, centre, inertia = link.body, None, np.zeros(3), np.zeros((3, 3))
     if isinstance(body, RigidBody) and body.mass is not None:
         mass, centre, inertia = body.mass, body.centre_of_mass - link.origin, body.inertia
     elif isinstance(body, Ground):
-        known = [b for b in (model.masses if model.masses else ()) if b.name == body.subject and b.mass is not None]
-        if known:
-            mass, centre, inertia = known[0].mass, known[0].centre_of_mass - link.origin, known[0].inertia
+        for properties in model.masses:
+            if properties.name == body.subject and properties.mass is not None:
+                mass, inertia = properties.mass, properties.inertia
+                centre = properties.centre_of_mass - link.origin
     visuals = tuple(
         Visual(shape.part, f"{shape.file}.stl", len(shape.faces), shape.material or "unstated", shape.rgba)
-        for shape in own
+        for shape in shapes
     )
     joint = link.joint
     actors = () if joint is None else model.system.actors(joint.name)

@@ -12,20 +12,16 @@ from dataclasses import dataclass, replace
 
 from kinform.behaviour.joints import KINDS
 from kinform.behaviour.primitives import OneFreedom
-from kinform.exports.chains import Hinge, chain
+from kinform.exports.chains import Hinge, chain, tree_losses
+from kinform.exports.constants import GRAIN, LEAST_SKEW
 from kinform.exports.exported import Exported
-from kinform.exports.losses import of_teeth, tree_losses
 from kinform.exports.model import ExportModel
 from kinform.exports.names import SDF
-from kinform.exports.robot import Robot, RobotLink, robot
+from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
 from kinform.model.arrays import Array
 
 __all__ = ["export"]
-
-
-GRAIN = 1e-9
-"""kg and kg·m², of links that have no mass."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,39 +54,39 @@ class _Grain:
 
 def export(model: ExportModel) -> Exported:
     """NAME.sdf and meshes/."""
-    made = robot(model, SDF, KINDS)
-    lost = [*model.lost, *tree_losses(made, "SDF", springs=True)]
-    taken = {link.name for link in made.links} | {"world"}
+    robot = robot_of(model, SDF, KINDS)
+    lost = [*model.lost, *tree_losses(robot, "SDF", springs=True)]
+    taken = {link.name for link in robot.links} | {"world"}
     joints, grains = [], []
-    for link in made.links:
+    for link in robot.links:
         if link.link.joint is None:
             continue
-        direct = _direct(made, link)
+        direct = _direct(robot, link)
         if direct is not None:
             joints.append(direct)
             continue
-        hinges = chain(made, link, taken)
+        hinges = chain(robot, link, taken)
         joints += [_of_hinge(hinge) for hinge in hinges]
         grains += [_Grain(hinge.child, link.link.origin) for hinge in hinges if hinge.between]
-    for gear, a, b in made.gears:
-        joints = _mimicking(made, joints, gear.subject, a.subject, b.subject, gear.ratio, lost)
-    weightless = [link.name for link in made.links[1:] if link.mass is None]
+    for gear, a, b in robot.gears:
+        joints = _mimicking(robot, joints, gear.subject, a.subject, b.subject, gear.ratio, lost)
+    weightless = [link.name for link in robot.links[1:] if link.mass is None]
     if grains or weightless:
         grain = f"links without mass have {GRAIN:g} kg, because SDF takes 1 kg where nothing is stated"
         lost.append(f"mass of {', '.join([g.name for g in grains] + weightless)}: {grain}")
-    remarks = ["meshes do not collide, because mating surfaces always touch", *made.unranged, *of_teeth(model.system)]
+    remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     text = render(
-        "model.sdf.j2", robot=made, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
-        ground=_free(made, "world_fixed"),
+        "model.sdf.j2", robot=robot, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
+        ground=_free(robot, "world_fixed"),
     )  # fmt: skip
-    return Exported({f"{made.stem}.sdf": text, **made.meshes}, tuple(lost), tuple(remarks))
+    return Exported({f"{robot.stem}.sdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def _direct(made: Robot, link: RobotLink) -> _Joint | None:
+def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
     """The joint, where SDF has its kind."""
     joint = link.link.joint
     assert joint is not None
-    parent, name = made.links[link.link.parent].name, made.joint_names[joint.subject]
+    parent, name = robot.links[link.link.parent].name, robot.joint_names[joint.subject]
     kind = joint.kind.name
     if kind == "fixed":
         return _Joint(name, "fixed", parent, link.name)
@@ -98,7 +94,7 @@ def _direct(made: Robot, link: RobotLink) -> _Joint | None:
         return _Joint(name, "ball", parent, link.name)
     screws = [m.primitive for m in link.link.motions if isinstance(m.primitive, OneFreedom)]
     if kind == "universal":
-        if abs(float(screws[0].omega @ screws[1].omega)) > 1e-9:
+        if abs(float(screws[0].omega @ screws[1].omega)) > LEAST_SKEW:
             return None
         return _Joint(name, "universal", parent, link.name, tuple(_Axis(screw.omega) for screw in screws))
     if len(screws) != 1:
@@ -117,10 +113,10 @@ def _of_hinge(hinge: Hinge) -> _Joint:
 
 
 def _mimicking(
-    made: Robot, joints: list[_Joint], gear: str, a: str, b: str, ratio: float, lost: list[str]
+    robot: Robot, joints: list[_Joint], gear: str, a: str, b: str, ratio: float, lost: list[str]
 ) -> list[_Joint]:
     """The joints, with a following b."""
-    first, second = made.joint_names[a], made.joint_names[b]
+    first, second = robot.joint_names[a], robot.joint_names[b]
     out, done = [], False
     for joint in joints:
         if joint.name == first and len(joint.axes) == 1 and joint.axes[0].mimic is None:
@@ -131,7 +127,7 @@ def _mimicking(
     return out
 
 
-def _free(made: Robot, name: str) -> str:
-    while name in made.joint_names.values():
+def _free(robot: Robot, name: str) -> str:
+    while name in robot.joint_names.values():
         name += "_"
     return name

@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 
 import jinja2
 
-from kinform.exports.names import comment, one_line
+from kinform.exports.names import comment, single_line
 
 __all__ = ["number", "render", "vector"]
 
@@ -38,7 +38,7 @@ def _attribute(text: object) -> str:
 
 def _quoted(text: object) -> str:
     """A string in Modelica and in DOT."""
-    return '"' + one_line(str(text)).replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return '"' + single_line(str(text)).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
 @cache

@@ -10,18 +10,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from kinform.behaviour.joints import KINDS
-from kinform.exports.chains import Hinge, chain
+from kinform.exports.chains import Hinge, chain, tree_losses
+from kinform.exports.constants import UNLIMITED
 from kinform.exports.exported import Exported
-from kinform.exports.losses import of_teeth, tree_losses
 from kinform.exports.model import ExportModel
 from kinform.exports.names import XML
-from kinform.exports.robot import Robot, RobotLink, robot
+from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
 
 __all__ = ["export"]
-
-UNLIMITED = 1e9
-"""What stands for a limit that is not known, where the format must have one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,37 +32,32 @@ class _Joint:
 
 def export(model: ExportModel) -> Exported:
     """NAME.urdf and meshes/."""
-    made = robot(model, XML, KINDS)
-    lost = [*model.lost, *tree_losses(made, "URDF"), *_spherical(made)]
-    taken = {link.name for link in made.links}
-    joints, remarks = [], [*made.unranged, *of_teeth(model.system)]
-    mimics = _mimics(made, lost)
-    for link in made.links:
+    robot = robot_of(model, XML, KINDS)
+    lost = [*model.lost, *tree_losses(robot, "URDF"), *_spherical(robot)]
+    taken = {link.name for link in robot.links}
+    joints, remarks = [], robot.remarks
+    mimics = _mimics(robot, lost)
+    for link in robot.links:
         if link.link.joint is None:
             continue
-        hinges = chain(made, link, taken)
-        joints += [_joint(made, link, hinge, mimics) for hinge in hinges]
+        hinges = chain(robot, link, taken)
+        joints += [_joint(robot, link, hinge, mimics) for hinge in hinges]
         if len(hinges) > 1:
             remarks.append(f"{link.link.joint.subject}: a chain of joints with links without mass between them")
-    free = [link for link in made.links[1:] if link.link.parent < 0]
+    free = [link for link in robot.links[1:] if link.link.parent < 0]
     if any(joint.limits is not None and UNLIMITED in map(abs, joint.limits) for joint in joints):
         remarks.append(f"limits of {UNLIMITED:g} stand for ranges that are open or not known")
     if any(joint.limits is not None for joint in joints):
         remarks.append(f"efforts and velocities are not limited: {UNLIMITED:g} stands for that")
     remarks.append("URDF has no gravity; ours is " + ", ".join(f"{x:g}" for x in model.gravity) + " m/s²")
     text = render(
-        "robot.urdf.j2", robot=made, joints=joints, free=free, lost=lost, remarks=remarks, unlimited=UNLIMITED,
-        between=[j.hinge.child for j in joints if j.hinge.between], materials=materials(made),
+        "robot.urdf.j2", robot=robot, joints=joints, free=free, lost=lost, remarks=remarks, unlimited=UNLIMITED,
+        between=[j.hinge.child for j in joints if j.hinge.between], materials=robot.materials,
     )  # fmt: skip
-    return Exported({f"{made.stem}.urdf": text, **made.meshes}, tuple(lost), tuple(remarks))
+    return Exported({f"{robot.stem}.urdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
 
-def materials(made: Robot) -> dict[str, tuple[float, float, float, float]]:
-    """Colour of each material that is used, by name."""
-    return dict(sorted((visual.material, visual.rgba) for link in made.links for visual in link.visuals))
-
-
-def _joint(made: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
+def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
     single = link.link.joint is not None and link.link.joint.kind.rates == 1
     limits = link.range if single and hinge.follows is None else None
     if limits is not None:
@@ -79,27 +71,27 @@ def _joint(made: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[s
     return _Joint(hinge, kind, limits, link.damping if single and hinge.follows is None else 0.0, mimic)
 
 
-def _mimics(made: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
+def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:
     """By joint: the joint that it follows, and the ratio."""
     out: dict[str, tuple[str, float]] = {}
-    for gear, a, b in made.gears:
+    for gear, a, b in robot.gears:
         ways = [(a.subject, b.subject, gear.ratio)]
         if gear.ratio:
             ways.append((b.subject, a.subject, 1.0 / gear.ratio))
         for first, second, ratio in ways:
-            name = made.joint_names[first]
-            if name not in out and made.link_of(first) is not None:
-                out[name] = (made.joint_names[second], ratio)
+            name = robot.joint_names[first]
+            if name not in out and robot.link_of(first) is not None:
+                out[name] = (robot.joint_names[second], ratio)
                 break
         else:
             lost.append(f"{gear.subject}: URDF lets a joint follow one other only, and none that closes a loop")
     return out
 
 
-def _spherical(made: Robot) -> list[str]:
+def _spherical(robot: Robot) -> list[str]:
     return [
         f"{link.link.joint.subject}: a spherical joint; it is three turns about x, y and z, whose values are not our "
         "quaternion and which lock at 90°"
-        for link in made.links
+        for link in robot.links
         if link.link.joint is not None and link.link.joint.kind.name == "spherical"
     ]

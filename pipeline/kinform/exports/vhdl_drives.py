@@ -7,15 +7,14 @@ coordinate sum to the joint's. A motor has an electric terminal, at which its su
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from kinform.behaviour import Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageController
+from kinform.behaviour import Actor, Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageController
 from kinform.behaviour.shafts import Controller
-from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Table, smooth
-from kinform.exports.laws import pieces
-from kinform.exports.loops import Loops
-from kinform.exports.scopes import Scope
+from kinform.behaviour.signals import Signal, Spline, Table
+from kinform.exports.equations import law_numbers, polynomials
 from kinform.exports.text import number
-from kinform.exports.vhdl_structure import Part, Writer
+from kinform.exports.vhdl_structure import Part, Scope, Writer
 
 __all__ = ["drives"]
 
@@ -23,70 +22,68 @@ Values = dict[str, str]
 """Generics by name, as text."""
 
 
-def drives(writer: Writer, found: Loops, held: frozenset[int], lost: list[str], remarks: list[str]) -> None:
+@dataclass(frozen=True)
+class _Shaft:
+    """Where an actor acts: a coordinate of a joint, in the scope of the joint."""
+
+    writer: Writer
+    home: Scope
+    value: str
+    """The quantity with the value of the coordinate."""
+
+    def instance(self, name: str, entity: str, text: str, values: Values, ports: dict[str, str]) -> None:
+        """Add an instance, the values its generics."""
+        generics = self.writer.generics(self.home, name, {key: ("real", value) for key, value in values.items()})
+        self.writer.add(self.home, Part(f"{name}_i", entity, text, generics, ports))
+
+    def actor(self, name: str, entity: str, text: str, values: Values, **ports: str) -> None:
+        """Add an actor: it reads the value and gives an effort."""
+        self.writer.of[self.home].declarations.append(f"quantity {name}_effort : real")
+        self.writer.efforts[f"{self.value}_effort"][1].append(f"{name}_effort")
+        self.instance(name, entity, text, values, {**ports, "value": self.value, "effort": f"{name}_effort"})
+
+    def target(self, name: str, text: str, signal: Signal) -> str:
+        """Add what a controller follows; the quantity with it."""
+        target = f"{name}_target"
+        self.writer.of[self.home].declarations.append(f"quantity {target} : real")
+        entity, values = _law(self.writer, "target", target, signal)
+        self.instance(target, entity, f"target of {text}", values, {"target": target})
+        return target
+
+
+def drives(writer: Writer) -> None:
     """Add what acts on joints, what holds rates, and gears."""
-    model, system = writer.model, writer.model.system
-    slots = {slot.name: slot for slot in model.mechanism.slots}
-    for joint in system.joints:
-        label, home, led = writer.names[joint.name], writer.scopes.of[joint.name], False
-        for actor in system.actors(joint.name):
-            name, value = writer.names[actor.name], f"{label}_{joint.kind.coordinates[0][0]}"
-            if isinstance(actor, MotionDrive):
-                if led:
-                    lost.append(f"{actor.subject}: a second drive prescribes the motion of {joint.subject}")
-                    continue
-                led = True
-                signal = smooth(actor.signal) if model.with_forces else actor.signal
-                _on_shaft(writer, home, name, actor.subject, value, *_law(writer, "motion", name, signal))
-            elif isinstance(actor, EffortDrive):
-                _on_shaft(writer, home, name, actor.subject, value, *_law(writer, "effort", name, actor.signal))
-            elif isinstance(actor, Spring):
-                given = {"stiffness": number(actor.stiffness), "rest": number(actor.rest)}
-                _on_shaft(writer, home, name, actor.subject, value, "spring", given)
-            elif isinstance(actor, Damper):
-                _on_shaft(writer, home, name, actor.subject, value, "damper", {"damping": number(actor.damping)})
-            elif isinstance(actor, Servo):
-                ports = {"target": _target(writer, home, name, actor.subject, actor.target)}
-                _on_shaft(writer, home, name, actor.subject, value, "servo", _gains(actor.controller), ports)
-            elif isinstance(actor, DcMotor):
-                _motor(writer, home, name, actor, value)
-        for k, (coordinate, _) in enumerate(joint.kind.coordinates):
-            if slots[joint.subject].v.start + k in held and joint.kind.name != "spherical":
-                value = f"{label}_{coordinate}"
-                level = {"level": number(float(model.coordinates(joint.subject)[0][k]))}
-                _on_shaft(writer, home, f"{value}_held", f"{joint.subject} is held", value, "motion_constant", level)
-    for gear, kept in zip(system.gears, found.gears, strict=True):
-        if not kept:
-            remarks.append(f"{gear.subject}: it is redundant with the loops")
+    for joint in writer.model.system.joints:
+        label, home = writer.names[joint.name], writer.scopes.of[joint.name]
+        rates, coordinates = writer.equations.rates_of(joint), [name for name, _ in joint.kind.coordinates]
+        for actor in writer.equations.actors(joint):
+            _actor(_Shaft(writer, home, f"{label}_{coordinates[0]}"), actor)
+        if joint.kind.name == "spherical":
             continue
+        for k, coordinate in enumerate(coordinates):
+            if rates[k] in writer.equations.held:
+                shaft = _Shaft(writer, home, f"{label}_{coordinate}")
+                level = {"level": number(float(writer.model.coordinates(joint.subject)[0][k]))}
+                shaft.actor(f"{shaft.value}_held", "motion_constant", f"{joint.subject} is held", level)
+    for gear in writer.equations.gears:
         _gear(writer, gear.name, gear.ratio)
 
 
-def _on_shaft(
-    writer: Writer, home: Scope, name: str, text: str, value: str, entity: str, given: Values,
-    ports: dict[str, str] | None = None,
-) -> None:  # fmt: skip
-    """An actor on a coordinate: it reads the value and gives an effort."""
-    writer.of[home].declarations.append(f"quantity {name}_effort : real")
-    writer.efforts[f"{value}_effort"][1].append(f"{name}_effort")
-    joined = {**(ports or {}), "value": value, "effort": f"{name}_effort"}
-    _instance(writer, home, name, entity, text, given, joined)
-
-
-def _instance(
-    writer: Writer, home: Scope, name: str, entity: str, text: str, given: Values, ports: dict[str, str]
-) -> None:
-    generics = {key: writer.generic(home, f"{name}_{key}", "real", value) for key, value in given.items()}
-    writer.add(home, Part(f"{name}_i", entity, text, generics, ports))
-
-
-def _target(writer: Writer, home: Scope, name: str, text: str, signal: Signal) -> str:
-    """The quantity that a controller follows."""
-    target = f"{name}_target"
-    writer.of[home].declarations.append(f"quantity {target} : real")
-    entity, given = _law(writer, "target", target, signal)
-    _instance(writer, home, target, entity, f"target of {text}", given, {"target": target})
-    return target
+def _actor(shaft: _Shaft, actor: Actor) -> None:
+    name, text = shaft.writer.names[actor.name], actor.subject
+    if isinstance(actor, MotionDrive | EffortDrive):
+        kind = "motion" if isinstance(actor, MotionDrive) else "effort"
+        entity, values = _law(shaft.writer, kind, name, actor.signal)
+        shaft.actor(name, entity, text, values)
+    elif isinstance(actor, Spring):
+        shaft.actor(name, "spring", text, {"stiffness": number(actor.stiffness), "rest": number(actor.rest)})
+    elif isinstance(actor, Damper):
+        shaft.actor(name, "damper", text, {"damping": number(actor.damping)})
+    elif isinstance(actor, Servo):
+        target = shaft.target(name, text, actor.target)
+        shaft.actor(name, "servo", text, _gains(actor.controller), target=target)
+    elif isinstance(actor, DcMotor):
+        _motor(shaft, name, actor)
 
 
 def _gains(controller: Controller) -> Values:
@@ -96,21 +93,20 @@ def _gains(controller: Controller) -> Values:
     }  # fmt: skip
 
 
-def _motor(writer: Writer, home: Scope, name: str, motor: DcMotor, value: str) -> None:
+def _motor(shaft: _Shaft, name: str, motor: DcMotor) -> None:
     """A motor, and at its terminal what supplies it."""
-    writer.of[home].declarations.append(f"terminal {name}_p : electrical")
+    writer, terminal, label = shaft.writer, f"{name}_p", f"{name}_supply"
+    writer.of[shaft.home].declarations.append(f"terminal {terminal} : electrical")
     writer.potentials += 1
-    given = {key: number(getattr(motor, key)) for key in ("resistance", "inductance", "gear")}
-    given["coupling"] = number(motor.constant)
-    _on_shaft(writer, home, name, motor.subject, value, "dc_motor", given, {"p": f"{name}_p"})
+    values = {key: number(getattr(motor, key)) for key in ("resistance", "inductance", "gear")}
+    shaft.actor(name, "dc_motor", motor.subject, values | {"coupling": number(motor.constant)}, p=terminal)
     supply = writer.model.system.supply(motor.name)
-    label, at = f"{name}_supply", {"p": f"{name}_p"}
     if isinstance(supply, VoltageController):
-        at |= {"target": _target(writer, home, name, supply.subject, supply.target), "value": value}
-        _instance(writer, home, label, "voltage_controller", supply.subject, _gains(supply.controller), at)
+        ports = {"p": terminal, "target": shaft.target(name, supply.subject, supply.target), "value": shaft.value}
+        shaft.instance(label, "voltage_controller", supply.subject, _gains(supply.controller), ports)
         return
-    entity, given = _law(writer, "voltage", label, supply.signal)
-    _instance(writer, home, label, entity, f"voltage of {supply.subject}", given, at)
+    entity, values = _law(writer, "voltage", label, supply.signal)
+    shaft.instance(label, entity, f"voltage of {supply.subject}", values, {"p": terminal})
 
 
 def _gear(writer: Writer, name: str, ratio: float) -> None:
@@ -131,14 +127,9 @@ def _gear(writer: Writer, name: str, ratio: float) -> None:
 
 def _law(writer: Writer, kind: str, name: str, signal: Signal) -> tuple[str, Values]:
     """The entity of a law and its generics; a table gets an entity of its own. Kinds: see the template."""
-    if isinstance(signal, Constant):
-        return f"{kind}_constant", {"level": number(signal.level)}
-    if isinstance(signal, Ramp):
-        return f"{kind}_ramp", {"offset": number(signal.offset), "slope": number(signal.slope)}
-    if isinstance(signal, Sine):
-        keys = ("offset", "amplitude", "speed", "phase")
-        return f"{kind}_sine", {key: number(getattr(signal, key)) for key in keys}
-    assert isinstance(signal, Table | Spline)
+    if not isinstance(signal, Table | Spline):
+        law, numbers = law_numbers(signal)
+        return f"{kind}_{law}", {key: number(value) for key, value in numbers.items()}
     entity = f"table_{name}"
-    writer.tables.append({"name": entity, "kind": kind, "pieces": pieces(signal)})
+    writer.tables.append({"name": entity, "kind": kind, "pieces": polynomials(signal)})
     return entity, {}

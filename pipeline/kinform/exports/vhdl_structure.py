@@ -5,15 +5,17 @@ Names are chosen here, and equations are counted: as many as unknowns, in every 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from kinform.behaviour import System
+from kinform.exports.equations import Equations
 from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
-from kinform.exports.scopes import Scope, scope_of
 from kinform.exports.text import vector
 
-__all__ = ["AXES", "COUNT", "Generic", "Part", "Structure", "Writer"]
+__all__ = ["AXES", "COUNT", "Generic", "Part", "Scope", "Scopes", "Structure", "Writer"]
 
 COUNT = {
     "ground": 16, "rigid_body": 34, "massless_frame": 22, "fixed_joint": 36, "revolute_joint": 47,
@@ -49,6 +51,57 @@ _SUFFIXES = (
     "_target",
 )
 """What is appended to the name of a component, so that no two names meet."""
+
+
+Scope = str
+
+
+@dataclass(frozen=True)
+class Scopes:
+    """Scopes that hold components, and those around them, outer ones first.
+
+    They are the systems that sub-assemblies made, named as in the assembly ("arm/motor"); "" is the whole.
+    """
+
+    paths: tuple[Scope, ...]
+    of: dict[str, Scope]
+    """By name of component."""
+    top_of: dict[str, Scope]
+    """By name of body: the outermost scope from which it is used."""
+
+    def above(self, scope: Scope) -> Scope:
+        """The scope around a scope."""
+        return max((p for p in self.paths if p != scope and _within(scope, p)), key=len)
+
+    def between(self, top: Scope, home: Scope) -> tuple[Scope, ...]:
+        """The scopes below `top` down to `home`, outer ones first."""
+        return tuple(p for p in self.paths if _within(home, p) and _within(p, top) and p != top)
+
+
+def scopes_of(model: ExportModel) -> Scopes:
+    """The scopes of a model's components."""
+    system = model.system
+    of = dict(_homes(model.nested, ""))
+    tops = {}
+    for body in system.bodies:
+        users = [of[other.name] for other, _ in system.at(body.name, "frame")]
+        tops[body.name] = min([of[body.name], *users], key=len)
+    steps = [home.split("/") for home in of.values() if home]
+    used = {""} | {"/".join(path[: k + 1]) for path in steps for k in range(len(path))}
+    return Scopes(tuple(sorted(used, key=lambda path: (len(path.split("/")) if path else 0, path))), of, tops)
+
+
+def _homes(system: System, path: Scope) -> Iterator[tuple[str, Scope]]:
+    """(name of component, scope) of all components in a system and those inside."""
+    for component in system.components:
+        if isinstance(component, System):
+            yield from _homes(component, f"{path}/{component.subject}" if path else component.subject)
+        else:
+            yield component.name, path
+
+
+def _within(inner: Scope, outer: Scope) -> bool:
+    return outer == "" or inner == outer or inner.startswith(f"{outer}/")
 
 
 @dataclass
@@ -87,8 +140,9 @@ class Structure:
 class Writer:
     """Collects the entities of the scopes as components are added."""
 
-    def __init__(self, model: ExportModel):
-        self.model = model
+    def __init__(self, equations: Equations):
+        self.equations = equations
+        model = self.model = equations.model
         system = model.system
         self.names = identifiers(
             [component.name for component in system.components],
@@ -96,7 +150,7 @@ class Writer:
             beside=("mechanics", "gravity", *COUNT),
             suffixes=_SUFFIXES,
         )
-        self.scopes = scope_of(model)
+        self.scopes = scopes_of(model)
         paths = self.scopes.paths
         tables = (f"table_{name}{end}" for name in self.names.values() for end in ("", "_target", "_supply"))
         called = {path: f"/{path}" if path else model.name for path in paths}
@@ -108,7 +162,7 @@ class Writer:
         }
         self.starts: dict[str, str] = {}
         self.tables: list[dict[str, Any]] = []
-        self.equations = 0
+        self.equations_made = 0
         self.potentials = 0
         self.efforts: dict[str, tuple[Scope, list[str]]] = {}
         self.passed: dict[str, Scope] = {}
@@ -167,6 +221,10 @@ class Writer:
             self._give(scope, name, start)
         return name
 
+    def generics(self, scope: Scope, label: str, values: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+        """Generics of a component by what they are there: (type, value), called as the component and that."""
+        return {name: self.generic(scope, f"{label}_{name}", kind, value) for name, (kind, value) in values.items()}
+
     def gravity(self, scope: Scope) -> str:
         """The generic with the gravity of a scope."""
         if not any(row.name == "gravity" for row in self.of[scope].generics):
@@ -183,4 +241,4 @@ class Writer:
     def add(self, scope: Scope, part: Part) -> None:
         """Add an instance of a library entity."""
         self.of[scope].parts.append(part)
-        self.equations += COUNT.get(part.entity, 1)
+        self.equations_made += COUNT.get(part.entity, 1)

@@ -14,6 +14,7 @@ __all__ = [
     "listed",
     "mass",
     "number",
+    "one_line",
     "place",
     "quoted",
     "rate",
@@ -108,6 +109,11 @@ def quoted(names: Iterable[str], limit: int = 4) -> str:
 def listed(words: Sequence[str]) -> str:
     """ "a", "a and b", "a, b and c"."""
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1] if words else ""]))
+
+
+def one_line(text: str) -> str:
+    """The text with control characters escaped, so that it stays on one line."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def counted(count: int, noun: str, plural: str | None = None) -> str:

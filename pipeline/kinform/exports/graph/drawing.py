@@ -12,14 +12,28 @@ from html import escape
 
 import numpy as np
 
-from kinform.exports.graph.layout import placed
+from kinform.exports.constants import (
+    CLEARANCE,
+    EDGE_LENGTH,
+    LETTER_WIDTH,
+    LINE_HEIGHT,
+    LONGEST_NAME,
+    MARGIN,
+    MOST_BODIES,
+    MOST_CLEARED,
+    MOST_LOOPS,
+    PANEL,
+    SYMBOL_PLACES,
+    SYMBOL_RADIUS,
+)
+from kinform.exports.graph.layout import box_centres
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
+from kinform.foundation.words import counted, one_line
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.words import counted, one_line
 
-__all__ = ["MOST", "graph_dot", "graph_legend", "graph_panel", "graph_svg"]
+__all__ = ["graph_dot", "graph_legend", "graph_panel", "graph_svg"]
 
 
 SYMBOLS = {
@@ -27,19 +41,6 @@ SYMBOLS = {
     "screw": "H", "universal": "U", "general": "G",
 }  # fmt: skip
 DASHES = {"ambiguous": "7 5", "blocked": "2 4", "inferred": "12 3"}
-LETTER, LINE = 7.3, 18.0
-"""Width of a letter and height of a line of 13 px text (px)."""
-MARGIN = 30.0
-SPACING = 105.0
-LOOPS = 40
-"""Up to so many loops are numbered."""
-RADIUS = 10.5
-CLEARED = 600
-"""Up to so many bodies the symbols keep clear of boxes."""
-MOST, LONGEST = 150, 30
-"""Bodies of the largest graph in a page, and letters of a name there."""
-PANEL = (320.0, 470.0)
-"""Room of the graph in a page (px)."""
 
 
 @dataclass(frozen=True)
@@ -82,24 +83,28 @@ class _Drawing:
         return np.asarray((self.at + self.sizes / 2).max(axis=0, initial=0.0) + MARGIN)
 
 
-def _laid_out(kinematics: Kinematics, names: list[str], extra: float, *, upright: bool = False) -> _Drawing:
+def _drawing(kinematics: Kinematics, names: list[str], extra: float, *, upright: bool = False) -> _Drawing:
     """The drawing, with so much room (px) in each box beside its name; `upright`: it grows downwards."""
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
     ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
-    sizes = np.array([[LETTER * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
-    at = placed(sizes[:, ::-1], edges, ground, SPACING)[:, ::-1] if upright else placed(sizes, edges, ground, SPACING)
+    sizes = np.array([[LETTER_WIDTH * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
+    at = (
+        box_centres(sizes[:, ::-1], edges, ground, EDGE_LENGTH)[:, ::-1]
+        if upright
+        else box_centres(sizes, edges, ground, EDGE_LENGTH)
+    )
     return _Drawing(kinematics, names, sizes, at + MARGIN, edges, _loops(kinematics, edges))
 
 
 def graph_svg(kinematics: Kinematics) -> str:
     """The graph as one SVG: ground hatched, ambiguous joints dashed, drivers of freedoms filled, loops numbered."""
-    drawing = _laid_out(kinematics, [one_line(body.name) for body in kinematics.bodies], 22.0)
+    drawing = _drawing(kinematics, [one_line(body.name) for body in kinematics.bodies], 22.0)
     extent, legend = drawing.extent, graph_legend(kinematics)
-    width = max(float(extent[0]), LETTER * max(map(len, legend)) + 2 * MARGIN)
-    height = float(extent[1]) + LINE * len(legend) + MARGIN
+    width = max(float(extent[0]), LETTER_WIDTH * max(map(len, legend)) + 2 * MARGIN)
+    height = float(extent[1]) + LINE_HEIGHT * len(legend) + MARGIN
     texts = [
-        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE * (n + 1):.1f}" class="legend">{escape(text)}</text>'
+        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
         for n, text in enumerate(legend)
     ]
     head = (
@@ -126,11 +131,11 @@ def graph_panel(kinematics: Kinematics, colours: Sequence[str]) -> str:
 
     They carry their numbers as data-body and data-joint. Empty where the graph is too large to be read.
     """
-    if not 0 < len(kinematics.bodies) <= MOST:
+    if not 0 < len(kinematics.bodies) <= MOST_BODIES:
         return ""
     names = [one_line(body.name) for body in kinematics.bodies]
-    names = [name if len(name) <= LONGEST else name[: LONGEST - 1] + "…" for name in names]
-    both = [_laid_out(kinematics, names, 36.0, upright=upright) for upright in (True, False)]
+    names = [name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…" for name in names]
+    both = [_drawing(kinematics, names, 36.0, upright=upright) for upright in (True, False)]
     drawing = min(both, key=lambda d: float((d.extent / PANEL).max()))
     width, height = drawing.extent
     return (
@@ -151,17 +156,17 @@ def _lines(drawing: _Drawing, colours: Sequence[str] | None = None) -> list[str]
     for k, body in enumerate(kinematics.bodies):
         box = _box(drawing.names[k], at[k], sizes[k], body.ground, "" if colours is None else colours[k])
         about = f"Body {body.name}{', ground' if body.ground else ''}: {', '.join(body.parts)}"
-        boxes.append(_pressed("node", "body", k, about, box) if linked else box)
+        boxes.append(_button("node", "body", k, about, box) if linked else box)
     if not linked:
         return [*lines, *boxes, *symbols, *marks]
     joints = [
-        _pressed("link", "joint", k, f"Joint {_about(joint)}", lines[k] + symbols[k])
+        _button("link", "joint", k, f"Joint {_about(joint)}", lines[k] + symbols[k])
         for k, joint in enumerate(kinematics.joints)
     ]
     return [*joints, *boxes, *marks]
 
 
-def _pressed(kind: str, data: str, number: int, about: str, drawn: str) -> str:
+def _button(kind: str, data: str, number: int, about: str, drawn: str) -> str:
     label = escape(one_line(about))
     return f'<g class="{kind}" role="button" tabindex="0" data-{data}="{number}" aria-label="{label}">{drawn}</g>'
 
@@ -211,7 +216,7 @@ def _loops(kinematics: Kinematics, edges: list[tuple[int, int]]) -> list[_Loop]:
             members = [block[k] for k, _ in cycle]
             around = tuple(sorted({n for k in members for n in edges[k]}))
             out.append(_Loop(around, held.get(frozenset(names[k] for k in members), 0)))
-    return out if len(out) <= LOOPS else []
+    return out if len(out) <= MOST_LOOPS else []
 
 
 def _trimmed(start: Array, end: Array, size: Array) -> Array:
@@ -229,10 +234,10 @@ def _ends(at: Array, sizes: Array, edge: tuple[int, int]) -> tuple[Array, Array]
 def _middle(at: Array, sizes: Array, edge: tuple[int, int]) -> Array:
     """Where the symbol of the joint stands: half-way, or beside that where a box is in the way."""
     first, second = _ends(at, sizes, edge)
-    if len(at) <= CLEARED:
-        for share in (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2):
+    if len(at) <= MOST_CLEARED:
+        for share in SYMBOL_PLACES:
             place = first + share * (second - first)
-            if not (np.abs(at - place) < sizes / 2 + 0.8 * RADIUS).all(axis=1).any():
+            if not (np.abs(at - place) < sizes / 2 + CLEARANCE * SYMBOL_RADIUS).all(axis=1).any():
                 return np.asarray(place)
     return np.asarray((first + second) / 2)
 
@@ -247,7 +252,7 @@ def _box(name: str, centre: Array, size: Array, ground: bool, colour: str = "") 
     x, y = centre - size / 2
     frame = f'x="{x:.1f}" y="{y:.1f}" width="{size[0]:.1f}" height="{size[1]:.1f}" rx="4"'
     box = f'<rect class="body" {frame}/>'
-    wide = LETTER * len(name) + 6.0
+    wide = LETTER_WIDTH * len(name) + 6.0
     if ground:
         plate = f'x="{centre[0] - wide / 2:.1f}" y="{centre[1] - 9:.1f}" width="{wide:.1f}" height="18"'
         box += f'<rect class="ground" {frame}/><rect class="plate" {plate}/>'
@@ -264,7 +269,7 @@ def _symbol(centre: Array, joint: Joint, drives: bool) -> str:
     dash = f' stroke-dasharray="{DASHES[joint.status]}"' if joint.status in DASHES else ""
     return (
         f'<g><title>{escape(one_line(_about(joint)))}</title><circle class="symbol{" drives" if drives else ""}" '
-        f'cx="{x:.1f}" cy="{y:.1f}" r="{RADIUS}"{dash}/><text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" '
+        f'cx="{x:.1f}" cy="{y:.1f}" r="{SYMBOL_RADIUS}"{dash}/><text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" '
         f'text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
     )
 
@@ -284,8 +289,8 @@ def graph_legend(kinematics: Kinematics) -> list[str]:
 
 def _legend(kinematics: Kinematics, loops: list[_Loop]) -> Iterator[str]:
     mobility = kinematics.mobility
-    used = sorted({joint.type for joint in kinematics.joints}, key=list(SYMBOLS).index)
-    yield ", ".join(f"{SYMBOLS[kind]} {kind}" for kind in used) or "no joints"
+    types = sorted({joint.type for joint in kinematics.joints}, key=list(SYMBOLS).index)
+    yield ", ".join(f"{SYMBOLS[kind]} {kind}" for kind in types) or "no joints"
     marks = ["hatched: ground"]
     marks += ["filled: drives a freedom"] if _drivers(kinematics) else []
     statuses = {joint.status for joint in kinematics.joints}

@@ -10,22 +10,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kinform.exports.constants import (
+    CROWDED,
+    GAP,
+    HUB_EXPONENT,
+    LEAST_OVERLAP,
+    MOST_ROUNDS,
+    MOST_STRESSED,
+    STILL,
+    WIDTH_SHARE,
+)
 from kinform.foundation.graphs.graph import Edge, neighbours
 from kinform.model.arrays import Array
 
-__all__ = ["placed"]
+__all__ = ["box_centres"]
 
 
-MOST = 250
-"""Larger components stay in layers."""
-ROUNDS = 200
-CROWDED = 9
-"""Nodes with more neighbours are hubs."""
-GAP = 26.0
-"""Least space between two boxes (px)."""
-
-
-def placed(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> Array:
+def box_centres(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> Array:
     """(n, 2) centres, px, y downwards, of boxes of these sizes (n, 2); component by component beside each other.
 
     `first` is the node that leads its component; `spacing` (px) is the length of an edge.
@@ -34,11 +35,11 @@ def placed(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> A
     left = 0.0
     for members, depth in _components(len(sizes), edges, first):
         index = {node: k for k, node in enumerate(members)}
-        own = [(index[a], index[b]) for a, b in edges if a in index]
+        inner = [(index[a], index[b]) for a, b in edges if a in index]
         boxes = sizes[members]
         at = _layers(depth, boxes, spacing)
-        if 2 < len(members) <= MOST:
-            at = _stressed(at, own, spacing, boxes)
+        if 2 < len(members) <= MOST_STRESSED:
+            at = _least_stress(at, inner, spacing, boxes)
         at = _apart(at, boxes)
         low = (at - boxes / 2).min(axis=0)
         out[members] = at - low + (left, 0.0)
@@ -49,16 +50,16 @@ def placed(sizes: Array, edges: Sequence[Edge], first: int, spacing: float) -> A
 def _components(nodes: int, edges: Sequence[Edge], first: int) -> list[tuple[list[int], list[int]]]:
     """Nodes of each component in breadth-first order, and their depths."""
     near = neighbours(nodes, edges)
-    seen = [False] * nodes
+    reached = [False] * nodes
     out = []
     for start in (first, *range(nodes)):
-        if seen[start]:
+        if reached[start]:
             continue
-        order, depth, seen[start] = [start], [0], True
+        order, depth, reached[start] = [start], [0], True
         for n, node in enumerate(order):
             for other in sorted({o for o, _ in near[node]}):
-                if not seen[other]:
-                    seen[other] = True
+                if not reached[other]:
+                    reached[other] = True
                     order.append(other)
                     depth.append(depth[n] + 1)
         out.append((order, depth))
@@ -76,25 +77,25 @@ def _layers(depth: Sequence[int], boxes: Array, spacing: float) -> Array:
     return at
 
 
-def _stressed(at: Array, edges: Sequence[Edge], spacing: float, boxes: Array) -> Array:
+def _least_stress(at: Array, edges: Sequence[Edge], spacing: float, boxes: Array) -> Array:
     """Least Σ (distance on paper − ideal)² / ideal², by majorisation from where the nodes are."""
     far = _distances(len(at), edges) * spacing
     # boxes are wide: what lies beside each other needs more room than what lies above
-    far = far + 0.25 * (boxes[:, 0][:, None] + boxes[:, 0][None])
+    far = far + WIDTH_SHARE * (boxes[:, 0][:, None] + boxes[:, 0][None])
     np.fill_diagonal(far, 1.0)
     weight = 1.0 / far**2
     np.fill_diagonal(weight, 0.0)
     laplacian = np.diag(weight.sum(axis=1)) - weight
     inverse = np.linalg.pinv(laplacian)
     at = at + 1e-3 * spacing * np.stack([np.cos(np.arange(len(at))), np.sin(1.7 * np.arange(len(at)))], axis=1)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         apart = np.linalg.norm(at[:, None] - at[None], axis=2)
         pull = weight * far / np.maximum(apart, 1e-9)
         np.fill_diagonal(pull, 0.0)
-        moved = inverse @ ((np.diag(pull.sum(axis=1)) - pull) @ at)
-        if float(np.abs(moved - at).max()) < 0.05:
+        better = inverse @ ((np.diag(pull.sum(axis=1)) - pull) @ at)
+        if float(np.abs(better - at).max()) < STILL:
             break
-        at = moved
+        at = better
     return _upright(at)
 
 
@@ -110,31 +111,31 @@ def _upright(at: Array) -> Array:
 def _distances(nodes: int, edges: Sequence[Edge]) -> Array:
     """(n, n) edges on a shortest path; those of hubs are longer, or their neighbours find no place."""
     near = neighbours(nodes, edges)
-    long = [max(1.0, len(around) / CROWDED) ** 0.75 for around in near]
+    long = [max(1.0, len(around) / CROWDED) ** HUB_EXPONENT for around in near]
     out = np.zeros((nodes, nodes))
     for start in range(nodes):
-        known = {start: 0.0}
+        distance = {start: 0.0}
         queue = [start]
         for node in queue:
             for other, _ in near[node]:
-                if other not in known:
-                    known[other] = known[node] + max(long[node], long[other])
+                if other not in distance:
+                    distance[other] = distance[node] + max(long[node], long[other])
                     queue.append(other)
-        out[start, list(known)] = list(known.values())
+        out[start, list(distance)] = list(distance.values())
     return out
 
 
 def _apart(at: Array, boxes: Array) -> Array:
     """Overlapping boxes pushed apart along the direction that needs less."""
     at = at.copy()
-    if len(at) > MOST:
+    if len(at) > MOST_STRESSED:
         return at
     need = 0.5 * (boxes[:, None] + boxes[None]) + GAP
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         delta = at[None] - at[:, None]
         over = need - np.abs(delta)
         over[np.arange(len(at)), np.arange(len(at))] = -1.0
-        first, second = np.nonzero(np.triu((over > 0.5).all(axis=2), 1))
+        first, second = np.nonzero(np.triu((over > LEAST_OVERLAP).all(axis=2), 1))
         if not len(first):
             break
         for i, j in zip(first.tolist(), second.tolist(), strict=True):
