@@ -12,7 +12,8 @@ from shapes import block, kinds, mesh_of, of_manifold, solid_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
-from kinform.surfaces.polygons.facets import fabric, scatter
+from kinform.surfaces.polygons.facets import Facets
+from kinform.surfaces.polygons.noise import scatter
 
 
 def scattered(mesh, size, seed=0):
@@ -39,10 +40,12 @@ def test_a_drilled_plate_is_the_same_when_its_vertices_scatter(size):
 
 def test_the_scatter_is_read_from_the_mesh():
     mesh = drilled()
-    assert scatter(fabric(mesh.vertices, mesh.faces), np.radians(32)) < 1e-12
+    assert scatter(Facets.of(mesh.vertices, mesh.faces), np.radians(32)) < 1e-12
     for size in (1e-6, 1e-5):
         noisy = scattered(mesh, size)
-        assert scatter(fabric(noisy.vertices, noisy.faces), np.radians(32)) == pytest.approx(size / np.sqrt(3), rel=0.6)
+        assert scatter(Facets.of(noisy.vertices, noisy.faces), np.radians(32)) == pytest.approx(
+            size / np.sqrt(3), rel=0.6
+        )
 
 
 def staggered(radius, length, segments, bands):

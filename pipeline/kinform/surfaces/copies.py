@@ -14,15 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra.vectors import canonical_sign
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
-from kinform.surfaces.describe import canonical
+from kinform.surfaces.constants import COPY_ROUNDINGS, COPY_SIZE_ROUNDINGS, COVERAGE, EPS32, MIRRORED
 
 __all__ = ["Copy", "rigid_copies", "surfaces_of_copy"]
 
 
-EPS32 = float(np.finfo(np.float32).eps)
 TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")
 """Kinds whose axis has no sense of its own."""
 
@@ -69,7 +69,7 @@ def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
         points -= points.mean(axis=1, keepdims=True)
         sizes[digest] = (float(np.sqrt(np.einsum("ij,ij->", points, points) / points.shape[1])), far)
     ordered = sorted(group, key=lambda digest: (sizes[digest][0], digest))
-    allowed = 4 * EPS32 * max(far for _, far in sizes.values())  # with room for the rounding of sums
+    allowed = COPY_SIZE_ROUNDINGS * EPS32 * max(far for _, far in sizes.values())
     sets: list[list[str]] = [[ordered[0]]]
     for before, digest in itertools.pairwise(ordered):
         if sizes[digest][0] - sizes[before][0] > allowed:
@@ -108,7 +108,7 @@ def _first_named(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
 
 def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
     """The rigid motion from `reference` to `points`, if it explains them to within their rounding."""
-    allowed = 2 * EPS32 * max(float(np.abs(reference).max()), float(np.abs(points).max()))
+    allowed = COPY_ROUNDINGS * EPS32 * max(float(np.abs(reference).max()), float(np.abs(points).max()))
     from_, to = reference.mean(axis=0), points.mean(axis=0)
     a, b = reference - from_, points - to
     size = np.sqrt((a**2).sum() / len(a))
@@ -116,7 +116,7 @@ def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
         return None
     u, spread, vt = np.linalg.svd(a.T @ b)
     sense = np.sign(np.linalg.det(u @ vt))
-    if sense < 0 and spread[2] > 1e-9 * spread[0]:
+    if sense < 0 and spread[2] > MIRRORED * spread[0]:
         return None
     R_CO = (u * np.array([1.0, 1.0, sense])) @ vt
     R_CO = R_CO.T
@@ -125,7 +125,7 @@ def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
         return None
     X_CO = np.eye(4)
     X_CO[:3, :3], X_CO[:3, 3] = R_CO, to - R_CO @ from_
-    scatter = 3 * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
+    scatter = COVERAGE * float(np.sqrt((off**2).sum() / len(off))) / np.sqrt(len(off))
     freeze(X_CO)
     return Copy(other, X_CO, scatter / max(float(np.sqrt(spread[1] / len(a))), 1e-300), scatter)
 
@@ -143,7 +143,7 @@ def _moved(surface: Surface, copy: Copy) -> Surface:
     R_CO = copy.X_CO[:3, :3]
     axis, point = R_CO @ surface.axis, R_CO @ surface.point + copy.X_CO[:3, 3]
     extent = surface.extent
-    if surface.kind in TURNS and canonical(axis) < 0:
+    if surface.kind in TURNS and canonical_sign(axis) < 0:
         axis, extent = -axis, (-extent[1], -extent[0])
     axis, point = axis + 0.0, point + 0.0
     for array in (axis, point):

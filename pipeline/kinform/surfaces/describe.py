@@ -10,19 +10,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.groups import group_sum, normal_equations
-from kinform.surfaces.kinds import plane
-from kinform.surfaces.kinds import ruled as _revolved
-from kinform.surfaces.kinds.kind import Batch, Kind, Params
-from kinform.surfaces.kinds.kind import widths as widths_of
-from kinform.surfaces.kinds.ruled import basis
-from kinform.surfaces.polygons.patchwork import Patchwork, Scale
+from kinform.surfaces.constants import (
+    APEX,
+    COVERAGE,
+    FULL_TURN,
+    LEAST_SPREAD,
+    ROUNDED_SCATTER,
+    ROUNDED_SCATTER_OF_PLANES,
+    SINGULAR,
+)
+from kinform.surfaces.groups import group_range, group_sum, members, normal_equations
+from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
+from kinform.surfaces.kinds.kind import Batch, Kind, Params, widths
+from kinform.surfaces.kinds.ruled import with_apices
+from kinform.surfaces.polygons.coplanar import fit_planes
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.regions.candidates import Candidates
 
-__all__ = ["COVERAGE", "Description", "canonical", "curved", "flat", "freeform"]
-
-COVERAGE = 3.0
-"""Stated uncertainties are this many standard deviations."""
+__all__ = ["Description", "curved", "flat", "freeform"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,43 +59,44 @@ class Description:
 
 def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     """The planes that polygons (P,) with equal numbers make, -1 for none, each through all its vertices."""
-    member = np.flatnonzero(number >= 0)
-    member = member[np.argsort(number[member], kind="stable")]
-    _, group = np.unique(number[member], return_inverse=True)
-    count = int(group[-1]) + 1 if len(group) else 0
+    planes = members(number)
+    count = len(planes)
+    if not count:
+        return []
+    member = np.concatenate(planes)
+    group = np.repeat(np.arange(count), [len(polygons) for polygons in planes])
     owner, vertex = work.corners.expand(member)
-    total = np.int64(max(len(work.vertices), 1))
+    total = np.int64(len(work.vertices))
     key = np.unique(group[owner] * total + vertex)
     region, points = key // total, work.vertices[key % total]
     outward = group_sum(group, work.normal[member] * work.area[member][:, None], count)
     size = np.linalg.norm(outward, axis=1)
-    first = np.searchsorted(group, np.arange(count + 1))
-    outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], work.normal[member[first[:-1]]])
-    normal, centre, variances = plane.fit(region, points, outward)
-    distance = np.einsum("ij,ij->i", points - centre[region], normal[region])
-    squares = np.bincount(region, distance * distance, count)
-    samples = np.bincount(region, minlength=count)
-    deepest = np.zeros(count)
-    np.maximum.at(deepest, region, np.abs(distance))
-    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), 0.6 * scale.rounding)
-    spread = np.maximum(np.sqrt(variances[:, 1] * samples), 1e-12)
+    first = work.normal[[polygons[0] for polygons in planes]]
+    outward = np.where(size[:, None] > 0, outward / np.maximum(size, 1e-300)[:, None], first)
+    normal, centre, variances = fit_planes(region, points, outward)
+    distance = dot(points - centre[region], normal[region])
+    squares, samples, deepest = _deviations(region, distance, count)
+    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * scale.rounding)
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), LEAST_SPREAD)
     angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
     linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
     return [
         Description(
-            kind="plane",
-            polygons=member[first[k] : first[k + 1]],
-            axis=normal[k],
-            point=centre[k],
-            residual=float(deepest[k]),
-            axis_uncertainty=float(angular[k]),
-            point_uncertainty=float(linear[k]),
-            chord=float(deepest[k]),
-            squares=float(squares[k]),
-            samples=int(samples[k]),
+            "plane", planes[k], normal[k], centre[k], residual=float(deepest[k]),
+            axis_uncertainty=float(angular[k]), point_uncertainty=float(linear[k]), chord=float(deepest[k]),
+            squares=float(squares[k]), samples=int(samples[k]),
         )
         for k in range(count)
-    ]
+    ]  # fmt: skip
+
+
+def _deviations(region: Ints, distance: Array, count: int) -> tuple[Array, Ints, Array]:
+    """Sum of squares, number and greatest size of the distances of each region's vertices."""
+    squares: Array = np.bincount(region, distance * distance, count).astype(float)
+    samples: Ints = np.bincount(region, minlength=count).astype(np.int64)
+    deepest = np.zeros(count)
+    np.maximum.at(deepest, region, np.abs(distance))
+    return squares, samples, deepest
 
 
 def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
@@ -100,57 +109,38 @@ def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
     return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
 
 
-def curved(kind: Kind, batch: Batch, params: Params, side: Ints, tolerance: Array, scale: Scale) -> list[Description]:
+def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description]:
     """Every region of one kind, with its final fit."""
-    work = batch.patchwork
-    params = kind.refine(batch, params, tolerance, 6)
+    work, count, kind = batch.patchwork, batch.count, surfaces.kind
+    params = surfaces.refined(batch, 6).params
     region = batch.region[batch.corners[0]]
-    t = np.einsum("ij,ij->i", batch.points - params[region, 3:6], params[region, :3])
-    low, high = np.full(batch.count, np.inf), np.full(batch.count, -np.inf)
-    np.minimum.at(low, region, t)
-    np.maximum.at(high, region, t)
+    low, high = group_range(region, dot(batch.points - params[region, 3:6], params[region, :3]), count)
     placed = _placed(kind.name, params, low, high)
-    region, vertex = kind.defining(batch, params, tolerance)
+    region, vertex = kind.defining(batch, params, surfaces.tolerance)
     points = work.vertices[vertex]
     distance = kind.probe(params[region], points).distance
-    columns = kind.jacobian(placed[region], points)
-    chords = _chords(kind, batch, params)
-    widths = _revolved.widths(batch, placed) if kind.name == "torus" else widths_of(kind, batch, params)
-    starts = np.searchsorted(batch.region, np.arange(batch.count + 1))
-    squares: Array = np.bincount(region, distance * distance, batch.count).astype(float)
-    samples: Ints = np.bincount(region, minlength=batch.count).astype(np.int64)
-    deepest = np.zeros(batch.count)
-    np.maximum.at(deepest, region, np.abs(distance))
-    has_axis = kind.name != "sphere"
-    group = region
+    squares, samples, deepest = _deviations(region, distance, count)
+    columns, group = kind.jacobian(placed[region], points), region
     if kind.name == "cone":
-        at = _revolved.apices(params[region], points)
-        group, columns, _ = _revolved.with_apices(placed[region], points, region, columns, distance, at)
+        tips = np.flatnonzero(cylindrical(params[region], points).rho < APEX * params[region, 6])
+        group, columns, _ = with_apices(placed[region], points, region, columns, distance, tips)
+    has_axis = kind.name != "sphere"
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
-    sweeps = _sweeps(placed, batch.region, work.centre[batch.polygon], widths) if has_axis else np.zeros(batch.count)
+    chords = _chords(kind, batch, params)
+    width = angular_widths(batch, placed) if kind.name == "torus" else widths(kind, batch, params)
+    sweeps = _sweeps(placed, batch, width) if has_axis else np.zeros(count)
     out = []
-    for k in range(batch.count):
+    for k, polygons in enumerate(members(batch.region)):
         axis, point, radius, half_angle, extent = _oriented(kind.name, placed[k], params[k], low[k], high[k])
         out.append(
             Description(
-                kind=kind.name,
-                polygons=batch.polygon[starts[k] : starts[k + 1]],
-                axis=axis,
-                point=point,
-                radius=radius,
-                half_angle=half_angle,
-                minor_radius=float(params[k, 7]) if kind.name == "torus" else 0.0,
-                side=int(side[k]),
-                extent=extent,
-                sweep=float(sweeps[k]),
-                residual=float(deepest[k]),
-                axis_uncertainty=float(angular[k]),
-                point_uncertainty=float(linear[k]),
-                chord=float(chords[k]),
-                squares=float(squares[k]),
-                samples=int(samples[k]),
+                kind.name, batch.polygon[polygons], axis, point, radius=radius, half_angle=half_angle,
+                minor_radius=float(params[k, 7]) if kind.name == "torus" else 0.0, side=int(surfaces.side[k]),
+                extent=extent, sweep=float(sweeps[k]), residual=float(deepest[k]),
+                axis_uncertainty=float(angular[k]), point_uncertainty=float(linear[k]), chord=float(chords[k]),
+                squares=float(squares[k]), samples=int(samples[k]),
             )
-        )
+        )  # fmt: skip
     return out
 
 
@@ -174,22 +164,15 @@ def _oriented(
         return np.zeros(3), point, float(params[6]), 0.0, (0.0, 0.0)
     axis = params[:3].copy()
     if name == "torus":
-        return axis * canonical(axis), point, float(params[6]), 0.0, (float(low), float(high))
+        return axis * canonical_sign(axis), point, float(params[6]), 0.0, (float(low), float(high))
     if name == "cylinder":
         half = float(high - low) / 2
-        return axis * canonical(axis), point, float(params[6]), 0.0, (-half, half)
+        return axis * canonical_sign(axis), point, float(params[6]), 0.0, (-half, half)
     along = float((params[3:6] - point) @ axis)
     bounds = sorted((float(low) + along, float(high) + along))
     if params[7] < 0:
         axis, bounds = -axis, [-bounds[1], -bounds[0]]
     return axis, point, 0.0, abs(float(params[7])), (bounds[0], bounds[1])
-
-
-def canonical(axis: Array) -> float:
-    """The sign that makes the largest component positive (ties within 1e-3: x, y, z)."""
-    size = np.abs(axis)
-    first = int(np.flatnonzero(size > size.max() - 1e-3)[0])
-    return 1.0 if axis[first] >= 0 else -1.0
 
 
 def _uncertainties(
@@ -198,20 +181,19 @@ def _uncertainties(
     """(rad, unit lengths) of each region, from the least squares at the surface's point."""
     count, free = len(samples), columns.shape[1]
     freedom = np.maximum(samples - free, 1)
-    scatter = np.maximum(np.sqrt(squares / freedom), 0.3 * scale.rounding)
+    scatter = np.maximum(np.sqrt(squares / freedom), ROUNDED_SCATTER * scale.rounding)
     matrix, _ = normal_equations(region, columns, np.zeros(len(columns)), count)
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=1e-14) / outer
-    largest = (
-        [_largest(inverse[:, :3, :3])] if not has_axis else [_largest(inverse[:, i : i + 2, i : i + 2]) for i in (0, 2)]
-    )
+    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=SINGULAR) / outer
     vague = samples <= free
-    linear = np.where(vague, 1.0, COVERAGE * scatter * largest[0])
+    offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
+    linear = np.where(vague, 1.0, COVERAGE * scatter * offset)
     if not has_axis:
         return np.where(vague, np.pi / 2, 0.0), linear
-    angular = np.where(vague, np.pi / 2, np.minimum(COVERAGE * scatter * largest[1], np.pi / 2))
-    return angular, np.maximum(linear, 0.3 * scale.rounding)
+    tilt = _largest(inverse[:, 2:4, 2:4])
+    angular = np.where(vague, np.pi / 2, np.minimum(COVERAGE * scatter * tilt, np.pi / 2))
+    return angular, np.maximum(linear, ROUNDED_SCATTER * scale.rounding)
 
 
 def _largest(covariance: Array) -> Array:
@@ -231,14 +213,13 @@ def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
     return deepest
 
 
-def _sweeps(params: Params, region: Ints, centres: Array, widths: Array) -> Array:
+def _sweeps(params: Params, batch: Batch, width: Array) -> Array:
     """Length of the union of the angles that each region's polygons, in order, subtend about its axis."""
-    count, turn = len(params), 2 * np.pi
-    x, y = basis(params[:, :3])
-    offset = centres - params[region, 3:6]
-    middle = np.arctan2(np.einsum("ij,ij->i", offset, y[region]), np.einsum("ij,ij->i", offset, x[region]))
-    low = np.mod(middle - widths / 2, turn)
-    high = low + widths
+    count, region, turn = len(params), batch.region, 2 * np.pi
+    mine = params[region]
+    middle = azimuths(mine, batch.patchwork.centre[batch.polygon] - mine[:, 3:6])
+    low = np.mod(middle - width / 2, turn)
+    high = low + width
     order = np.lexsort((low, region))
     region, low, high = region[order], low[order], high[order]
     wrapped = np.zeros(count)
@@ -249,4 +230,4 @@ def _sweeps(params: Params, region: Ints, centres: Array, widths: Array) -> Arra
     reach = np.where(first, wrapped[region], np.r_[0.0, before[:-1]] - apart)
     reach = np.maximum(reach, wrapped[region])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
-    return np.where(covered > turn - 1e-6, turn, covered)
+    return np.where(covered > turn - FULL_TURN, turn, covered)

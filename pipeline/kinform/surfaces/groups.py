@@ -70,6 +70,46 @@ def group_sum(groups: Ints, values: Array, count: int) -> Array:
     return out.reshape((count, *values.shape[1:]))
 
 
+def group_mean(groups: Ints, values: Array, count: int, weight: Array | None = None) -> Array:
+    """Mean of the rows of `values` (n, k) for each group number: (count, k); zero for groups without."""
+    if weight is None:
+        size = np.maximum(np.bincount(groups, minlength=count), 1)
+        return np.asarray(group_sum(groups, values, count) / size[:, None])
+    total = np.maximum(np.bincount(groups, weight, count), 1e-300)
+    return np.asarray(group_sum(groups, values * weight[:, None], count) / total[:, None])
+
+
+def group_range(groups: Ints, values: Array, count: int) -> tuple[Array, Array]:
+    """Least and greatest value of each group number, (count,) each; ∞ and −∞ for groups without."""
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, groups, values)
+    np.maximum.at(high, groups, values)
+    return low, high
+
+
+def members(numbers: Ints) -> list[Ints]:
+    """Positions (n,) of each number that occurs, ascending; those of numbers below 0 are left out."""
+    numbered = np.flatnonzero(numbers >= 0)
+    if not len(numbered):
+        return []
+    ordered = numbered[np.argsort(numbers[numbered], kind="stable")]
+    return list(np.split(ordered, np.flatnonzero(np.diff(numbers[ordered])) + 1))
+
+
+def spheres_through(groups: Ints, points: Array, count: int, *more: Array) -> tuple[Array, Array]:
+    """Centre (count, d) and squared radius (count,) of the sphere, or circle, through the points (n, d) of each group.
+
+    |q|² = 2 q·c + k is linear in the centre c and in k = r² − |c|²; `more` columns take up what else the squared
+    distance depends on.
+    """
+    size = points.shape[1]
+    columns = np.stack([*points.T, np.ones(len(points)), *more], axis=1)
+    matrix, right = normal_equations(groups, columns, (points**2).sum(axis=1), count)
+    solution = solve_normal(matrix, right)
+    centre = solution[:, :size] / 2
+    return centre, solution[:, size] + (centre**2).sum(axis=1)
+
+
 def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
     """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
     k = jacobian.shape[1]

@@ -14,20 +14,25 @@ from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces.constants import EPS32, THREAD_FACET
 from kinform.surfaces.describe import Description, curved, flat, freeform
+from kinform.surfaces.groups import distinct, members
 from kinform.surfaces.kinds.kind import Batch
-from kinform.surfaces.polygons.facets import fabric, scatter
-from kinform.surfaces.polygons.patchwork import Patchwork, Scale, build
+from kinform.surfaces.polygons.facets import Facets
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.merge import coincident_planes, coincident_regions
-from kinform.surfaces.regions.partition import CURVED, Partition, partition
+from kinform.surfaces.regions.partition import CURVED, Partition, Region, partition
 from kinform.surfaces.swept.sliding import sliding
 from kinform.surfaces.swept.threads import threads
 
 __all__ = ["recover"]
 
-EPS32 = float(np.finfo(np.float32).eps)
-SMALL = 2e-2
-"""Share of the area below which a plane may be a facet of a thread."""
+
+LENGTHS = ("radius", "minor_radius", "pitch", "residual", "point_uncertainty", "chord")
+NUMBERS = ("kind", "half_angle", "side", "sweep", "axis_uncertainty")
+"""Fields of a description that are scaled with the mesh, and that are not."""
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
@@ -42,20 +47,11 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
     largest = float(np.abs(mesh.vertices).max())
     centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
     vertices, faces, order = _canonical_order((mesh.vertices - centre) / diagonal, mesh.faces)
-    woven = fabric(vertices, faces)
-    scale = _scale(EPS32 * largest / diagonal, scatter(woven, tolerances.smooth_edge), tolerances)
-    work = build(woven, scale, tolerances)
+    facets = Facets.of(vertices, faces)
+    scale = Scale.of(facets, EPS32 * largest / diagonal, tolerances)
+    work = Patchwork.of(facets, scale, tolerances)
     descriptions = _describe(work, partition(work, scale), scale)
     return _assemble(mesh, work, descriptions, order, centre, diagonal)
-
-
-def _scale(rounding: float, scattered: float, tolerances: Tolerances) -> Scale:
-    """Vertices that scatter more than they were stored with widen everything to four standard deviations."""
-    noise = max(tolerances.fit / 10, 1.5 * rounding)
-    fit = max(tolerances.fit, 10 * noise)
-    if 2 * scattered > noise:
-        return Scale(max(rounding, scattered), scattered, noise=4 * scattered, fit=max(fit, 5 * scattered))
-    return Scale(rounding, 0.0, noise=noise, fit=fit)
 
 
 def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
@@ -72,67 +68,53 @@ def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
 
 
 def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Description]:
-    """Merges what is one surface and measures every surface."""
+    """Merges what is one surface and measures every surface: curved ones, threads, planes, what slides on itself in one
+    way, and freeform patches, each among what those before it left."""
     out: list[Description] = []
     for kind in CURVED:
         regions = [region for region in parts.regions if region.kind is kind]
-        if not regions:
-            continue
-        polygons = [region.polygons for region in regions]
-        params = np.array([region.params for region in regions])
-        side = np.array([region.side for region in regions])
-        tolerance = np.array([region.tolerance for region in regions])
-        root = coincident_regions(work, kind, polygons, params, side, scale)
-        heads, group = np.unique(root, return_inverse=True)
-        sizes = [len(p) for p in polygons]
-        region_of = np.repeat(group, sizes)
-        polygon = np.concatenate(polygons)
-        arranged = np.lexsort((polygon, region_of))
-        batch = Batch(work, region_of[arranged], polygon[arranged], len(heads))
-        loosest = np.zeros(len(heads))
-        np.maximum.at(loosest, group, tolerance)
-        merged = np.bincount(group) > 1
-        loosest = np.where(merged, scale.fit, loosest)
-        out.extend(curved(kind, batch, params[heads], side[heads], loosest, scale))
+        if regions:
+            out += _merged(work, regions, scale)
     rest, alone = parts.freeform.copy(), parts.planes.copy()
-    small = (alone >= 0) & (work.area < SMALL * work.area.sum())
-    for found in threads(work, (rest >= 0) | small, out, scale):
-        out.append(found)
-        rest[found.polygons] = alone[found.polygons] = -1
+    small = (alone >= 0) & (work.area < THREAD_FACET * work.area.sum())
+    for thread in threads(work, (rest >= 0) | small, out, scale):
+        out.append(thread)
+        rest[thread.polygons] = alone[thread.polygons] = -1
     alone[alone >= 0] = np.unique(alone[alone >= 0], return_inverse=True)[1]
-    planes = coincident_planes(work, alone, scale)
-    out.extend(flat(work, planes, scale))
-    for found in sliding(work, rest, scale):
-        chord = freeform(work, found.polygons, _inner(work, rest, found.polygons)).chord
-        out.append(replace(found, chord=chord))
-        rest[found.polygons] = -1
-    inner = np.flatnonzero(work.smooth)
-    inner = inner[(rest[work.a[inner]] >= 0) & (rest[work.a[inner]] == rest[work.b[inner]])]
-    order = np.argsort(rest[work.a[inner]], kind="stable")
-    inner, owner = inner[order], rest[work.a[inner[order]]]
-    for patch in _groups(rest):
-        low, high = np.searchsorted(owner, [rest[patch[0]], rest[patch[0]] + 1])
-        out.append(freeform(work, patch, inner[low:high]))
-    return out
+    out += flat(work, coincident_planes(work, alone, scale), scale)
+    for surface in sliding(work, rest, scale):
+        chord = freeform(work, surface.polygons, _inner(work, rest, surface.polygons)).chord
+        out.append(replace(surface, chord=chord))
+        rest[surface.polygons] = -1
+    return out + [freeform(work, patch, _inner(work, rest, patch)) for patch in members(rest)]
+
+
+def _merged(work: Patchwork, regions: list[Region], scale: Scale) -> list[Description]:
+    """The surfaces of regions of one kind, those that are one surface put together."""
+    polygons = [region.polygons for region in regions]
+    surfaces = Candidates(
+        regions[0].kind,
+        np.array([region.params for region in regions]),
+        np.array([region.side for region in regions]),
+        np.full(len(regions), scale.fit),
+    )
+    root = coincident_regions(work, surfaces, polygons, scale)
+    heads, group = np.unique(root, return_inverse=True)
+    keys = np.repeat(group, [len(p) for p in polygons]) * np.int64(work.count) + np.concatenate(polygons)
+    batch = Batch.of_keys(work, np.sort(keys), len(heads))
+    loosest = np.zeros(len(heads))
+    np.maximum.at(loosest, group, np.array([region.tolerance for region in regions]))
+    loosest[np.bincount(group) > 1] = scale.fit
+    return curved(surfaces.of(heads).within(loosest), batch, scale)
 
 
 def _inner(work: Patchwork, number: Ints, polygons: Ints) -> Ints:
     """Smooth edges inside the patch that these polygons are."""
     _, edges = work.sides.expand(polygons)
-    edges = np.unique(edges)
+    edges = distinct(edges)
     edges = edges[work.smooth[edges]]
     inside: Ints = edges[number[work.a[edges]] == number[work.b[edges]]]
     return inside
-
-
-def _groups(numbers: Ints) -> list[Ints]:
-    """Polygons of each number, ascending."""
-    member = np.flatnonzero(numbers >= 0)
-    if not len(member):
-        return []
-    ordered = member[np.argsort(numbers[member], kind="stable")]
-    cuts = np.flatnonzero(np.diff(numbers[ordered])) + 1
-    return list(np.split(ordered, cuts))
 
 
 def _assemble(
@@ -151,7 +133,7 @@ def _assemble(
     position = np.empty(len(rank), np.int64)
     position[rank] = np.arange(len(rank))
     labels = position[facet_owner]
-    faces = _groups(labels)
+    faces = members(labels)
     surfaces = tuple(_surface(descriptions[k], float(area[k]), faces[i], centre, diagonal) for i, k in enumerate(rank))
     squares = sum(item.squares for item in descriptions)
     samples = sum(item.samples for item in descriptions)
@@ -161,26 +143,14 @@ def _assemble(
 
 
 def _surface(item: Description, area: float, faces: Ints, centre: Array, diagonal: float) -> Surface:
-    located = item.kind != "freeform"
-    point = item.point * diagonal + centre if located else np.zeros(3)
-    axis = item.axis + 0.0
-    for array in (axis, point, faces):
-        freeze(array)
+    lengths = {name: getattr(item, name) * diagonal for name in LENGTHS}
+    numbers = {name: getattr(item, name) for name in NUMBERS}
     return Surface(
-        kind=item.kind,
-        axis=axis,
-        point=point,
-        radius=item.radius * diagonal,
-        half_angle=item.half_angle,
-        minor_radius=item.minor_radius * diagonal,
-        pitch=item.pitch * diagonal,
-        side=item.side,
-        area=area * diagonal**2,
+        axis=freeze(item.axis + 0.0),
+        point=freeze(item.point * diagonal + centre if item.kind != "freeform" else np.zeros(3)),
         extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),
-        sweep=item.sweep,
-        residual=item.residual * diagonal,
-        axis_uncertainty=item.axis_uncertainty,
-        point_uncertainty=item.point_uncertainty * diagonal,
-        chord=item.chord * diagonal,
-        faces=faces,
+        area=area * diagonal**2,
+        faces=freeze(faces),
+        **numbers,
+        **lengths,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["canonical", "cross", "cross_matrix", "dot", "normalised", "perpendicular"]
+__all__ = ["canonical", "canonical_sign", "cross", "cross_matrix", "dot", "normalised", "perpendicular"]
 
 _NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 
@@ -59,10 +59,15 @@ def perpendicular(axis: Array) -> tuple[Array, Array]:
 
 
 def canonical(axis: Array) -> Array:
-    """Unit vector along `axis` (3,) whose largest component is positive; among components within 1e-3 of
-    the largest the first of x, y, z decides."""
+    """Unit vector along `axis` (3,) with the sign of `canonical_sign`."""
     unit: Array = axis / np.linalg.norm(axis)
+    # adding zero turns −0 into 0
+    return canonical_sign(unit) * unit + 0.0
+
+
+def canonical_sign(unit: Array) -> float:
+    """The sign that makes the largest component of a unit vector (3,) positive; among components within 1e-3 of the
+    largest the first of x, y, z decides."""
     size = np.abs(unit)
     first = int(np.flatnonzero(size >= size.max() - 1e-3)[0])
-    # adding zero turns −0 into 0
-    return (unit if unit[first] > 0.0 else -unit) + 0.0
+    return 1.0 if unit[first] >= 0.0 else -1.0

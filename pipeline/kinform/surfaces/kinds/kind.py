@@ -11,20 +11,17 @@ from typing import Protocol
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.groups import occurrences, starts_of
-from kinform.surfaces.polygons.patchwork import Patchwork, Scale
+from kinform.surfaces.constants import DAMPING, NEAR, RUN_OF_PAIRS
+from kinform.surfaces.groups import normal_equations, occurrences, solve_normal, starts_of
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
 
-__all__ = ["Batch", "Kind", "Params", "Probe", "widths"]
+__all__ = ["Batch", "DoublyCurved", "Kind", "Params", "Probe", "distinct_angles", "widths"]
 
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""
-
-RUN = 1 << 15
-"""Pairs of one run."""
-
-ALONG = float(np.cos(np.radians(10.0)))
-"""Edges within this of a generator are generators."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +52,23 @@ class Batch:
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
-        if len(self.region) <= RUN:
+        if len(self.region) <= RUN_OF_PAIRS:
             return [self]
-        cuts = range(0, len(self.region), RUN)
-        return [Batch(self.patchwork, self.region[k : k + RUN], self.polygon[k : k + RUN], self.count) for k in cuts]
+        cuts = range(0, len(self.region), RUN_OF_PAIRS)
+        return [
+            Batch(self.patchwork, self.region[k : k + RUN_OF_PAIRS], self.polygon[k : k + RUN_OF_PAIRS], self.count)
+            for k in cuts
+        ]
+
+    @classmethod
+    def of_keys(cls, patchwork: Patchwork, keys: Ints, count: int) -> Batch:
+        """The batch of sorted `keys`."""
+        return cls(patchwork, keys // patchwork.count, keys % patchwork.count, count)
+
+    @property
+    def keys(self) -> Ints:
+        """(pairs,) one number for each region and polygon."""
+        return self.region * np.int64(self.patchwork.count) + self.polygon
 
     @property
     def corners(self) -> tuple[Ints, Ints]:
@@ -139,6 +149,64 @@ class Kind(Protocol):
     def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
         """Whether there is evidence enough for this kind, not only agreement with it."""
         ...
+
+
+class DoublyCurved(Kind, Protocol):
+    """What spheres and tori have in common: every polygon bends both ways, so that the normal tells its place."""
+
+    shared: int
+    """Polygons of a region that share a vertex of the true surface, at least."""
+    most_steps: int
+    """Steps of least squares after which nothing is gained."""
+    still: float
+    """Change of the parameters (rad, diagonals) at which a fit stands still before that."""
+
+    def step(self, params: Params, change: Array) -> Params:
+        """The surfaces with their free parameters changed by (R, k), within bounds."""
+        ...
+
+    def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
+        """Gauss–Newton over the free parameters."""
+        region, vertex = self.defining(batch, params, tolerance)
+        if not len(region):
+            return params
+        points = batch.patchwork.vertices[vertex]
+        for _ in range(min(steps, self.most_steps)):
+            mine = params[region]
+            matrix, right = normal_equations(
+                region, self.jacobian(mine, points), self.probe(mine, points).distance, batch.count
+            )
+            change = -solve_normal(matrix, right, DAMPING)
+            stepped = self.step(params, change)
+            params = np.where(np.isfinite(stepped).all(axis=1, keepdims=True), stepped, params)
+            if np.abs(change).max(initial=0.0) < self.still:
+                break
+        return params
+
+    def widths(self, batch: Batch, params: Params) -> Array:
+        """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
+        owner, _ = batch.corners
+        mine = params[batch.region]
+        middle = self.probe(mine, batch.patchwork.centre[batch.polygon]).normal
+        apart = self.probe(mine[owner], batch.points).normal - middle[owner]
+        square = np.zeros(len(batch.polygon))
+        np.maximum.at(square, owner, dot(apart, apart))
+        return np.asarray(4 * np.arcsin(np.minimum(np.sqrt(square) / 2, 1.0)))
+
+    def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
+        """Vertices that enough of the region's polygons share, where they lie on the surface."""
+        region, vertex = batch.inner_vertices(self.shared)
+        distance = np.abs(self.probe(params[region], batch.patchwork.vertices[vertex]).distance)
+        keep = distance < NEAR * tolerance[region]
+        return region[keep], vertex[keep]
+
+
+def distinct_angles(region: Ints, angle: Array, step: Array, count: int) -> Ints:
+    """Number of angles of each region that differ by more than its step (count,)."""
+    order = np.lexsort((angle, region))
+    region, angle = region[order], angle[order]
+    fresh = np.r_[True, (region[1:] != region[:-1]) | (np.diff(angle) > step[region[1:]])]
+    return np.bincount(region[fresh], minlength=count).astype(np.int64)
 
 
 def widths(kind: Kind, batch: Batch, params: Params) -> Array:

@@ -12,13 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.constants import (
+    ALIKE_STRONG,
+    ALIKE_WEAK,
+    ALIKE_WIDTHS,
+    GOING_ALONG,
+    SIMPLE_RATIO,
+    TURNED_ALONG,
+)
 from kinform.surfaces.polygons.patchwork import Patchwork
 
-__all__ = ["ALIKE", "Curvature", "Links", "continues", "curvature", "links"]
-
-ALIKE = 3.0
-"""Ratio of widths up to which neighbours look like facets of one surface."""
+__all__ = ["Curvature", "Links", "continues", "curvature", "links"]
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -64,7 +70,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
-    return Links(edge, a, b, wide < ALIKE * narrow)
+    return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
 
 
 def curvature(work: Patchwork, link: Links) -> Curvature:
@@ -74,15 +80,16 @@ def curvature(work: Patchwork, link: Links) -> Curvature:
     amount = work.angle[edge] * work.sign[edge] / np.maximum(work.length[edge], 1e-300) / 2
     near_a, near_b = a[link.alike], b[link.alike]
 
-    def spread(own: Array) -> Array:
-        return own + np.bincount(near_a, own[near_b], work.count) + np.bincount(near_b, own[near_a], work.count)
+    def with_neighbours(value: Array) -> Array:
+        of_b = np.bincount(near_a, value[near_b], work.count)
+        return np.asarray(value + of_b + np.bincount(near_b, value[near_a], work.count))
 
-    area = np.maximum(spread(work.area.astype(float)), 1e-300)
+    area = np.maximum(with_neighbours(work.area.astype(float)), 1e-300)
     tensor: Array = np.empty((work.count, 3, 3))
     for i, j in _PAIRS:
         term = amount * along[:, i] * along[:, j]
-        own: Array = (np.bincount(a, term, work.count) + np.bincount(b, term, work.count)).astype(float)
-        tensor[:, i, j] = tensor[:, j, i] = spread(own) / area
+        turning: Array = (np.bincount(a, term, work.count) + np.bincount(b, term, work.count)).astype(float)
+        tensor[:, i, j] = tensor[:, j, i] = with_neighbours(turning) / area
     values, vectors = np.linalg.eigh(tensor)
     order = np.argsort(-np.abs(values), axis=1, kind="stable")
     rows = np.arange(work.count)
@@ -99,22 +106,13 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     a, b = link.a, link.b
     strong_a, strong_b = bent.strong[a], bent.strong[b]
     larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
-    like = (np.abs(strong_a - strong_b) <= 0.35 * larger) & (np.abs(bent.weak[a] - bent.weak[b]) <= 0.3 * larger)
-    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < 0.12
-    cosine = np.abs(np.einsum("ij,ij->i", bent.along[a], bent.along[b]))
+    like = np.abs(strong_a - strong_b) <= ALIKE_STRONG * larger
+    like &= np.abs(bent.weak[a] - bent.weak[b]) <= ALIKE_WEAK * larger
+    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < SIMPLE_RATIO
+    cosine = dot(bent.along[a], bent.along[b])
     step = work.centre[b] - work.centre[a]
     size = np.maximum(np.linalg.norm(step, axis=1), 1e-300)
-    going = (
-        np.abs(
-            np.einsum(
-                "ij,ij->i",
-                step,
-                bent.along[a] + bent.along[b] * np.sign(np.einsum("ij,ij->i", bent.along[a], bent.along[b]))[:, None],
-            )
-        )
-        / 2
-        / size
-    )
-    turn = np.arccos(np.clip(cosine, 0.0, 1.0))
-    allowed = np.where(going > 0.7, 0.03, 0.03 + work.angle[link.edge])
+    going = np.abs(dot(step, bent.along[a] + bent.along[b] * np.sign(cosine)[:, None])) / 2 / size
+    turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
     return np.asarray(like & (~simple | (turn <= allowed)))

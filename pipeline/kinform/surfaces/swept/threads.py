@@ -14,46 +14,47 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.describe import COVERAGE, Description, canonical, freeform
-from kinform.surfaces.polygons.patchwork import Patchwork, Scale
+from kinform.surfaces.constants import (
+    ADVANCE_NOISES,
+    ADVANCE_SHOWS,
+    ADVANCE_STEP,
+    ALIKE_ADVANCE,
+    BENT,
+    COVERAGE,
+    HELIX_MEDIANS,
+    HELIX_SIGMAS,
+    HELIX_STEP,
+    LEAN,
+    LEAST_ARC,
+    LEVEL,
+    LEVEL_NOISES,
+    LONGEST,
+    LOPSIDED,
+    MOST_ADVANCES,
+    MOST_LINES,
+    MOST_PIECES,
+    PIECE_TURNS,
+    REWEIGHINGS,
+    ROUNDED_SCATTER,
+    SAME_LINE,
+    SHORTEST,
+    STEEP,
+    THREAD_POLYGONS,
+    TILT,
+    TILTS,
+    TOUCHING,
+    TURNED,
+    VAGUE_HELIX,
+    WIDE,
+)
+from kinform.surfaces.describe import Description, freeform
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
 
 __all__ = ["threads"]
-
-LEAST = 24
-"""Polygons of a thread, at least."""
-MOST_LINES = 6
-"""Axes tried, the best supported first."""
-MOST_PIECES = 4
-"""Pieces of what no surface explains that suggest an axis."""
-ROUNDS = 6
-"""Of reweighing, until what is no thread counts little."""
-SAME = 1e-3
-"""Lines (rad, and of the mesh's diagonal) that are one axis."""
-LEVEL = 2e-3
-"""Share of its length by which an edge along a helix may change its distance from the axis."""
-WIDE = (8.0, 4.0, 2.0, 1.0, 1.0)
-"""How much wider helices are looked for while axis and advance are refined."""
-STEP = 0.85
-"""rad: greatest angle of an edge about the axis: a thread has eight vertices a turn, at least."""
-STEEP = (2e-3, 4.0)
-"""Range of the advance a radian, in radii, of what is a thread."""
-ALIKE = 5e-3
-"""Relative spread of the advance along edges of one thread, besides what rounding makes of each."""
-TURNED = 0.7
-"""Turns of helix, counted along all polylines of a thread, at least."""
-LONGEST = 0.4
-"""Turns of the longest of them, at least."""
-TILT = 0.12
-"""Root mean square of the normals' share of the screw's speed, of facets that belong to a thread."""
-LOPSIDED = 0.6
-"""The same of a single facet between two helices: skew triangles lean far to either side in turn."""
-BENT = 1.0
-"""rad: facets of one flank make no greater angle."""
-LEAN = 0.3
-"""Mean of that, as a share of the slope of the helix: beyond, the facets are as well a ring, or a helix of another pitch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +64,16 @@ class _Screw:
     advance: float
     """Along the axis a radian, right-handed positive."""
 
+    @property
+    def frame(self) -> tuple[Array, Array]:
+        """Two unit vectors across the axis, from the first of which azimuths count."""
+        u, v = perpendicular(self.axis)
+        return -u, -v
+
     def polar(self, points: Array) -> tuple[Array, Array, Array]:
         """Height, distance and azimuth of points (n, 3)."""
-        u = np.cross(self.axis, np.eye(3)[int(np.argmin(np.abs(self.axis)))])
-        u /= np.linalg.norm(u)
         arm = points - self.point
-        x, y = arm @ u, arm @ np.cross(self.axis, u)
+        x, y = (arm @ across for across in self.frame)
         return arm @ self.axis, np.hypot(x, y), np.arctan2(y, x)
 
     def lean(self, centres: Array, normals: Array) -> tuple[Array, Array]:
@@ -76,7 +81,7 @@ class _Screw:
         turning = cross(np.broadcast_to(self.axis, centres.shape), centres - self.point)
         velocity = turning + self.advance * self.axis
         size = np.maximum(np.linalg.norm(velocity, axis=1), 1e-300)
-        return np.einsum("ij,ij->i", normals, velocity) / size, np.abs(self.advance) / size
+        return dot(normals, velocity) / size, np.abs(self.advance) / size
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +99,10 @@ def threads(work: Patchwork, loose: Flags, known: Sequence[Description], scale: 
     """Helicoids among the loose polygons (P,), each with all its flanks; `known` surfaces suggest axes."""
     free = loose.copy()
     out: list[Description] = []
-    if int(free.sum()) < LEAST:
+    if int(free.sum()) < THREAD_POLYGONS:
         return out
     for axis, point in _lines(work, free, known):
-        if int(free.sum()) < LEAST:
+        if int(free.sum()) < THREAD_POLYGONS:
             break
         found = _about(work, free, axis, point, scale)
         if found is not None:
@@ -119,7 +124,10 @@ def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Ar
     lines: list[tuple[Array, Array]] = []
     for axis, point in candidates:
         for other, through in lines:
-            if np.linalg.norm(np.cross(axis, other)) < SAME and np.linalg.norm(np.cross(point - through, other)) < SAME:
+            if (
+                np.linalg.norm(cross(axis, other)) < SAME_LINE
+                and np.linalg.norm(cross(point - through, other)) < SAME_LINE
+            ):
                 break
         else:
             lines.append((axis, point))
@@ -134,29 +142,29 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
     area, size = np.bincount(label, work.area * free), np.bincount(label, free)
     out = []
     for piece in np.argsort(-area, kind="stable")[:MOST_PIECES]:
-        if size[piece] < LEAST:
+        if size[piece] < THREAD_POLYGONS:
             continue
         own = np.flatnonzero(free & (label == piece))
         weight = work.area[own]
-        for _ in range(ROUNDS):
+        for _ in range(REWEIGHINGS):
             middle = weight @ work.centre[own] / weight.sum()
             arm = work.centre[own] - middle
-            reach = max(float(np.sqrt(weight @ np.einsum("ij,ij->i", arm, arm) / weight.sum())), 1e-12)
+            reach = max(float(np.sqrt(weight @ dot(arm, arm) / weight.sum())), 1e-12)
             rows = np.concatenate([cross(arm / reach, work.normal[own]), work.normal[own]], axis=1)
             twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
             speed = np.abs(rows @ twist)
             weight = work.area[own] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
         turn = float(np.linalg.norm(twist[:3]))
-        if turn > 0.1:
+        if turn > PIECE_TURNS:
             axis = twist[:3] / turn
-            out.append((axis, middle + np.cross(axis, twist[3:] / turn) * reach))
+            out.append((axis, middle + cross(axis, twist[3:] / turn) * reach))
     return out
 
 
 def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale) -> Description | None:
     """The thread about a line, if there is one."""
     edges = np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
-    if len(edges) < LEAST:
+    if len(edges) < THREAD_POLYGONS:
         return None
     start = _Screw(axis, point, 0.0)
     best: tuple[float, _Screw, Ints] | None = None
@@ -166,7 +174,7 @@ def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale
             continue
         helices = _helices(work, edges, screw, scale)
         members = np.zeros(0, np.int64) if helices is None else _members(work, free, helices, screw)
-        if helices is None or len(members) < LEAST:
+        if helices is None or len(members) < THREAD_POLYGONS:
             continue
         # diagonals of a regular mesh make short helices of another pitch
         score = float((np.bincount(helices.polyline, helices.turn) ** 2).sum())
@@ -187,10 +195,10 @@ def _slopes(
     mean = distance.reshape(-1, 2).mean(axis=1)
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
-    level = np.abs(widening) <= wide * LEVEL * length + 4 * scale.noise
-    turning = (np.abs(turn) < STEP) & (np.abs(turn) * mean > 0.05 * np.abs(rise)) & (np.abs(turn) > 1e-6)
+    level = np.abs(widening) <= wide * LEVEL * length + LEVEL_NOISES * scale.noise
+    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > 1e-6)
     advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
-    doubt = 3 * scale.noise / np.maximum(np.abs(turn), 1e-9)
+    doubt = ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
     steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
     return advance, doubt, turn, level & turning & steep
 
@@ -198,14 +206,14 @@ def _slopes(
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many edges have in common, the most turned first."""
     advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, WIDE[0])
-    rows = np.flatnonzero(usable & (doubt < 0.3 * np.abs(advance)))
+    rows = np.flatnonzero(usable & (doubt < ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
-    for _ in range(4):
-        if len(rows) < LEAST // 2:
+    for _ in range(MOST_ADVANCES):
+        if len(rows) < THREAD_POLYGONS // 2:
             break
         order = rows[np.argsort(advance[rows], kind="stable")]
         values, weight = advance[order], np.abs(turn[order])
-        reach = ALIKE * np.abs(values) + np.median(doubt[order])
+        reach = ALIKE_ADVANCE * np.abs(values) + np.median(doubt[order])
         total = np.r_[0.0, np.cumsum(weight)]
         low = np.searchsorted(values, values - reach)
         high = np.searchsorted(values, values + reach, side="right")
@@ -223,7 +231,7 @@ def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: fl
     """The edges along the screw's helices, joined to polylines, if they make enough of a thread."""
     ends = work.ends[edges]
     advance, doubt, turn, usable = _slopes(work, ends, screw, scale, wide)
-    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * ALIKE * abs(screw.advance) + doubt)
+    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * ALIKE_ADVANCE * abs(screw.advance) + doubt)
     if not near.any():
         return None
     ends, turn = ends[near], np.abs(turn[near])
@@ -232,7 +240,7 @@ def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: fl
     turned = np.bincount(polyline, turn)
     if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * LONGEST:
         return None
-    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > 0.02 * turned.max())
+    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > SHORTEST * turned.max())
     return _Helices(ends[keep], np.unique(polyline[keep], return_inverse=True)[1], turn[keep])
 
 
@@ -251,11 +259,9 @@ def _residuals(work: Patchwork, helices: _Helices, screw: _Screw, vertex: Ints, 
     return np.concatenate([above, distance])
 
 
-def _moved(screw: _Screw, change: Array) -> _Screw:
+def _changed(screw: _Screw, change: Array) -> _Screw:
     """The screw with its axis tilted and shifted, and its advance changed, by (5,)."""
-    u = np.cross(screw.axis, np.eye(3)[int(np.argmin(np.abs(screw.axis)))])
-    u /= np.linalg.norm(u)
-    v = np.cross(screw.axis, u)
+    u, v = screw.frame
     axis = screw.axis + change[0] * u + change[1] * v
     return _Screw(axis / np.linalg.norm(axis), screw.point + change[2] * u + change[3] * v, screw.advance + change[4])
 
@@ -270,15 +276,15 @@ def _solved(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> 
     step = 1e-6
     base = _residuals(work, helices, screw, vertex, group)
     columns = np.stack(
-        [(_residuals(work, helices, _moved(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
+        [(_residuals(work, helices, _changed(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
-    scatter = max(1.5 * float(np.median(np.abs(base))), scale.rounding)
-    weight = 1.0 / np.maximum(np.abs(base) / (3 * scatter), 1.0) ** 2
+    scatter = max(HELIX_MEDIANS * float(np.median(np.abs(base))), scale.rounding)
+    weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=1e-12) / np.outer(size, size)
+    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
     change = -inverse @ (columns.T @ (weight * base))
-    return _moved(screw, change), inverse, scatter, float(np.ptp(height))
+    return _changed(screw, change), inverse, scatter, float(np.ptp(height))
 
 
 def _refined(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
@@ -288,7 +294,7 @@ def _refined(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Scre
         if helices is None:
             return None
         moved = _solved(work, helices, screw, scale)[0]
-        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > 0.1 * abs(screw.advance):
+        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > ADVANCE_STEP * abs(screw.advance):
             return None
         screw = moved
     return screw
@@ -311,7 +317,7 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     along = np.isin(own[:, 0] * total + own[:, 1], low * total + high)
     sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
     between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
-    fitting = free & (np.abs(share) < 3 * TILT)
+    fitting = free & (np.abs(share) < TILTS * TILT)
     use = work.smooth & fitting[work.a] & (work.b >= 0)
     use[use] &= fitting[work.b[use]]
     label = components(work.a[use], work.b[use], work.count)
@@ -320,7 +326,7 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     mean = np.bincount(label, area * share, work.count) / whole
     square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
     steep = np.bincount(label, area * slope, work.count) / whole
-    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= 3
+    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= TOUCHING
     good = touched & (square < TILT) & (np.abs(mean) < LEAN * steep)
     return np.flatnonzero(between | (fitting & good[label]))
 
@@ -347,18 +353,18 @@ def _described(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, scale
     height, _, _ = screw.polar(work.vertices[helices.ends.ravel()])
     middle = 0.5 * float(height.min() + height.max())
     point = screw.point + middle * screw.axis
-    axis = screw.axis * canonical(screw.axis)
+    axis = screw.axis * canonical_sign(screw.axis)
     arm = work.centre[members] - point
     radial = arm - (arm @ axis)[:, None] * axis
     distance = np.linalg.norm(radial, axis=1)
-    outward = float(np.einsum("ij,ij->i", normal, radial) / np.maximum(distance, 1e-300) @ weight)
+    outward = float(dot(normal, radial) / np.maximum(distance, 1e-300) @ weight)
     _, vertex = work.corners.expand(members)
     span = (work.vertices[vertex] - point) @ axis
     return Description(
         "helicoid", members, axis, point, radius=float(distance @ weight / weight.sum()),
         side=1 if outward >= 0 else -1, extent=(float(span.min()), float(span.max())), residual=scatter,
         axis_uncertainty=float(min(np.hypot(spread[0], spread[1]), np.pi / 2)),
-        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), 0.3 * scale.rounding)),
+        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), ROUNDED_SCATTER * scale.rounding)),
         pitch=2 * np.pi * screw.advance,
         chord=_chord(work, helices, members),
     )  # fmt: skip

@@ -1,0 +1,138 @@
+"""How far vertices scatter about their surfaces, and the lengths that follow from it.
+
+The scatter is read from edges between facets that should be coplanar. The four vertices of such an edge lie
+off a common plane by a signed distance: on a clean mesh it is nought on planes and of one sign around
+each vertex of a convex or concave surface; scattered vertices mix both signs everywhere. Saddles mix them too, but
+smoothly, and threads of skew facets do it all in one way: both are told apart below. What cannot be told apart is
+scatter that repeats itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.tolerances import Tolerances
+from kinform.surfaces.constants import (
+    CALM_SHARE,
+    CALM_SHARE_OF_RIPPLE,
+    FIT_SIGMAS,
+    FITS_PER_NOISE,
+    LEAST_EDGES,
+    LEAST_SPOKES,
+    MIXED_PER_SIGMA,
+    NOISE_ROUNDINGS,
+    NOISE_SIGMAS,
+    REPEATED,
+    REPEATED_ROW,
+    RIPPLE,
+    RUN_OF_EDGES,
+    SCATTER_SHOWS,
+)
+from kinform.surfaces.polygons.facets import Facets
+
+__all__ = ["Scale", "departures", "scatter"]
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Lengths that decide, relative to the mesh's diagonal."""
+
+    rounding: float
+    """What storing coordinates in single precision loses, or the scatter that the mesh shows, if larger."""
+    scatter: float
+    """Standard deviation of vertices that scatter more than they were rounded, else 0."""
+    noise: float
+    """Scatter of vertices that is expected anyway."""
+    fit: float
+    """Distance up to which a vertex belongs to a surface."""
+
+    @classmethod
+    def of(cls, mesh: Facets, rounding: float, tolerances: Tolerances) -> Scale:
+        """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
+        standard deviations."""
+        sigma = scatter(mesh, tolerances.smooth_edge)
+        noise = max(tolerances.fit / FITS_PER_NOISE, NOISE_ROUNDINGS * rounding)
+        fit = max(tolerances.fit, FITS_PER_NOISE * noise)
+        if SCATTER_SHOWS * sigma > noise:
+            return cls(max(rounding, sigma), sigma, noise=NOISE_SIGMAS * sigma, fit=max(fit, FIT_SIGMAS * sigma))
+        return cls(rounding, 0.0, noise=noise, fit=fit)
+
+
+def departures(mesh: Facets, edges: Ints) -> Array:
+    """Signed distance of the four vertices of each edge from a common plane, positive where convex.
+
+    It is their one linear combination that vanishes on planes, of length one: vertices that scatter by σ
+    scatter it by σ, whatever the shape of the two facets.
+    """
+    out = np.empty(len(edges))
+    for start in range(0, len(edges), RUN_OF_EDGES):
+        run = slice(start, start + RUN_OF_EDGES)
+        a, b, c, d = mesh.vertices[_corners(mesh, edges[run])]
+        u, v, w = b - a, c - a, d - a
+        uv = cross(u, v)
+        squares = np.zeros(len(a))
+        for minor in (uv, cross(u, w), cross(v, w), cross(c - b, d - b)):
+            squares += dot(minor, minor)
+        out[run] = -dot(uv, w) / np.sqrt(np.maximum(squares, 1e-300))
+    return out
+
+
+def _corners(mesh: Facets, edges: Ints) -> Ints:
+    """(4, n) both ends of each edge, and the third vertices of its facets."""
+    ends = mesh.ends[edges]
+    shared = ends.sum(axis=1)
+    opposite = [mesh.faces[f[edges]].sum(axis=1) - shared for f in (mesh.f0, mesh.f1)]
+    return np.stack([ends[:, 0], ends[:, 1], *opposite])
+
+
+def scatter(mesh: Facets, smooth_edge: float) -> float:
+    """Standard deviation of the vertices about their surfaces in one coordinate, as far as it can be read.
+
+    Saddles mix signs too, but smoothly: what one vertex shows, its neighbours show as well.
+    """
+    inner = np.flatnonzero(mesh.inner)
+    near = inner[dot(mesh.normal[mesh.f0[inner]], mesh.normal[mesh.f1[inner]]) > np.cos(smooth_edge)]
+    if not len(near):
+        return 0.0
+    off, count = departures(mesh, near), len(mesh.vertices)
+    above, below, seen = np.zeros(count), np.zeros(count), np.zeros(count, np.int64)
+    for row in _corners(mesh, near):
+        np.maximum.at(above, row, off)
+        np.maximum.at(below, row, -off)
+        seen += np.bincount(row, minlength=count)
+    mixed = _calmest(mesh, np.minimum(above, below), seen >= LEAST_EDGES, CALM_SHARE)
+    a, b = mesh.ends[near].T
+    spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
+    mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
+    around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= LEAST_SPOKES, CALM_SHARE_OF_RIPPLE)
+    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
+        return 0.0
+    irregular = _irregular(mesh, inner, above, below)
+    return _calmest(mesh, irregular, seen >= LEAST_EDGES, CALM_SHARE) / MIXED_PER_SIGMA
+
+
+def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
+    """What mixes at each vertex; nothing where a long row of neighbours does so alike: flanks of a thread that is one
+    strip of skew facets mix signs, but all in one way, and scatter repeats nothing."""
+    a, b = mesh.ends[inner].T
+    alike = np.ones(len(a), bool)
+    for value in (above, below):
+        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
+    # an edge shows at its four vertices: so few are alike anyway
+    label = components(a[alike], b[alike], len(above))
+    return np.where(np.bincount(label)[label] >= REPEATED_ROW, 0.0, np.minimum(above, below))
+
+
+def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:
+    """The value of vertices that is reached on so large a share of the area, from the smallest up."""
+    each = np.median(value[mesh.faces], axis=1)
+    weight = np.where(readable[mesh.faces].all(axis=1), mesh.area, 0.0)
+    order = np.argsort(each, kind="stable")
+    reached = np.cumsum(weight[order])
+    return float(each[order][np.searchsorted(reached, share * reached[-1])]) if reached[-1] > 0 else 0.0

@@ -1,0 +1,84 @@
+"""Surfaces that regions are tried for, and which polygons conform to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import dot
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
+from kinform.surfaces.groups import ordered_quantile, quantile
+from kinform.surfaces.kinds.kind import Batch, Kind, Params
+from kinform.surfaces.kinds.kind import widths as widths_of
+
+__all__ = ["Candidates"]
+
+
+@dataclass(frozen=True, eq=False)
+class Candidates:
+    """R surfaces of one kind, each the hypothesis of the region of the same number."""
+
+    kind: Kind
+    params: Params
+    side: Ints
+    """(R,) +1 convex, -1 concave."""
+    tolerance: Array
+    """(R,) to which the vertices are held."""
+
+    def of(self, numbers: Ints) -> Candidates:
+        """Some of them, in this order."""
+        return Candidates(self.kind, self.params[numbers], self.side[numbers], self.tolerance[numbers])
+
+    def within(self, tolerance: Array) -> Candidates:
+        """The same surfaces, held to another tolerance."""
+        return replace(self, tolerance=tolerance)
+
+    def refined(self, batch: Batch, steps: int) -> Candidates:
+        """Fitted again to their regions."""
+        return replace(self, params=self.kind.refine(batch, self.params, self.tolerance, steps))
+
+    def reach(self, batch: Batch) -> Array:
+        """(R,) greatest angle that a facet of each region may subtend, judged by the facets it has."""
+        width = widths_of(self.kind, batch, self.params)
+        order = np.lexsort((width, batch.region))
+        region, ascending = batch.region[order], width[order]
+        typical = ordered_quantile(region, ascending, batch.count, TYPICAL_WIDTH)
+        following = np.r_[ascending[1:], 0.0]
+        last = np.r_[region[1:] != region[:-1], True] if len(region) else np.zeros(0, bool)
+        gap = ~last & (ascending >= typical[region]) & (following > WIDER * ascending)
+        top = np.full(batch.count, np.inf)
+        np.minimum.at(top, region[gap], ascending[gap])
+        largest = np.zeros(batch.count)
+        largest[region[last]] = np.maximum(ascending[last], 0.0)
+        return np.asarray(np.minimum(WIDER * np.minimum(top, largest), WIDEST) + FACET_ROUNDING)
+
+    def conforms(self, batch: Batch, reach: Array) -> Flags:
+        """Whether each pair's polygon is a piece of its region's surface, tessellated no coarser than `reach`."""
+        return np.concatenate([self._conforms(part, reach) for part in batch.parts()])
+
+    def _conforms(self, batch: Batch, reach: Array) -> Flags:
+        """A polygon conforms where its vertices lie on the surface, its middle no deeper than a chord of the widest
+        facet, and its normal is that of the surface to within half a facet."""
+        work, region = batch.patchwork, batch.region
+        owner, _ = batch.corners
+        group = region[owner]
+        held = self.kind.probe(self.params[group], batch.points)
+        chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
+        allowed, limit = held.curvature_radius * chord[group], self.tolerance[group]
+        off = np.zeros(len(region), bool)
+        deepest = limit if self.kind.saddle else allowed + limit
+        off[owner[(held.distance >= limit) | (held.distance <= -deepest)]] = True
+        middle = self.kind.probe(self.params[region], work.centre[batch.polygon])
+        # a flat has all its vertices on the surface, but is wider than the facets of it
+        off |= middle.distance <= -middle.curvature_radius * chord[region] - self.tolerance[region]
+        cosine = dot(middle.normal, work.normal[batch.polygon]) * self.side[region]
+        widest = np.minimum(0.5 * reach[region] + NORMAL_SLACK + work.slack[batch.polygon], WIDEST)
+        return np.asarray(~off & (cosine > np.cos(widest)))
+
+    def scatter(self, batch: Batch) -> Array:
+        """(R,) middle distance of each region's vertices from its surface."""
+        region, vertex = self.kind.defining(batch, self.params, self.tolerance)
+        distance = np.abs(self.kind.probe(self.params[region], batch.patchwork.vertices[vertex]).distance)
+        return quantile(region, distance, batch.count, 0.5)

@@ -1,0 +1,98 @@
+"""Where regions may grow: polygons, the smooth edges between them, and which of the polygons are free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.graphs.components import components
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces.groups import Ragged, distinct
+from kinform.surfaces.kinds.kind import Batch
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.regions.candidates import Candidates
+
+__all__ = ["Ground", "among"]
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """The polygons of a mesh while regions grow on them."""
+
+    patchwork: Patchwork
+    scale: Scale
+    links: Ragged
+    """Smooth edges of each polygon."""
+    free: Flags
+    """(P,) in no region yet; written as regions are chosen."""
+
+    @classmethod
+    def of(cls, patchwork: Patchwork, scale: Scale) -> Ground:
+        """The ground of a patchwork, all of it free."""
+        edges = np.flatnonzero(patchwork.smooth)
+        rows = np.r_[patchwork.a[edges], patchwork.b[edges]]
+        links = Ragged(rows, np.r_[edges, edges], patchwork.count)
+        return cls(patchwork, scale, links, np.ones(patchwork.count, bool))
+
+    @property
+    def smooth(self) -> Ints:
+        """Smooth edges between free polygons."""
+        work = self.patchwork
+        edges = np.flatnonzero(work.smooth)
+        return edges[self.free[work.a[edges]] & self.free[work.b[edges]]]
+
+    def neighbours(self, keys: Ints) -> Ints:
+        """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
+        work = self.patchwork
+        polygon = keys % work.count
+        owner, edge = self.links.expand(polygon)
+        target = work.other(edge, polygon[owner])
+        open_ = self.free[target]
+        return distinct((keys // work.count)[owner][open_] * np.int64(work.count) + target[open_])
+
+    def spread(self, surfaces: Candidates, batch: Batch, reach: Array, layers: int) -> Batch:
+        """The batch with up to `layers` layers of conforming neighbours added."""
+        seen = np.sort(batch.keys)
+        gained = [seen]
+        front, recent = seen, seen
+        for _ in range(layers):
+            keys = self.neighbours(front)
+            keys = keys[~among(keys, seen) & ~among(keys, recent)]
+            if not len(keys):
+                break
+            trial = Batch.of_keys(self.patchwork, keys, batch.count)
+            front = keys[surfaces.conforms(trial, reach)]
+            if not len(front):
+                break
+            gained.append(front)
+            recent = np.sort(np.concatenate(gained[-2:]))
+        return Batch.of_keys(self.patchwork, np.sort(np.concatenate(gained)), batch.count)
+
+    def connected(self, batch: Batch) -> Batch:
+        """The largest connected piece of each region (ties: the piece of the lowest polygon)."""
+        work = self.patchwork
+        if not len(batch.region):
+            return batch
+        keys = batch.keys
+        owner, edge = self.links.expand(batch.polygon)
+        target = batch.region[owner] * np.int64(work.count) + work.other(edge, batch.polygon[owner])
+        inside = among(target, keys)
+        label = components(owner[inside], np.searchsorted(keys, target[inside]), len(keys))
+        size = np.bincount(label)
+        first = np.full(len(size), len(keys))
+        np.minimum.at(first, label, np.arange(len(keys)))
+        order = np.lexsort((first[label], -size[label], batch.region))
+        head = order[np.r_[True, batch.region[order][1:] != batch.region[order][:-1]]]
+        best = np.full(batch.count, -1)
+        best[batch.region[head]] = label[head]
+        return batch.select(best[batch.region] == label)
+
+
+def among(keys: Ints, ordered: Ints) -> Flags:
+    """Whether each key is one of the ordered ones."""
+    if not len(ordered):
+        return np.zeros(len(keys), bool)
+    at = np.minimum(np.searchsorted(ordered, keys), len(ordered) - 1)
+    return np.asarray(ordered[at] == keys)

@@ -1,0 +1,55 @@
+"""Motions under which patches of polygons slide on themselves.
+
+At a point q with the normal n the twist (ω; v) moves the surface along its normal by (q × n) · ω + n · v. The motion
+that does so least, in the mean over the polygons' areas, is the eigenvector of Σ w [q × n; n][q × n; n]ᵀ with the least
+eigenvalue (line complexes: Pottmann and Randrup, Rotational and helical surface approximation, 1998; slippage: Gelfand
+and Guibas, Shape segmentation using local slippage analysis, 2004). A surface of revolution turns into itself, an
+extrusion shifts, a helicoid screws; planes, spheres and cylinders do it in several ways, freeform surfaces in none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.model.arrays import Array, Ints
+from kinform.surfaces.groups import group_mean
+from kinform.surfaces.polygons.patchwork import Patchwork
+
+__all__ = ["Slippage", "slippage"]
+
+
+@dataclass(frozen=True, eq=False)
+class Slippage:
+    """The most sliding motion of each of n patches, scaled to radius 1 about its middle."""
+
+    middle: Array
+    """(n, 3)"""
+    size: Array
+    """(n,) root mean square distance from the middle: the radius that is 1 in the motion."""
+    angular: Array
+    linear: Array
+    """(n, 3) each; together of length one."""
+    speed: Array
+    """(n,) root mean square of the speed along the normals."""
+    next_speed: Array
+    """(n,) that of the motion which slides best among those across it."""
+
+
+def slippage(work: Patchwork, patch: Ints, polygon: Ints, count: int) -> Slippage:
+    """The motions of `count` patches, given as pairs (patch, polygon)."""
+    normal, weight = work.normal[polygon], work.area[polygon]
+    total = np.maximum(np.bincount(patch, weight, count), 1e-300)
+    middle = group_mean(patch, work.centre[polygon], count, weight)
+    offset = work.centre[polygon] - middle[patch]
+    size = np.maximum(np.sqrt(np.bincount(patch, weight * dot(offset, offset), count) / total), 1e-12)
+    rows = np.concatenate([cross(offset / size[patch][:, None], normal), normal], axis=1)
+    matrix: Array = np.empty((count, 6, 6))
+    for i in range(6):
+        for j in range(i, 6):
+            matrix[:, i, j] = matrix[:, j, i] = np.bincount(patch, weight * rows[:, i] * rows[:, j], count) / total
+    values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
+    speed = np.sqrt(np.maximum(values, 0.0))
+    return Slippage(middle, size, vectors[:, :3, 0], vectors[:, 3:, 0], speed[:, 0], speed[:, 1])
