@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from solids import ball, box, derived, random_pose, rod
 
 from kinform.kinematics import derive
-from kinform.kinematics.bodies.matrix import extreme_samples
+from kinform.kinematics.pair.extremes import extreme_samples
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, unit_rows
 
 X, Y = np.array([1.0, 0, 0]), np.array([0, 1.0, 0])

@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from kinform import stages
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.mobility.closure import close
-from kinform.kinematics.mobility.finite import finite_mobility
-from kinform.kinematics.mobility.loop_system import loop_system
+from kinform.kinematics.loops.closure import close
+from kinform.kinematics.loops.loop_kinematics import loop_system
+from kinform.kinematics.mobility.finite_motion import finite_mobility
 
 X, Y, Z = np.eye(3)
 
@@ -258,7 +258,7 @@ def test_a_loop_with_an_ambiguous_joint_is_not_known_and_others_are():
 
 
 def test_a_block_beyond_the_limit_is_said_to_be(monkeypatch):
-    monkeypatch.setattr("kinform.kinematics.mobility.finite.WORK", 50)
+    monkeypatch.setattr("kinform.kinematics.mobility.finite_motion.MOST_BLOCK_WORK", 50)
     _, found = count(build(four_bar()))
     assert found.count is None
     assert "too many to be tried" in found.reason

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from solids import ball, box, derived
 
 from kinform.foundation.algebra.screws import Frame, rotation, span, translation
-from kinform.kinematics.groups import group_of, in_words
+from kinform.kinematics.wording import group_of, motions_in_words
 
 X, Y, Z = np.eye(3)
 P = np.array([0.1, -0.02, 0.03])
@@ -75,14 +75,18 @@ def test_what_is_no_subgroup_has_no_name(name, seed):
 
 def test_words_name_axes_points_and_directions():
     still = np.eye(3)
-    assert in_words(space([turn(Z)], still), FRAME) == "turns about (0, 0, 1) through (100, -20, 30) mm (revolute)"
-    assert "4 mm a turn" in in_words(space([turn(Z, pitch=0.004)], still, 1), FRAME)
-    assert in_words(space([slide(Y)], still), FRAME) == "slides along (0, 1, 0) (prismatic)"
-    both = in_words(space([turn(X), turn(Z)], still, 2), FRAME)
+    assert (
+        motions_in_words(space([turn(Z)], still), FRAME) == "turns about (0, 0, 1) through (100, -20, 30) mm (revolute)"
+    )
+    assert "4 mm a turn" in motions_in_words(space([turn(Z, pitch=0.004)], still, 1), FRAME)
+    assert motions_in_words(space([slide(Y)], still), FRAME) == "slides along (0, 1, 0) (prismatic)"
+    both = motions_in_words(space([turn(X), turn(Z)], still, 2), FRAME)
     assert "through (100, -20, 30) mm" in both and "universal" in both
-    assert "universal" not in in_words(space([turn(X, P + 0.1 * Y), turn(Z)], still, 2), FRAME)
-    assert in_words(space([*EVERY, slide(X), slide(Y)], still, 3), FRAME).startswith("turns every way, slides along")
-    assert in_words(np.zeros((6, 0)), FRAME) == "does not move (identity)"
+    assert "universal" not in motions_in_words(space([turn(X, P + 0.1 * Y), turn(Z)], still, 2), FRAME)
+    assert motions_in_words(space([*EVERY, slide(X), slide(Y)], still, 3), FRAME).startswith(
+        "turns every way, slides along"
+    )
+    assert motions_in_words(np.zeros((6, 0)), FRAME) == "does not move (identity)"
 
 
 def test_general_joints_say_what_they_do():

@@ -7,7 +7,7 @@ import pytest
 from linkages import bennett
 
 from kinform.foundation.graphs.graph import UnionFind, blocks, forest
-from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.loops.closure import body_twists, close
 from kinform.kinematics.pair.joint import twists_of
 
 X, Y, Z = np.eye(3)

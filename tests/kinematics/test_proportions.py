@@ -9,8 +9,9 @@ import pytest
 from linkages import bennett, bricard, planar, ring
 
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.bodies.proportions import proportioned
-from kinform.kinematics.mobility.loop_system import loop_system
+from kinform.kinematics.axes.proportions import fit_proportions
+from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.loops.loop_kinematics import loop_system
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.kinematics import Body, Joint, Misfit
 
@@ -35,8 +36,9 @@ def joints_of(mechanism, error=0.0, seed=0):
     return out
 
 
-def bodies_of(joints):
-    return [Body(name, (name,), name == "base") for name in sorted({name for j in joints for name in j.bodies})]
+def graph_of(joints):
+    names = sorted({name for j in joints for name in j.bodies})
+    return JointGraph(tuple(Body(name, (name,), name == "base") for name in names), tuple(joints))
 
 
 def gap(joints, angle=1.2):
@@ -63,7 +65,7 @@ def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
     joints = joints_of(MECHANISMS[name], 2e-9, seed)
     assert gap(joints) > 1e-10
     doubts = np.full((len(joints), 2), 1e-8)
-    fitted, misfit = proportioned(bodies_of(joints), joints, doubts, 2.0, Misfit())
+    fitted, misfit = fit_proportions(graph_of(joints), doubts, 2.0, Misfit())
     assert gap(fitted) < 1e-12
     assert gap(fitted, -0.8) < 1e-13
     moved = max(np.linalg.norm(np.cross(a.axis, b.axis)) for a, b in zip(joints, fitted, strict=True))
@@ -74,7 +76,7 @@ def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_errors_beyond_the_uncertainty_stay_and_no_misfit_is_claimed(name):
     joints = joints_of(MECHANISMS[name], 1e-5)
-    fitted, misfit = proportioned(bodies_of(joints), joints, np.full((len(joints), 2), 1e-8), 2.0, Misfit())
+    fitted, misfit = fit_proportions(graph_of(joints), np.full((len(joints), 2), 1e-8), 2.0, Misfit())
     assert all(a is b for a, b in zip(joints, fitted, strict=True))
     assert misfit == Misfit()
 
@@ -86,7 +88,7 @@ def test_the_least_moves_are_those_of_the_least_certain_axes():
     joints[2] = replace(worst, twists=twists_of("revolute", worst.axis, worst.point, None, None))
     doubts = np.full((len(joints), 2), 1e-8)
     doubts[2, 0] = 1e-5
-    fitted, _ = proportioned(bodies_of(joints), joints, doubts, 2.0, Misfit())
+    fitted, _ = fit_proportions(graph_of(joints), doubts, 2.0, Misfit())
     moved = [np.linalg.norm(np.cross(a.axis, b.axis)) for a, b in zip(joints, fitted, strict=True)]
     assert 1e-6 < moved[2] < 3.1e-6
     assert max(moved[:2] + moved[3:]) < 1e-8
@@ -95,6 +97,6 @@ def test_the_least_moves_are_those_of_the_least_certain_axes():
 
 def test_loops_that_fit_exactly_are_left_alone():
     joints = joints_of(planar((0, 0), (0, 2), (3, 3), (4, 0)))
-    fitted, misfit = proportioned(bodies_of(joints), joints, np.full((4, 2), 1e-8), 2.0, Misfit())
+    fitted, misfit = fit_proportions(graph_of(joints), np.full((4, 2), 1e-8), 2.0, Misfit())
     assert all(a is b for a, b in zip(joints, fitted, strict=True))
     assert misfit == Misfit()

@@ -12,7 +12,7 @@ from test_mobility import CLOSED, bennett
 
 from kinform.design import Design
 from kinform.kinematics import Motions, derive
-from kinform.kinematics.questions.query import query
+from kinform.kinematics.questions.motion_query import query
 
 X, Y, Z = np.eye(3)
 

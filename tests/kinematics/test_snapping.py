@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from kinform.kinematics import derive
-from kinform.kinematics.bodies.concurrence import Locus, meeting_shifts
+from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
 
 SIGMA = 1e-8
 

@@ -12,6 +12,7 @@ import pytest
 from kinform.exports.graph.drawing import graph_dot, graph_svg
 from kinform.exports.graph.layout import box_centres
 from kinform.kinematics.pair.joint import stated_joint
+from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.kinematics import Body, ConstraintMatrix, Freedom, Kinematics, Misfit, Mobility, Redundancy
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -23,9 +24,8 @@ def kinematics(names, edges, *, statuses=(), drivers=(), held=()):
     bodies = tuple(Body(name, (name,), k == 0) for k, name in enumerate(names))
     joints = []
     for n, (a, b) in enumerate(edges):
-        joint = stated_joint(
-            (names[a], names[b]), "revolute", np.array([0.0, 0, 1]), np.zeros(3), None, None, evidence="test", reason="test"
-        )  # fmt: skip
+        form = JointForm("revolute", np.array([0.0, 0, 1]), np.zeros(3))
+        joint = stated_joint((names[a], names[b]), form, "test", "test")
         joints.append(joint if n >= len(statuses) else type(joint)(**(vars(joint) | {"status": statuses[n]})))
     zero, none = np.zeros(0), np.zeros(0, dtype=np.int64)
     matrix = ConstraintMatrix((), zero, none, np.zeros(1, dtype=np.int64), none, none, np.zeros(3), 1.0)

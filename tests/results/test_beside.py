@@ -66,7 +66,7 @@ def test_an_error_of_either_is_raised_and_leaves_no_process(which: int, monkeypa
 def test_joints_are_the_same_side_by_side_with_the_same_decisions(derive_design, monkeypatch) -> None:
     design: Design = derive_design(FIXTURES / "mechanisms/four_bar/four_bar.toml")
     view = inputs.assembly_for("joints", design.assembly)
-    monkeypatch.setattr(sys.modules["kinform.kinematics.derive"], "SEVERAL", 1)
+    monkeypatch.setattr(sys.modules["kinform.kinematics.derivation"], "MANY_JOINTS", 1)
     alone, together = Known(None), Known(None)
     one = derived(view, design.surfaces, design.contacts, alone)
     two = derived(view, design.surfaces, design.contacts, together, together.beside)

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.displacements import exponentials, inverse
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import forest
-from kinform.kinematics.mobility.loop_system import LoopSystem, exponentials, inverse, loop_system
+from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics
 

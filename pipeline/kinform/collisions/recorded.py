@@ -14,7 +14,7 @@ from kinform.collisions.course import Course
 from kinform.collisions.pairs import PairTest
 from kinform.collisions.shapes import Shapes
 from kinform.collisions.single import preserved
-from kinform.kinematics.mobility.loop_system import inverse
+from kinform.foundation.algebra.displacements import inverse
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import blocks
 from kinform.function.joint_names import resolve_joint
-from kinform.kinematics.mobility.loop_system import LoopSystem, loop_system
+from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics

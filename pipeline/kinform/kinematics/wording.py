@@ -1,25 +1,62 @@
-"""Axes and spaces of forces and moments in words: "force along z", "moments about x and y"."""
+"""Spaces of screws in words: of relative motions, and of the forces and moments that are held against them.
+
+Motions: the Lie subgroup that a space is, and what turns and slides span it. The ten kinds of subgroups of rigid motions
+beside the identity and all of them: revolute, prismatic, screw, cylindrical, planar translation, planar, spherical,
+planar screw, spatial translation, Schoenflies (Hervé 1978). The lower pairs among them have a type of their own; the
+others are `general` joints, and only words tell them apart.
+
+Forces and moments: readable directions that span a space of wrenches, "force along z, moments about x and y".
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.foundation.algebra.screws import span
-from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
+from kinform.foundation.algebra.screws import Frame, span
+from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, perpendicular
+from kinform.foundation.words import counted, listed
+from kinform.kinematics.constants import (
+    EXACT_MOTION,
+    EXACT_WRENCH,
+    NAMED_AXIS,
+    NO_LEAD,
+    RCOND,
+    SAME_DIRECTION,
+    SHOWN_COMPONENT,
+    SHOWN_COORDINATE,
+)
 from kinform.model.arrays import Array
 
-__all__ = ["Locked", "axis_word", "listed", "locked", "locked_text", "rows_too_many"]
+__all__ = [
+    "Locked",
+    "axis_word",
+    "components",
+    "direction_words",
+    "group_of",
+    "locked_text",
+    "locked_wrenches",
+    "motions_in_words",
+    "rows_too_many",
+]
 
 
-EXACT = 1e-6
+def components(direction: Array) -> str:
+    """ "(0, 0.6, 0.8)"."""
+    return "(" + ", ".join(f"{x:.3g}" for x in np.where(np.abs(direction) < SHOWN_COMPONENT, 0.0, direction)) + ")"
 
-Locked = tuple[str, Array]
-"""In words, and as a wrench (τ about the centre over the length; f)."""
+
+def direction_words(direction: Array) -> str:
+    """A signed unit direction: "+z", "-x", or its components."""
+    size = np.abs(direction)
+    axis = int(size.argmax())
+    if size[axis] > 1.0 - 0.5 * SAME_DIRECTION**2:
+        return f"{'+' if direction[axis] > 0.0 else '-'}{'xyz'[axis]}"
+    return components(direction)
 
 
-def axis_word(direction: Array, near: float = 5e-4) -> str:
+def axis_word(direction: Array, near: float = NAMED_AXIS) -> str:
     """ "z", where it is so near to it (sine), or "(0.6, 0.8, 0)"."""
     unit = canonical(direction)
     for name, axis in zip("xyz", np.eye(3), strict=True):
@@ -28,32 +65,148 @@ def axis_word(direction: Array, near: float = 5e-4) -> str:
     return "(" + ", ".join(f"{round(float(c), 3) + 0.0:g}" for c in unit) + ")"
 
 
-def listed(items: Iterable[str]) -> str:
-    """ "a", "a and b", "a, b and c"."""
-    known = list(items)
-    return known[0] if len(known) == 1 else ", ".join(known[:-1]) + " and " + known[-1] if known else ""
+def group_of(basis: Array, frame: Frame) -> str:
+    """Name of the subgroup that the span of `basis` (6, k; scaled in `frame`) is; "" where it is none."""
+    turns, slides = _split(basis)
+    kind = (turns.shape[1], slides.shape[1])
+    if kind in _NAMES:
+        return _NAMES[kind]
+    if kind == (1, 0):
+        return "revolute" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "screw"
+    if kind[0] == 1:
+        axis = turns[:3, 0] / np.linalg.norm(turns[:3, 0])
+        along = float(np.linalg.norm(axis @ slides[3:]))
+        if kind == (1, 1) and along > 1.0 - EXACT_MOTION:
+            return "cylindrical"
+        if kind == (1, 2) and along < EXACT_MOTION:
+            return "planar" if abs(_lead(turns[:, 0])) < EXACT_MOTION else "planar screw"
+        return ""
+    centre = _centre(turns) if kind[0] > 1 and kind[1] == 0 else None
+    return "spherical" if kind == (3, 0) and centre is not None else ""
+
+
+_NAMES = {
+    (0, 0): "identity", (0, 1): "prismatic", (0, 2): "planar translation", (0, 3): "spatial translation",
+    (1, 3): "Schoenflies", (3, 3): "all rigid motions",
+}  # fmt: skip
+"""Subgroups that the numbers of turns and slides tell alone."""
+
+
+def motions_in_words(basis: Array, frame: Frame) -> str:
+    """What the motions are: "turns about (0, 0, 1), slides along (1, 0, 0)", with the subgroup where it is one.
+
+    Points are given in mm in the world, of axes that lie in one place.
+    """
+    turns, slides = _split(basis)
+    parts = [*_turning(turns, slides, frame)]
+    directions = _tidy(slides[3:])
+    if directions.shape[1] == 3:
+        parts.append("slides every way")
+    elif directions.shape[1]:
+        parts.append("slides along " + " and ".join(_axis_components(d) for d in directions.T))
+    name = group_of(basis, frame)
+    return ", ".join(parts or ["does not move"]) + (f" ({name})" if name else "")
+
+
+def _split(basis: Array) -> tuple[Array, Array]:
+    """Twists that turn, their velocities without what slides do (6, r), and twists that slide (6, s)."""
+    if not basis.shape[1]:
+        return basis, basis
+    _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
+    count = int(np.count_nonzero(values > EXACT_MOTION))
+    mixed = basis @ right.T
+    turns, slides = mixed[:, :count].copy(), mixed[:, count:].copy()
+    slides[:3] = 0.0
+    if slides.shape[1]:
+        slides[3:] = np.linalg.qr(slides[3:])[0]
+    turns[3:] -= slides[3:] @ (slides[3:].T @ turns[3:])
+    return turns, slides
+
+
+def _lead(twist: Array) -> float:
+    """Advance a radian, in lengths of the frame."""
+    return float(twist[:3] @ twist[3:] / (twist[:3] @ twist[:3]))
+
+
+def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
+    count = turns.shape[1]
+    if count == 0:
+        return []
+    if count == 1:
+        twist = turns[:, 0]
+        lead = 2.0 * np.pi * frame.length * _lead(twist)
+        # along a slide it may be anywhere
+        place = frame.centre + frame.length * cross(twist[:3], twist[3:]) / (twist[:3] @ twist[:3])
+        through = "" if slides.shape[1] > 1 else f" through {_point(place)}"
+        if (
+            abs(lead) > NO_LEAD * frame.length
+            and np.linalg.norm(slides[3:].T @ canonical(twist[:3])) < 1.0 - EXACT_MOTION
+        ):
+            return [f"screws about {_axis_components(twist[:3])}{through}, {1e3 * lead:.4g} mm a turn"]
+        return [f"turns about {_axis_components(twist[:3])}{through}"]
+    centre = _centre(turns) if not slides.shape[1] else None
+    about = "" if centre is None else f" through {_point(frame.centre + frame.length * centre)}"
+    if count == 3:
+        return [f"turns every way{about}"]
+    axes = _tidy(turns[:3])
+    words = " and ".join(_axis_components(axis) for axis in axes.T)
+    return [f"turns about {words}{about}" + (", as a universal joint does" if centre is not None else "")]
+
+
+def _centre(turns: Array) -> Array | None:
+    """The point, in lengths from the centre of the frame, that rests under all turns; None where there is none."""
+    matrix, right = cross_matrix(turns[:3].T).reshape(-1, 3), -turns[3:].T.ravel()
+    centre, *_ = np.linalg.lstsq(matrix, right, rcond=None)
+    return None if float(np.abs(matrix @ centre - right).max()) > 10.0 * EXACT_MOTION else np.asarray(centre)
+
+
+def _tidy(directions: Array) -> Array:
+    """Perpendicular unit vectors (3, k) of the same span: of a plane, the first one across the coordinate axis that
+    is nearest to its normal's smallest component."""
+    if directions.shape[1] == 2:
+        left = np.linalg.svd(directions)[0]
+        return np.array(perpendicular(canonical(left[:, 2]))).T
+    return np.linalg.qr(directions)[0] if directions.shape[1] else directions
+
+
+def _point(place: Array) -> str:
+    size = max(float(np.abs(place).max()), 1e-300)
+    return (
+        "("
+        + ", ".join(f"{1e3 * x:.4g}" for x in np.where(np.abs(place) < SHOWN_COORDINATE * size, 0.0, place))
+        + ") mm"
+    )
+
+
+def _axis_components(direction: Array) -> str:
+    return components(canonical(direction))
+
+
+Locked = tuple[str, Array]
+"""In words, and as a wrench (τ about the centre over the length; f)."""
 
 
 def rows_too_many(count: int) -> str:
     """ "1 row too many", "3 rows too many"."""
-    return f"{count} row{'' if count == 1 else 's'} too many"
+    return f"{counted(count, 'row')} too many"
 
 
-def locked(wrenches: Array, near: float = 5e-4) -> list[Locked]:
+def locked_wrenches(wrenches: Array, near: float = NAMED_AXIS) -> list[Locked]:
     """The space of the rows (k, 6), (τ about the centre over the length; f), in readable directions: forces first.
 
-    Directions within `near` (sine) of an axis of the world have its name. A force is followed by " with a moment about it" where its line of action has one.
+    Directions within `near` (sine) of an axis of the world have its name. A force is followed by " with a moment
+    about it" where its line of action has one.
     """
     basis = span(wrenches.T)
     left, values, right = np.linalg.svd(basis[3:], full_matrices=True)
-    rank = int(np.count_nonzero(values > EXACT))
+    rank = int(np.count_nonzero(values > EXACT_WRENCH))
     moments = basis[:3] @ right[rank:].T
     moments = span(moments) if moments.shape[1] else moments
     out: list[Locked] = []
     for direction in _directions(left[:, :rank]):
-        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=1e-9)[0]
+        wrench = basis @ np.linalg.lstsq(basis[3:], direction, rcond=RCOND)[0]
         wrench[:3] -= moments @ (moments.T @ wrench[:3])
-        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * EXACT
+        twisted = abs(float(wrench[:3] @ direction)) > 10.0 * EXACT_WRENCH
         out.append(
             (f"force along {axis_word(direction, near)}" + (" with a moment about it" if twisted else ""), wrench)
         )
@@ -72,7 +225,7 @@ def _directions(space: Array) -> list[Array]:
     if count == 1:
         return [canonical(space[:, 0])]
     normal = canonical(cross(space[:, 0], space[:, 1]))
-    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < EXACT]
+    inside = [e for e in np.eye(3) if abs(float(e @ normal)) < EXACT_WRENCH]
     if len(inside) == 2:
         return inside
     if len(inside) == 1:

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinform.design import Design
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.separation.contact_rows import ContactRows, stated
+from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
@@ -88,8 +88,8 @@ def lifts(design: Design) -> tuple[tuple[Lift, ...], Sharing | None, tuple[str, 
     run, kinematics, contacts = design.simulation, design.kinematics, design.contacts
     assert run is not None and kinematics is not None and contacts is not None
     known = [joint for joint in kinematics.joints if joint.name in run.joint_names]
-    aside = tuple(joint.name for joint in known if stated(joint))
-    doubtful = [joint for joint in known if not stated(joint) and joint.held is not True]
+    aside = tuple(joint.name for joint in known if is_stated(joint))
+    doubtful = [joint for joint in known if not is_stated(joint) and joint.held is not True]
     loose = [j for j in doubtful if run.undetermined[run.joint_names.index(j.name)].any()]
     open_ = {j.name for j in loose}
     rows = ContactRows(kinematics.matrix, kinematics.bodies, contacts.patches)
@@ -293,7 +293,7 @@ def slips(design: Design) -> tuple[Slip, ...]:
     shapes = Shapes(design.assembly, design.surfaces, contacts, _meshed(design, kinematics))
     out = []
     for joint in kinematics.joints:
-        if joint.type not in SLIDES or joint.name not in run.joint_names or joint.axis is None or stated(joint):
+        if joint.type not in SLIDES or joint.name not in run.joint_names or joint.axis is None or is_stated(joint):
             continue
         index = run.joint_names.index(joint.name)
         values = run.joint_position[:, int(run.joint_offset[index]) + SLIDES[joint.type]]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.kinematics.questions.through import relative
+from kinform.kinematics.questions.through_helpers import motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
@@ -108,7 +108,7 @@ def compare_joint(
     if direct is not None and "function" in direct.evidence:
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
-    motion = relative(kinematics, first.name, second.name, named)
+    motion = motion_through_helpers(kinematics, first.name, second.name, named)
     used: tuple[Joint, ...] = (direct,) if direct is not None else ()
     if motion is not None:
         used = motion.joints

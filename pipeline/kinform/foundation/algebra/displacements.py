@@ -1,13 +1,13 @@
-"""Finite motions: the displacement of a twist and the twist of a displacement, by Rodrigues' formula."""
+"""Finite motions: displacements of twists and back, by Rodrigues' formula, and what they do to twists."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["displacement", "twist_of"]
+__all__ = ["adjoint", "carry", "displacement", "exponentials", "inverse", "twist_of"]
 
 
 def displacement(twist: Array) -> Array:
@@ -21,6 +21,21 @@ def displacement(twist: Array) -> Array:
     return out
 
 
+def exponentials(screws: Array, q: Array) -> Array:
+    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, for coordinates q (D, n); a slide has no ω and
+    falls out of the same terms."""
+    spin = cross_matrix(screws[:, :3])
+    twice = spin @ spin
+    v = screws[:, 3:]
+    s, c = np.sin(q)[..., None], 1.0 - np.cos(q)[..., None]
+    out = np.zeros((*q.shape, 4, 4))
+    out[..., :3, :3] = np.eye(3) + s[..., None] * spin + c[..., None] * twice
+    along = q[..., None]
+    out[..., :3, 3] = along * v + c * (spin @ v[..., None])[..., 0] + (along - s) * (twice @ v[..., None])[..., 0]
+    out[..., 3, 3] = 1.0
+    return out
+
+
 def twist_of(X: Array) -> Array:
     """(6,) twist (ω; v at the origin) whose displacement is X (4, 4), by less than half a turn."""
     from scipy.spatial.transform import Rotation
@@ -29,6 +44,32 @@ def twist_of(X: Array) -> Array:
     spin = cross_matrix(omega)
     _, versine, rest = _shares(float(np.linalg.norm(omega)))
     return np.concatenate([omega, np.linalg.solve(np.eye(3) + versine * spin + rest * spin @ spin, X[:3, 3])])
+
+
+def inverse(X: Array) -> Array:
+    """Inverses of displacements (…, 4, 4)."""
+    turned = np.swapaxes(X[..., :3, :3], -1, -2)
+    out = np.zeros_like(X)
+    out[..., :3, :3] = turned
+    out[..., :3, 3] = -(turned @ X[..., :3, 3:])[..., 0]
+    out[..., 3, 3] = 1.0
+    return out
+
+
+def carry(X: Array, twists: Array) -> Array:
+    """Twists (n, 6) carried along by displacements (…, n, 4, 4)."""
+    omega = (X[..., :3, :3] @ twists[:, :3, None])[..., 0]
+    v = (X[..., :3, :3] @ twists[:, 3:, None])[..., 0]
+    return np.concatenate([omega, v + cross(X[..., :3, 3], omega)], axis=-1)
+
+
+def adjoint(X: Array) -> Array:
+    """(…, 6, 6) matrices that carry twists along by displacements (…, 4, 4)."""
+    R = X[..., :3, :3]
+    out = np.zeros((*X.shape[:-2], 6, 6))
+    out[..., :3, :3] = out[..., 3:, 3:] = R
+    out[..., 3:, :3] = cross_matrix(X[..., :3, 3]) @ R
+    return out
 
 
 def _shares(angle: float) -> tuple[float, float, float]:

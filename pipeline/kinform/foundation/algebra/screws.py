@@ -14,14 +14,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
-__all__ = [
-    "Frame",
-    "rotation",
-    "rows",
-    "span",
-    "translation",
-    "twist_at_origin",
-]
+__all__ = ["Frame", "bracket", "rotation", "rows", "scaled", "span", "translation", "twist_at_origin"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,3 +69,9 @@ def span(vectors: Array, tolerance: float = 1e-6) -> Array:
         return np.zeros((len(vectors), 0))
     left, values, _ = np.linalg.svd(vectors, full_matrices=False)
     return left[:, values > tolerance * max(values[0], 1e-300)]
+
+
+def bracket(a: Array, b: Array) -> Array:
+    """Lie bracket [a, b] of twists (…, 6): the rate of b when it is carried along by a."""
+    turn = cross(a[..., :3], b[..., :3])
+    return np.concatenate([turn, cross(a[..., :3], b[..., 3:]) + cross(a[..., 3:], b[..., :3])], axis=-1)

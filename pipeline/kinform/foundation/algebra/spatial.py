@@ -1,4 +1,4 @@
-"""Small algebra in batches: cross products, twists, quaternions, rotations.
+"""Algebra in batches: rates of twists and wrenches that are carried along, quaternions, rotations.
 
 Twists (ω; v) and wrenches (τ; f) about a common origin; quaternions wxyz, unit, Hamilton.
 """
@@ -7,43 +7,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import CROSS, cross_matrix
 from kinform.model.arrays import Array
 
 __all__ = [
     "along_motion",
-    "cross",
     "cross_force",
     "cross_motion",
     "multiply",
     "quaternions",
     "rotation_vector",
-    "skew",
     "to_matrix",
 ]
 
 
-LEVI_CIVITA = np.zeros((3, 3, 3))
-for _i in range(3):
-    LEVI_CIVITA[_i, (_i + 1) % 3, (_i + 2) % 3] = 1.0
-    LEVI_CIVITA[_i, (_i + 2) % 3, (_i + 1) % 3] = -1.0
-
-SKEW = LEVI_CIVITA.transpose(0, 2, 1).reshape(3, 9)
-"""(3, 9): a @ SKEW is the matrix of a × …, row by row. A product is much faster than components."""
-
 _BLOCKS = np.zeros((6, 6, 6))
-_BLOCKS[:3, :3, :3] = _BLOCKS[:3, 3:, 3:] = _BLOCKS[3:, 3:, :3] = SKEW.reshape(3, 3, 3)
+_BLOCKS[:3, :3, :3] = _BLOCKS[:3, 3:, 3:] = _BLOCKS[3:, 3:, :3] = CROSS.reshape(3, 3, 3)
 TWIST = _BLOCKS.reshape(6, 36)
-"""(6, 36): the same for twists."""
-
-
-def skew(a: Array) -> Array:
-    """(n, 3, 3) matrices of a × … for a (n, 3)."""
-    return np.asarray((a @ SKEW).reshape(-1, 3, 3))
-
-
-def cross(a: Array, b: Array) -> Array:
-    """a × b, each (n, 3)."""
-    return np.asarray((skew(a) @ b[:, :, None])[..., 0])
+"""(6, 36): a @ TWIST is the matrix that takes twists to their rates when a carries them along, row by row."""
 
 
 def cross_motion(a: Array, b: Array) -> Array:
@@ -63,7 +44,7 @@ def along_motion(X: Array, twist: Array) -> Array:
     halves = R @ twist.reshape(-1, 2, 3).transpose(0, 2, 1)
     out = np.empty_like(twist)
     out[:, :3] = halves[:, :, 0]
-    out[:, 3:] = halves[:, :, 1] + (skew(p) @ halves[:, :, :1])[..., 0]
+    out[:, 3:] = halves[:, :, 1] + (cross_matrix(p) @ halves[:, :, :1])[..., 0]
     return out
 
 

@@ -9,9 +9,15 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["canonical", "canonical_sign", "cross", "cross_matrix", "dot", "normalised", "perpendicular"]
+__all__ = ["CROSS", "canonical", "canonical_sign", "cross", "cross_matrix", "dot", "normalised", "perpendicular"]
 
 _NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
+_CROSS = np.zeros((3, 3, 3))
+for _i in range(3):
+    _CROSS[_i, (_i + 2) % 3, (_i + 1) % 3] = 1.0
+    _CROSS[_i, (_i + 1) % 3, (_i + 2) % 3] = -1.0
+CROSS = _CROSS.reshape(3, 9)
+"""(3, 9): a @ CROSS is the matrix of a × …, row by row. A product is much faster than components."""
 
 MANY = 3000
 """Numbers in an array from which on products column by column, to the same bits, are quicker: at 10,000 vectors six
@@ -39,10 +45,7 @@ def dot(a: Array, b: Array) -> Array:
 
 def cross_matrix(a: Array) -> Array:
     """(…, 3, 3) matrices of a × …, for a (…, 3)."""
-    out = np.zeros((*a.shape, 3))
-    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = a[..., 0], a[..., 1], a[..., 2]
-    out[..., 1, 2], out[..., 2, 0], out[..., 0, 1] = -a[..., 0], -a[..., 1], -a[..., 2]
-    return out
+    return np.asarray((a @ CROSS).reshape(*a.shape, 3))
 
 
 def normalised(vectors: Array) -> Array:

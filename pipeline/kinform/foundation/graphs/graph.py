@@ -41,6 +41,14 @@ class Forest:
     order: tuple[int, ...]
     root: tuple[int, ...]
 
+    def depths(self) -> list[int]:
+        """Number of edges from each node to its root."""
+        depth = [0] * len(self.parent)
+        for node in self.order:
+            if self.parent[node] >= 0:
+                depth[node] = depth[self.parent[node]] + 1
+        return depth
+
 
 def neighbours(nodes: int, edges: Sequence[Edge]) -> list[list[tuple[int, int]]]:
     """For each node its (neighbour, edge) pairs."""
@@ -73,13 +81,15 @@ def forest(nodes: int, edges: Sequence[Edge], first: int) -> Forest:
 def blocks(nodes: int, edges: Sequence[Edge]) -> list[list[int]]:
     """Biconnected components as lists of edge indices (Hopcroft and Tarjan 1973, without recursion).
 
-    A component of one edge is a bridge. Parallel edges belong to one component.
+    A component of one edge is a bridge. Parallel edges belong to one component. `low` is the least depth that a node's
+    subtree reaches by an edge beside the tree: where that is no less than the depth of the node above, the edges on the
+    stack since then are a component.
     """
     near = neighbours(nodes, edges)
     depth, low = [-1] * nodes, [0] * nodes
     used = [False] * len(edges)
     stack: list[int] = []
-    found: list[list[int]] = []
+    components: list[list[int]] = []
     for start in range(nodes):
         if depth[start] >= 0:
             continue
@@ -108,5 +118,5 @@ def blocks(nodes: int, edges: Sequence[Edge]) -> list[list[int]]:
                     block = [stack.pop()]
                     while block[-1] != via:
                         block.append(stack.pop())
-                    found.append(sorted(block))
-    return sorted(found)
+                    components.append(sorted(block))
+    return sorted(components)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, stated_roots
-from kinform.kinematics.pair.answer import Answer, Answers, Question, answered, ask, named
-from kinform.kinematics.pair.evidence import Evidence, gather
+from kinform.kinematics.pair.evidence import Evidence, Member, gather
+from kinform.kinematics.pair.question import PairAnswer, PairQuestion, answer_pair, joint_between
+from kinform.model.arrays import Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.kinematics import Body, Joint
@@ -35,47 +34,47 @@ class Pairs:
     ):
         self.assembly, self.patches = assembly, patches
         self._tolerance, self._extents, self._answers = contacts.tolerance, extents, answers
-        self.extremes: dict[int, NDArray[np.int64]] = {}
+        self.extremes: dict[int, Ints] = {}
         """Samples that bound the patches that were looked at."""
 
-    def decided(self, members: Sequence[tuple[int, Patch, bool]], bodies: Sequence[Body]) -> Answer:
-        """The joint between two bodies, of patches (index, patch, turned)."""
+    def decide(self, members: Sequence[Member], bodies: Sequence[Body]) -> PairAnswer:
+        """What the patches between two bodies say."""
         tolerances = self.assembly.tolerances
         contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
-        question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
-        found = ask(self._answers, "pair", (question,), lambda: answered(question))
-        self.extremes |= {index: own for (index, _, _), own in zip(members, found.extremes, strict=True)}
-        return found
+        question = PairQuestion(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
+        answer = ask(self._answers, "pair", (question,), lambda: answer_pair(question))
+        self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
+        return answer
 
 
-def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]:
+def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[PairAnswer, Joint]]:
     """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
-    known: dict[tuple[int, ...], Answer] = {}
+    known_answers: dict[tuple[int, ...], PairAnswer] = {}
     stated = stated_roots(pairs.assembly, merger)
     while True:
         bodies = merger.bodies()
         of_name = {body.name: body for body in bodies}
         of_part = {part: body.name for body in bodies for part in body.parts}
-        touching: dict[Pair, list[tuple[int, Patch, bool]]] = defaultdict(list)
+        touching: dict[Pair, list[Member]] = defaultdict(list)
         for index, patch in enumerate(pairs.patches):
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b:
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        out: dict[Pair, tuple[Answer, Joint]] = {}
+        out: dict[Pair, tuple[PairAnswer, Joint]] = {}
         fused = False
         for pair in sorted(touching):
             members = touching[pair]
             key = tuple(-1 - i if turned else i for i, _, turned in members)
-            if key not in known:
-                known[key] = pairs.decided(members, [of_name[n] for n in pair])
-            found = known[key].joint
-            if found is None:
+            if key not in known_answers:
+                known_answers[key] = pairs.decide(members, [of_name[n] for n in pair])
+            answer = known_answers[key]
+            if answer.joint is None:
                 continue
-            out[pair] = known[key], named(found, pair, [index for index, _, _ in members])
+            out[pair] = answer, joint_between(answer.joint, pair, [index for index, _, _ in members])
             parts = members[0][1].parts
             if frozenset(merger.root(p) for p in parts) in stated:
                 continue
-            if found.type == "fixed" and found.status == "determined":
+            if answer.joint.type == "fixed" and answer.joint.status == "determined":
                 merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")
                 fused = True
         if not fused:
@@ -83,24 +82,20 @@ def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]
 
 
 def evidence_between(
-    members: Sequence[tuple[int, Patch, bool]],
-    bodies: Sequence[Body],
-    assembly: Assembly,
-    contacts: Contacts,
-    extents: Extents,
+    members: Sequence[Member], bodies: Sequence[Body], assembly: Assembly, contacts: Contacts, extents: Extents
 ) -> Evidence | None:
-    """Evidence of patches (index, patch, turned) between two bodies; None where none has an area."""
+    """Evidence of the patches between two bodies; None where none has an area."""
     contact, size = _scales(members, bodies, assembly.tolerances, contacts.tolerance, extents)
     return gather(members, assembly.tolerances, contact, size)
 
 
 def _scales(
-    members: Sequence[tuple[int, Patch, bool]],
+    members: Sequence[Member],
     bodies: Sequence[Body],
     tolerances: Tolerances,
-    known: Mapping[tuple[PartName, PartName], float],
+    of_parts: Mapping[tuple[PartName, PartName], float],
     extents: Extents,
 ) -> tuple[float, float]:
     """The contact tolerance of a pair of bodies, and the diagonal of the smaller one (m)."""
-    contact = max(known.get(p.parts, tolerances.contact_cap) for _, p, _ in members)
+    contact = max(of_parts.get(p.parts, tolerances.contact_cap) for _, p, _ in members)
     return contact, min(extents.diagonal(body.parts) for body in bodies)

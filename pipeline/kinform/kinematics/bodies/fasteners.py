@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.constants import SUGGESTED_AXIS
 from kinform.kinematics.pair.joint import stated_joint
+from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Suggestion
 from kinform.model.kinematics import Body, Joint
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["INFERRED", "about_axes", "fasten", "labelled"]
+__all__ = ["INFERRED", "fasten", "label_inferred", "turn_about_suggested_axes"]
 
 INFERRED = "inferred: "
 """How the reason begins for which a suggestion made parts one body."""
@@ -30,15 +32,12 @@ def fasten(assembly: Assembly, contacts: Contacts, merger: Merger) -> bool:
         return False
     stated = _stated_apart(assembly)
     changed = False
-    suggested = [hint for hint in contacts.suggestions if hint.fastens]
-    wanted = [hint for hint in suggested if merger.root(hint.parts[0]) != merger.root(hint.parts[1])]
-    for hint in wanted:
+    fastening = [hint for hint in contacts.suggestions if hint.fastens]
+    for hint in [hint for hint in fastening if merger.root(hint.parts[0]) != merger.root(hint.parts[1])]:
         ends = {merger.root(part) for part in hint.parts}
-        if any({merger.root(first), merger.root(second)} == ends for first, second in stated):
-            continue
-        names = "~".join(hint.parts)
-        merger.fuse(hint.parts[0], hint.parts[1], f"{INFERRED}{names}: {hint.evidence}")
-        changed = True
+        if all({merger.root(first), merger.root(second)} != ends for first, second in stated):
+            merger.fuse(*hint.parts, f"{INFERRED}{'~'.join(hint.parts)}: {hint.evidence}")
+            changed = True
     return changed
 
 
@@ -50,8 +49,10 @@ def _stated_apart(assembly: Assembly) -> list[tuple[PartName, PartName]]:
     return [(first, second) for first, second in sides]
 
 
-def about_axes(assembly: Assembly, contacts: Contacts, joints: list[Joint], bodies: tuple[Body, ...]) -> list[Joint]:
-    """Planar joints turned into revolute ones about the axis that rims or bolt circles suggest."""
+def turn_about_suggested_axes(
+    assembly: Assembly, contacts: Contacts, joints: list[Joint], bodies: tuple[Body, ...]
+) -> list[Joint]:
+    """The joints, planar ones as revolute about the axis that rims or bolt circles suggest, where there is one."""
     if not assembly.infer_fasteners:
         return joints
     of_part: dict[PartName, BodyName] = {part: body.name for body in bodies for part in body.parts}
@@ -60,36 +61,27 @@ def about_axes(assembly: Assembly, contacts: Contacts, joints: list[Joint], bodi
         first, second = sorted(of_part[part] for part in hint.parts)
         if not hint.fastens and first != second:
             hints.setdefault((first, second), []).append(hint)
-    return [_about(joint, hints.get(joint.bodies, [])) for joint in joints]
+    return [_revolute(joint, hints.get(joint.bodies, [])) for joint in joints]
 
 
-def _about(joint: Joint, hints: list[Suggestion]) -> Joint:
+def _revolute(joint: Joint, hints: list[Suggestion]) -> Joint:
     if joint.type != "planar" or joint.status != "determined" or joint.axis is None or len(hints) != 1:
         return joint
     hint = hints[0]
-    if abs(float(hint.axis @ joint.axis)) < np.cos(1e-3):
+    if abs(float(hint.axis @ joint.axis)) < np.cos(SUGGESTED_AXIS):
         return joint
-    turned = stated_joint(
-        joint.bodies, "revolute", joint.axis, hint.point, None, None,
-        evidence=hint.kind, reason=f"planar by contact; {hint.evidence} suggest the axis, with {hint.confidence} confidence",
-    )  # fmt: skip
+    reason = f"planar by contact; {hint.evidence} suggest the axis, with {hint.confidence} confidence"
+    revolute = stated_joint(joint.bodies, JointForm("revolute", joint.axis, hint.point), hint.kind, reason)
+    evidence = (*joint.evidence, hint.kind)
     return replace(
-        turned,
-        name=joint.name,
-        evidence=(*joint.evidence, hint.kind),
-        patches=joint.patches,
-        singular_values=joint.singular_values,
+        revolute, name=joint.name, evidence=evidence, patches=joint.patches, singular_values=joint.singular_values
     )
 
 
-def labelled(joints: list[Joint], bodies: tuple[Body, ...]) -> list[Joint]:
+def label_inferred(joints: list[Joint], bodies: tuple[Body, ...]) -> list[Joint]:
     """Joints of bodies that a suggestion put together, as inferred, with the suggestion as evidence."""
-    guessed = {
-        body.name: found
-        for body in bodies
-        if (found := [r.removeprefix(INFERRED) for r in body.merged if r.startswith(INFERRED)])
-    }
-    return [_label(joint, [hint for name in joint.bodies for hint in guessed.get(name, [])]) for joint in joints]
+    hints = {body.name: [r.removeprefix(INFERRED) for r in body.merged if r.startswith(INFERRED)] for body in bodies}
+    return [_label(joint, [hint for name in joint.bodies for hint in hints.get(name, [])]) for joint in joints]
 
 
 def _label(joint: Joint, hints: list[str]) -> Joint:

@@ -7,13 +7,16 @@ ratio. It is read out of the motions that all joints together leave: value(a) = 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.edges import shared_edges
-from kinform.kinematics.bodies.higher_pairs import is_higher
-from kinform.kinematics.mobility.closure import Closure
+from kinform.kinematics.axes.higher_pairs import is_higher
+from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
+from kinform.kinematics.loops.closure import Closure
+from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.mobility.teeth import Side, meshing
 from kinform.kinematics.pair.certainty import TOUCHING
 from kinform.model.arrays import Array
@@ -21,71 +24,48 @@ from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint, Meshing
 
-__all__ = ["convex_turns", "couplings"]
+__all__ = ["convex_turns", "couplings_between"]
 
 
 SINGLE = ("revolute", "prismatic", "screw")
 """Joints of one freedom, whose values a ratio compares."""
-FIXED = 1e-6
-"""Relative: rates that keep their ratio to this are coupled."""
-TOOTHED = 1.75
-"""Full turns of the convex edges of an outline from which on it has teeth."""
 
 
-def couplings(
-    assembly: Assembly,
-    bodies: Sequence[Body],
-    joints: Sequence[Joint],
-    patches: Sequence[Patch],
-    closure: Closure,
+def couplings_between(
+    assembly: Assembly, graph: JointGraph, patches: Sequence[Patch], closure: Closure
 ) -> tuple[Coupling, ...]:
     """All couplings of two joints through a higher pair or a screw, in the order of those; `closure` of all joints."""
+    joints = graph.joints
     ties = [k for k, joint in enumerate(joints) if joint.type == "screw" or is_higher(joint, patches)]
     if not ties:
         return ()
     rates = closure.sparse_rates
-    around: dict[str, list[int]] = {body.name: [] for body in bodies}
+    around: dict[str, list[int]] = {body.name: [] for body in graph.bodies}
     for k, joint in enumerate(joints):
         for name in joint.bodies:
             around[name].append(k)
     out = []
     for k in ties:
-        through = joints[k]
-        for a, b in _sides(through, joints, around, k):
-            columns = rates[:, [closure.offset[a], closure.offset[b]]].tocoo()
-            moving = np.unique(columns.row)
-            found = _ratio(*rates[moving][:, [closure.offset[a], closure.offset[b]]].toarray().T)
-            if found is not None:
-                pair = (joints[a], joints[b])
-                unsure = any(j.status in ("ambiguous", "blocked") for j in (through, *pair))
-                teeth = "" if through.type == "screw" else _meshing(assembly, bodies, through, pair, patches, found)
-                # teeth whose ratio is shown not to be constant are cams
-                uneven = isinstance(teeth, str) and bool(teeth)
-                out.append(
-                    Coupling(
-                        joints=(pair[0].name, pair[1].name),
-                        ratio=found,
-                        kind="cam" if uneven else _kind(assembly, through, pair, patches),
-                        through=through.name,
-                        status="ambiguous" if unsure else "determined",
-                        uncertainty=_uncertainty(found, through, pair, patches),
-                        reason=teeth if isinstance(teeth, str) else "",
-                        meshing=None if isinstance(teeth, str) else teeth,
-                    )
-                )
+        touching = [patches[p] for p in joints[k].patches if patches[p].kind in TOUCHING]
+        for a, b in _sides(k, joints, around):
+            columns = rates[:, [closure.offset[a], closure.offset[b]]]
+            ratio = _ratio(*columns[np.unique(columns.tocoo().row)].toarray().T)
+            if ratio is not None:
+                out.append(_Tie(assembly, graph.bodies, joints[k], (joints[a], joints[b]), touching, ratio).coupling())
     return tuple(out)
 
 
-def _sides(through: Joint, joints: Sequence[Joint], around: Mapping[str, list[int]], own: int) -> list[tuple[int, int]]:
-    """Joints of one freedom that join the two bodies of `through` to a common third one, in the order of their names."""
-    found = []
-    first, second = through.bodies
+def _sides(through: int, joints: Sequence[Joint], around: Mapping[str, list[int]]) -> list[tuple[int, int]]:
+    """Joints of one freedom that join the two bodies of the joint `through` to a common third one, in the order of their
+    names."""
+    pairs = []
+    first, second = joints[through].bodies
     for a in around[first]:
         for b in around[second]:
             thirds = {n for n in joints[a].bodies if n != first} & {n for n in joints[b].bodies if n != second}
-            if own not in (a, b) and thirds and all(joints[k].type in SINGLE for k in (a, b)):
-                found.append((a, b) if joints[a].name < joints[b].name else (b, a))
-    return sorted(found)
+            if through not in (a, b) and thirds and all(joints[k].type in SINGLE for k in (a, b)):
+                pairs.append((a, b) if joints[a].name < joints[b].name else (b, a))
+    return sorted(pairs)
 
 
 def _ratio(a: Array, b: Array) -> float | None:
@@ -93,76 +73,95 @@ def _ratio(a: Array, b: Array) -> float | None:
     if not len(a):
         return None
     size = np.array([np.abs(a).max(), np.abs(b).max()])
-    if (size <= FIXED * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), 1e-300)).any():
+    if (size <= FIXED_RATIO * max(np.abs(a).max(initial=0.0), np.abs(b).max(initial=0.0), 1e-300)).any():
         return None
     _, values, right = np.linalg.svd(np.stack([a / size[0], b / size[1]], axis=1))
-    if len(values) > 1 and values[1] > FIXED * values[0]:
+    if len(values) > 1 and values[1] > FIXED_RATIO * values[0]:
         return None
-    return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > FIXED else None
+    return float(right[0, 0] * size[0] / (right[0, 1] * size[1])) if abs(right[0, 1]) > FIXED_RATIO else None
 
 
-def _meshing(
-    assembly: Assembly,
-    bodies: Sequence[Body],
-    through: Joint,
-    pair: tuple[Joint, Joint],
-    patches: Sequence[Patch],
-    ratio: float,
-) -> Meshing | str:
-    """What the teeth do beyond this pose; "" where they cannot be looked at."""
-    touch = next(patches[k] for k in through.patches if patches[k].kind in TOUCHING)
-    if not np.any(touch.axis):
-        return ""
-    sides = []
-    for joint in pair:
-        (body,) = (b for b in bodies if b.name in joint.bodies and b.name in through.bodies)
-        (part,) = (assembly.part(name) for name in touch.parts if name in body.parts)
-        if part.mesh is None or joint.type == "screw":
+@dataclass(frozen=True, eq=False)
+class _Tie:
+    """Two joints of one freedom, and what ties them: a screw, or a contact between the two bodies that they move."""
+
+    assembly: Assembly
+    bodies: Sequence[Body]
+    through: Joint
+    pair: tuple[Joint, Joint]
+    touching: Sequence[Patch]
+    """Points and lines of the contact."""
+    ratio: float
+    """value(first) / value(second), at this pose."""
+
+    def coupling(self) -> Coupling:
+        """All of it as a result."""
+        teeth = "" if self.through.type == "screw" else self._meshing()
+        # teeth whose ratio is shown not to be constant are cams
+        uneven = isinstance(teeth, str) and bool(teeth)
+        unsure = any(joint.status in ("ambiguous", "blocked") for joint in (self.through, *self.pair))
+        return Coupling(
+            joints=(self.pair[0].name, self.pair[1].name),
+            ratio=self.ratio,
+            kind="cam" if uneven else self._kind(),
+            through=self.through.name,
+            status="ambiguous" if unsure else "determined",
+            uncertainty=self._uncertainty(),
+            reason=teeth if isinstance(teeth, str) else "",
+            meshing=None if isinstance(teeth, str) else teeth,
+        )
+
+    def _meshing(self) -> Meshing | str:
+        """What the teeth do beyond this pose; "" where they cannot be looked at."""
+        touch = self.touching[0]
+        if not np.any(touch.axis):
             return ""
-        # values are of the joint's second body relative to its first
-        sides.append(Side(part.mesh, part.X_WP, joint.twists[0] if joint.bodies[1] == body.name else -joint.twists[0]))
-    into = touch.normals[0]
-    if touch.parts[0] not in next(b for b in bodies if b.name in pair[0].bodies and b.name in through.bodies).parts:
-        into = -into
-    middle = 0.5 * (touch.points.min(axis=0) + touch.points.max(axis=0))
-    return meshing((sides[0], sides[1]), touch.axis, middle, into, ratio)
+        sides = []
+        for joint in self.pair:
+            body = self._body(joint)
+            (part,) = (self.assembly.part(name) for name in touch.parts if name in body.parts)
+            if part.mesh is None or joint.type == "screw":
+                return ""
+            # values are of the joint's second body relative to its first
+            twist = joint.twists[0] if joint.bodies[1] == body.name else -joint.twists[0]
+            sides.append(Side(part.mesh, part.X_WP, twist))
+        into = touch.normals[0] if touch.parts[0] in self._body(self.pair[0]).parts else -touch.normals[0]
+        middle = 0.5 * (touch.points.min(axis=0) + touch.points.max(axis=0))
+        return meshing((sides[0], sides[1]), touch.axis, middle, into, self.ratio)
 
+    def _body(self, joint: Joint) -> Body:
+        """The body that the joint moves."""
+        return next(b for b in self.bodies if b.name in joint.bodies and b.name in self.through.bodies)
 
-def _uncertainty(ratio: float, through: Joint, pair: tuple[Joint, Joint], patches: Sequence[Patch]) -> float:
-    """Of the ratio, from that of the normals and places of the best known contact; nan for screws."""
-    best = np.nan
-    for patch in (patches[k] for k in through.patches if patches[k].kind in TOUCHING):
-        point, normal = patch.points.mean(axis=0), patch.normals[0]
-        total = 0.0
-        for joint in pair:
-            twist = joint.twists[0]
-            velocity = twist[3:] + cross(twist[:3], point)
-            along = abs(float(velocity @ normal))
-            aside = float(np.linalg.norm(velocity - normal * float(velocity @ normal)))
-            off = patch.uncertainty[0] * aside + patch.uncertainty[1] * float(np.linalg.norm(twist[:3]))
-            total += off / max(along, 1e-300)
-        best = np.nanmin([best, abs(ratio) * total])
-    return float(best)
+    def _uncertainty(self) -> float:
+        """Of the ratio, from that of the normals and places of the best known contact; nan for screws."""
+        best = np.nan
+        for patch in self.touching:
+            point, normal = patch.points.mean(axis=0), patch.normals[0]
+            total = 0.0
+            for joint in self.pair:
+                twist = joint.twists[0]
+                velocity = twist[3:] + cross(twist[:3], point)
+                along = abs(float(velocity @ normal))
+                aside = float(np.linalg.norm(velocity - normal * float(velocity @ normal)))
+                off = patch.uncertainty[0] * aside + patch.uncertainty[1] * float(np.linalg.norm(twist[:3]))
+                total += off / max(along, 1e-300)
+            best = np.nanmin([best, abs(self.ratio) * total])
+        return float(best)
 
-
-def _kind(
-    assembly: Assembly,
-    through: Joint,
-    pair: tuple[Joint, Joint],
-    patches: Sequence[Patch],
-) -> str:
-    """gear, rack, screw or cam: what the designer would call it."""
-    if through.type == "screw":
-        return "screw"
-    touch = next(patches[k] for k in through.patches if patches[k].kind in TOUCHING)
-    toothed = np.any(touch.axis) and all(
-        convex_turns(mesh, part.X_WP, touch.axis, touch.point) >= TOOTHED
-        for part in (assembly.part(name) for name in touch.parts)
-        if (mesh := part.mesh) is not None
-    )
-    if not toothed:
-        return "cam"
-    return "rack" if any(joint.type == "prismatic" for joint in pair) else "gear"
+    def _kind(self) -> str:
+        """gear, rack, screw or cam: what the designer would call it."""
+        if self.through.type == "screw":
+            return "screw"
+        touch = self.touching[0]
+        toothed = np.any(touch.axis) and all(
+            convex_turns(mesh, part.X_WP, touch.axis, touch.point) >= TOOTHED_TURNS
+            for part in (self.assembly.part(name) for name in touch.parts)
+            if (mesh := part.mesh) is not None
+        )
+        if not toothed:
+            return "cam"
+        return "rack" if any(joint.type == "prismatic" for joint in self.pair) else "gear"
 
 
 def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:

@@ -1,71 +1,149 @@
-"""Idle freedoms: a bolt, pin or roller that only spins.
+"""Idle turns: a bolt, pin or roller that only spins.
 
-A freedom is idle when it moves a single body, all of whose contact surfaces slide on themselves, and
-no intended joint names it (results contract). Only turns about an axis of revolution qualify: a block
-that slides on a table leaves its place, a bolt that spins does not.
+A freedom is idle when it moves a single body, all of whose contact surfaces slide on themselves, and no intended joint
+names it. Only turns about an axis of revolution qualify: a block that slides on a table leaves its place, a bolt that
+spins does not. They count as freedoms of the assembly, and not as effective ones.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.kinematics.answers import Answers, ask
+from kinform.kinematics.bodies.stated_joints import Pair, pair_between
+from kinform.kinematics.constants import (
+    IDLE_AXIS,
+    IDLE_LEAST_SECTOR,
+    IDLE_PLACE,
+    IDLE_SECTORS,
+    INTENDED_AXIS,
+    INTENDED_PLACE,
+)
+from kinform.kinematics.loops.joint_graph import JointGraph
+from kinform.kinematics.pair.certainty import TOUCHING
 from kinform.kinematics.pair.evidence import COAXIAL
 from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
 from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
-from kinform.model.kinematics import Body, Joint
+from kinform.model.kinematics import Joint
+from kinform.model.names import BodyName, PartName
+from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["idle_freedoms"]
-
-
-EXACT = 1e-6
-SECTORS = 12
+__all__ = ["idle_turns", "touching_balls"]
 
 
-def idle_freedoms(
-    body: Body,
-    joints: Sequence[Joint],
+def touching_balls(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], patches: Sequence[Patch]
+) -> dict[tuple[int, PartName], Array]:
+    """Centres (3,) of the spheres that touch at points or along lines, by patch and part."""
+    parts = {part.name: part for part in assembly.parts}
+    out = {}
+    for k, patch in enumerate(patches):
+        if patch.kind not in TOUCHING:
+            continue
+        for name, number in zip(patch.parts, patch.surfaces, strict=True):
+            mesh, X_WP = parts[name].mesh, parts[name].X_WP
+            fitted = None if mesh is None or number < 0 else surfaces.get(mesh.digest)
+            surface = None if fitted is None else fitted.surfaces[number]
+            if surface is not None and surface.kind == "sphere":
+                out[k, name] = X_WP[:3, :3] @ surface.point + X_WP[:3, 3]
+    return out
+
+
+def idle_turns(
+    assembly: Assembly,
+    graph: JointGraph,
     patches: Sequence[Patch],
-    intended: Sequence[IntendedJoint],
     size: float,
-    balls: Mapping[int, Array] | None = None,
-) -> Array:
-    """(k, 6) independent idle turns of the body (ω; v at the world's origin).
+    balls: Mapping[tuple[int, PartName], Array],
+    answers: Answers | None,
+) -> dict[BodyName, Array]:
+    """(k, 6) independent idle turns (ω; v at the world's origin) of each body whose joints all come from contact.
 
-    `joints`: all joints of the body; `patches`: the contacts that carry them; `intended`: intended
-    joints between this body and its neighbours in `joints`; `size` of the assembly (m); `balls`: by
-    position in `patches`, the centre (3,) of the body's own surface where that is a sphere that touches at points
-    or along a line.
+    `size` of the assembly (m); `balls`: what `touching_balls` gives.
     """
-    if not joints or not patches or body.ground:
+    of_part = {part: body.name for body in graph.bodies for part in body.parts}
+    intended: dict[Pair, list[IntendedJoint]] = defaultdict(list)
+    for wanted in assembly.function.joints:
+        pair = pair_between(assembly, of_part, wanted.between)
+        if pair is not None:
+            intended[pair].append(wanted)
+    around: dict[BodyName, list[Joint]] = defaultdict(list)
+    for joint in graph.joints:
+        for name in joint.bodies:
+            around[name].append(joint)
+    out: dict[BodyName, Array] = {}
+    for body in graph.bodies:
+        joints = around[body.name]
+        indices = [k for j in joints for k in j.patches]
+        if any(not j.patches for j in joints):
+            continue
+        centres = {}
+        if len(joints) > 1:
+            # a ball between others rolls; what lies on one other body only is there to move on it
+            centres = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
+        named = [w for j in joints for w in intended[j.bodies]]
+        held = _Held(body.ground, joints, [patches[k] for k in indices], named, size, centres)
+        out[body.name] = ask(answers, "idle", tuple(vars(held).values()), partial(_idle_turns, held))
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """A body as its neighbours hold it."""
+
+    ground: bool
+    joints: Sequence[Joint]
+    """All of its joints."""
+    patches: Sequence[Patch]
+    """The contacts that carry them."""
+    intended: Sequence[IntendedJoint]
+    """Between this body and its neighbours."""
+    size: float
+    """m: of the assembly."""
+    balls: Mapping[int, Array]
+    """By position in `patches`, the centre (3,) of the body's own surface where that is a sphere that touches at points
+    or along a line."""
+
+
+def _idle_turns(held: _Held) -> Array:
+    """(k, 6) independent idle turns of one body.
+
+    Tried are the axes of its surfaces of revolution. A turn counts where each joint of the body has it among its
+    freedoms, each patch turns onto itself, and no intended joint means it.
+    """
+    if not held.joints or not held.patches or held.ground:
         return np.zeros((0, 6))
-    frame = Frame.of(np.concatenate([p.points for p in patches]))
+    frame = Frame.of(np.concatenate([p.points for p in held.patches]))
     patches = [
-        replace(p, kind="sphere", point=balls[k]) if balls is not None and k in balls else p
-        for k, p in enumerate(patches)
+        replace(p, kind="sphere", point=held.balls[k]) if k in held.balls else p for k, p in enumerate(held.patches)
     ]
-    found = []
-    spaces = [span(scaled(joint.twists.T, frame)) if joint.freedoms else np.zeros((6, 0)) for joint in joints]
-    for axis, point in _candidates(patches, size):
+    spaces = [span(scaled(joint.twists.T, frame)) if joint.freedoms else np.zeros((6, 0)) for joint in held.joints]
+    leaf = len(held.joints) == 1
+    turns = []
+    for axis, point in _candidates(patches, held.size):
         twist = rotation(axis, point, frame)
-        if not all(_contains(free, twist) for free in spaces):
-            continue
-        if not all(_invariant(patch, axis, point, size) for patch in patches):
-            continue
-        if not any(_names(wanted, axis, point, len(joints) == 1, size) for wanted in intended):
-            found.append(twist)
-    return _independent(found, frame)
+        if (
+            all(float(np.linalg.norm(twist - free @ (free.T @ twist))) < IDLE_AXIS for free in spaces)
+            and all(_invariant(patch, axis, point, held.size) for patch in patches)
+            and not any(_names(wanted, axis, point, leaf, held.size) for wanted in held.intended)
+        ):
+            turns.append(twist)
+    return _independent(turns, frame)
 
 
-def _independent(found: Sequence[Array], frame: Frame) -> Array:
+def _independent(twists: Sequence[Array], frame: Frame) -> Array:
     """The first of the turns that are independent, of rate 1."""
     kept: list[Array] = []
-    for twist in found:
+    for twist in twists:
         if span(np.array([*kept, twist]).T).shape[1] > len(kept):
             kept.append(twist)
     turns = twist_at_origin(np.array(kept).reshape(-1, 6).T, frame).T
@@ -80,34 +158,26 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     for k, a in enumerate(centres):
         for b in centres[:k]:
             far = float(np.linalg.norm(b - a))
-            if far > 1e-4 * size:
+            if far > IDLE_PLACE * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
         lines = [(e, centres[0]) for e in np.eye(3)]
     return lines
 
 
-def _contains(free: Array, twist: Array) -> bool:
-    """Is the turn among the freedoms (6, k), orthonormal?"""
-    return float(np.linalg.norm(twist - free @ (free.T @ twist))) < 1e-3
-
-
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the patch, as bounded as it is, turn onto itself?"""
-    if patch.kind in COAXIAL:
-        parallel = float(np.linalg.norm(cross(patch.axis, axis))) < 1e-3
-        away = cross(patch.point - point, axis)
-        return parallel and float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
-    if patch.kind == "sphere":
-        away = cross(patch.point - point, axis)
-        return float(np.linalg.norm(away)) <= abs(patch.gap) + 1e-4 * size
-    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > 1e-3:
+    if patch.kind == "sphere" or patch.kind in COAXIAL:
+        parallel = patch.kind == "sphere" or float(np.linalg.norm(cross(patch.axis, axis))) < IDLE_AXIS
+        away = float(np.linalg.norm(cross(patch.point - point, axis)))
+        return parallel and away <= abs(patch.gap) + IDLE_PLACE * size
+    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > IDLE_AXIS:
         return False
     u, v = perpendicular(axis)
     arm = patch.points - point
-    sector = np.floor(np.arctan2(arm @ v, arm @ u) / (2.0 * np.pi) * SECTORS).astype(int) % SECTORS
-    area = np.bincount(sector, weights=patch.weights, minlength=SECTORS)
-    return bool(area.min() > 0.25 * area.mean())
+    sector = np.floor(np.arctan2(arm @ v, arm @ u) / (2.0 * np.pi) * IDLE_SECTORS).astype(int) % IDLE_SECTORS
+    area = np.bincount(sector, weights=patch.weights, minlength=IDLE_SECTORS)
+    return bool(area.min() > IDLE_LEAST_SECTOR * area.mean())
 
 
 def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: float) -> bool:
@@ -119,5 +189,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < 0.02
-    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < 1e-2 * size
+    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < INTENDED_AXIS
+    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < INTENDED_PLACE * size

@@ -8,42 +8,36 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross
 from kinform.foundation.graphs.graph import Forest, forest
-from kinform.kinematics.mobility.closure import Closure
-from kinform.kinematics.mobility.loops import ROUNDING, Solution
+from kinform.kinematics.constants import AT_REST, EXCHANGED, NO_PITCH, NO_TURN, NO_TWIST, RATE_ROUNDING, SAME_RATES
+from kinform.kinematics.loops.block_closure import Solution
+from kinform.kinematics.loops.closure import Closure
+from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Body, Freedom, Joint, Kinematics
-from kinform.model.names import BodyName
+from kinform.model.kinematics import Freedom, Kinematics
+from kinform.model.names import BodyName, JointName
 
 __all__ = ["Motions", "named_freedoms"]
 
 
-SAME = 1e-2
-"""An idle turn is one of the assembly's freedoms when it is within this share of one."""
-
-
 def named_freedoms(
-    bodies: Sequence[Body],
-    joints: Sequence[Joint],
-    closure: Closure,
-    idle: Mapping[BodyName, Array],
-    places: Sequence[Array],
+    graph: JointGraph, closure: Closure, idle: Mapping[BodyName, Array], places: Sequence[Array]
 ) -> tuple[Freedom, ...]:
     """A readable basis of the freedoms of the assembly.
 
-    `closure` of these joints; `idle`: idle turns (k, 6) of bodies (ω; v at the world's origin); `places` (3,) m where
-    each body is, for bodies that nothing holds.
+    `closure` of the graph's joints; `idle`: idle turns (k, 6) of bodies (ω; v at the world's origin); `places` (3,) m
+    where each body is, for bodies that nothing holds.
     """
-    index = {body.name: n for n, body in enumerate(bodies)}
-    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in joints]
-    depth = _depths(closure.tree)
+    bodies, joints = graph.bodies, graph.joints
+    depth = closure.tree.depths()
     owner = np.concatenate([np.zeros(0, np.int64), *(np.full(j.freedoms, k) for k, j in enumerate(joints))]).astype(int)
     looped = [b >= 0 and bool(closure.blocks[b].cycles) for b in closure.block_of]
-    spinning = _exchanged(bodies, joints, edges, closure, idle)
+    spinning = _exchange(graph, closure, idle)
     out = []
     for n, solution in enumerate(closure.solutions):
         if solution.driver >= closure.offset[-1]:
@@ -57,7 +51,7 @@ def named_freedoms(
         k = int(owner[replaced.driver])
         joint, coordinate = joints[k], replaced.driver - closure.offset[k]
         kind, axis, point, pitch = _read(joint.twists[coordinate], joint.point)
-        far = max(edges[k], key=lambda node: depth[node])
+        far = max(graph.edges[k], key=lambda node: depth[node])
         drives = tuple(
             (joints[int(owner[c])].name, int(c) - closure.offset[int(owner[c])], float(rate))
             for c, rate in zip(replaced.columns, replaced.rates, strict=True)
@@ -81,61 +75,51 @@ def named_freedoms(
     return tuple(out)
 
 
-def _depths(tree: Forest) -> list[int]:
-    depth = [0] * len(tree.parent)
-    for node in tree.order:
-        if tree.parent[node] >= 0:
-            depth[node] = depth[tree.parent[node]] + 1
-    return depth
-
-
 def _read(twist: Array, near: Array | None) -> tuple[str, Array, Array, float]:
     """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist."""
     omega, velocity = twist[:3], twist[3:]
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
-    if square < 1e-20 * max(float(velocity @ velocity), 1.0):
+    if square < NO_TURN**2 * max(float(velocity @ velocity), 1.0):
         return "slide", canonical(velocity), beside, 0.0
     axis = omega / np.sqrt(square)
     foot = cross(omega, velocity) / square
     point = foot + axis * float(axis @ (beside - foot))
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
     scale = max(1.0, float(np.linalg.norm(velocity)) / np.sqrt(square))
-    if abs(pitch) < 1e-6 * scale:
+    if abs(pitch) < NO_PITCH * scale:
         return "turn", canonical(axis), point, 0.0
     return "screw", canonical(axis), point, pitch
 
 
-def _exchanged(
-    bodies: Sequence[Body],
-    joints: Sequence[Joint],
-    edges: Sequence[tuple[int, int]],
-    closure: Closure,
-    idle: Mapping[BodyName, Array],
+def _exchange(
+    graph: JointGraph, closure: Closure, idle: Mapping[BodyName, Array]
 ) -> dict[int, tuple[tuple[BodyName, int], Solution]]:
     """Solutions that an idle turn replaces: their number, the body with the turn's number, and its rates.
 
     What is left stays a basis (Steinitz); of the joints beside an idle body the one nearest to ground is replaced.
     """
-    index = {body.name: n for n, body in enumerate(bodies)}
+    edges = graph.edges
     around: dict[int, list[int]] = {}
     for k, edge in enumerate(edges):
         for node in edge:
             around.setdefault(node, []).append(k)
-    depth = _depths(closure.tree)
+    depth = closure.tree.depths()
     near = {
-        closure.offset[k] + c: min(depth[n] for n in edges[k]) for k, j in enumerate(joints) for c in range(j.freedoms)
+        closure.offset[k] + c: min(depth[n] for n in edges[k])
+        for k, j in enumerate(graph.joints)
+        for c in range(j.freedoms)
     }
     driven = {solution.driver: n for n, solution in enumerate(closure.solutions)}
     reduced: dict[int, dict[int, float]] = {}
     out: dict[int, tuple[tuple[BodyName, int], Solution]] = {}
     for name in sorted(idle):
-        node = index[name]
+        node = graph.node[name]
         for number, turn in enumerate(idle[name]):
-            wanted = _rates(turn, node, around.get(node, []), joints, edges, closure.offset)
+            wanted = _rates(turn, node, around.get(node, []), graph, closure.offset)
             parts = {driven[c]: rate for c, rate in wanted.items() if c in driven}
             spun = _sum(closure.solutions, parts)
-            if _apart(spun, wanted) > SAME:
+            if _difference(spun, wanted) > SAME_RATES:
                 continue
             rest = dict(parts)
             while taken := sorted(set(rest) & set(reduced)):
@@ -144,7 +128,7 @@ def _exchanged(
                 for n, value in reduced[pivot].items():
                     rest[n] = rest.get(n, 0.0) - factor * value
                 del rest[pivot]
-            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > 0.1}
+            drivers = {n: closure.solutions[n].driver for n, value in rest.items() if abs(value) > EXCHANGED}
             if not drivers:
                 continue
             chosen = min(drivers, key=lambda n: (near[drivers[n]], n))
@@ -155,22 +139,15 @@ def _exchanged(
     return out
 
 
-def _rates(
-    turn: Array,
-    node: int,
-    around: Sequence[int],
-    joints: Sequence[Joint],
-    edges: Sequence[tuple[int, int]],
-    offset: Sequence[int],
-) -> dict[int, float]:
-    """Joint rates when only this body moves."""
+def _rates(turn: Array, node: int, around: Sequence[int], graph: JointGraph, offset: Sequence[int]) -> dict[int, float]:
+    """Joint rates when only this body moves, by the joints around it."""
     out: dict[int, float] = {}
     unit = turn / float(np.linalg.norm(turn[:3]))
     for k in around:
-        sign = 1.0 if edges[k][1] == node else -1.0
-        rates = np.linalg.lstsq(joints[k].twists.T, sign * unit, rcond=None)[0]
+        sign = 1.0 if graph.edges[k][1] == node else -1.0
+        rates = np.linalg.lstsq(graph.joints[k].twists.T, sign * unit, rcond=None)[0]
         for n, rate in enumerate(rates):
-            if abs(rate) > 1e-9:
+            if abs(rate) > AT_REST:
                 out[offset[k] + n] = float(rate)
     return out
 
@@ -181,10 +158,10 @@ def _sum(solutions: Sequence[Solution], parts: Mapping[int, float]) -> dict[int,
         for c, rate in zip(solutions[n].columns.tolist(), solutions[n].rates.tolist(), strict=True):
             out[c] = out.get(c, 0.0) + factor * rate
     largest = max((abs(rate) for rate in out.values()), default=0.0)
-    return {c: rate for c, rate in out.items() if abs(rate) > ROUNDING * largest}
+    return {c: rate for c, rate in out.items() if abs(rate) > RATE_ROUNDING * largest}
 
 
-def _apart(one: Mapping[int, float], other: Mapping[int, float]) -> float:
+def _difference(one: Mapping[int, float], other: Mapping[int, float]) -> float:
     return max((abs(one.get(c, 0.0) - other.get(c, 0.0)) for c in {*one, *other}), default=0.0)
 
 
@@ -193,58 +170,53 @@ class Motions:
     """Twists of bodies for each named freedom, computed as they are asked for: memory stays linear."""
 
     kinematics: Kinematics
+    graph: JointGraph
     tree: Forest
-    index: dict[str, int]
-    """Of each body."""
-    number: dict[str, int]
-    """Of each joint."""
 
     @staticmethod
     def of(kinematics: Kinematics) -> Motions:
         """For the freedoms that the kinematics name."""
-        index = {str(body.name): n for n, body in enumerate(kinematics.bodies)}
-        edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
-        ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
-        number = {str(j.name): k for k, j in enumerate(kinematics.joints)}
-        return Motions(kinematics, forest(len(index), edges, ground), index, number)
+        graph = JointGraph(kinematics.bodies, kinematics.joints)
+        return Motions(kinematics, graph, forest(len(graph.bodies), graph.edges, graph.ground))
+
+    @cached_property
+    def _number(self) -> dict[JointName, int]:
+        """Of each joint."""
+        return {joint.name: k for k, joint in enumerate(self.graph.joints)}
 
     def twists(self, freedom: Freedom) -> dict[BodyName, Array]:
         """Twists (ω; v at the world's origin) of the bodies that move, ground at rest."""
         moving: dict[int, Array] = {}
-        own = self._own(freedom)
+        rates = self._relative_twists(freedom)
         for node in self.tree.order:
-            up = self.tree.parent[node]
-            twist = moving.get(up)
-            edge = self.tree.edge[node]
+            up, edge = self.tree.parent[node], self.tree.edge[node]
             if up < 0:
-                if freedom.driver is None and node == self.index[freedom.body]:
+                if freedom.driver is None and node == self.graph.node[freedom.body]:
                     moving[node] = _unit(freedom)
                 continue
-            relative = own.get(edge)
+            twist, relative = moving.get(up), rates.get(edge)
             if relative is not None:
-                joint = self.kinematics.joints[edge]
-                forward = 1.0 if self.index[joint.bodies[1]] == node else -1.0
+                forward = self._forward(edge, node)
                 twist = forward * relative if twist is None else twist + forward * relative
-                if float(np.abs(twist).max()) <= 1e-9 * float(np.abs(relative).max()):
+                if float(np.abs(twist).max()) <= AT_REST * float(np.abs(relative).max()):
                     twist = None
             if twist is not None:
                 moving[node] = twist
-        return {self.kinematics.bodies[node].name: twist for node, twist in sorted(moving.items())}
+        return {self.graph.bodies[node].name: twist for node, twist in sorted(moving.items())}
 
     def relative(self, first: str, second: str) -> Array:
         """(k, 6) twists of the second body relative to the first, of the freedoms that have one."""
         path: dict[int, float] = {}
         roots: dict[str, float] = {}
         for name, sign in ((first, -1.0), (second, 1.0)):
-            node = self.index[name]
+            node = self.graph.node[name]
             while self.tree.parent[node] >= 0:
                 edge = self.tree.edge[node]
-                forward = 1.0 if self.index[self.kinematics.joints[edge].bodies[1]] == node else -1.0
-                path[edge] = path.get(edge, 0.0) + sign * forward
+                path[edge] = path.get(edge, 0.0) + sign * self._forward(edge, node)
                 node = self.tree.parent[node]
-            roots[self.kinematics.bodies[node].name] = roots.get(self.kinematics.bodies[node].name, 0.0) + sign
-        numbers = {self.kinematics.joints[edge].name: sign for edge, sign in path.items() if sign}
-        twists_of = {j.name: j.twists for j in self.kinematics.joints if j.name in numbers}
+            root = self.graph.bodies[node].name
+            roots[root] = roots.get(root, 0.0) + sign
+        signs = {edge: sign for edge, sign in path.items() if sign}
         out = []
         for freedom in self.kinematics.mobility.named:
             if freedom.driver is None:
@@ -253,19 +225,24 @@ class Motions:
                 continue
             twist = np.zeros(6)
             for joint, coordinate, rate in freedom.drives:
-                if joint in numbers:
-                    twist += numbers[joint] * rate * twists_of[joint][coordinate]
-            if np.abs(twist).max() > 1e-12:
+                edge = self._number[joint]
+                if edge in signs:
+                    twist += signs[edge] * rate * self.graph.joints[edge].twists[coordinate]
+            if np.abs(twist).max() > NO_TWIST:
                 out.append(twist)
         return np.array(out).reshape(-1, 6)
 
-    def _own(self, freedom: Freedom) -> dict[int, Array]:
-        """Relative twist of each joint that moves, by its index."""
-        found: dict[int, Array] = {}
+    def _forward(self, edge: int, node: int) -> float:
+        """1 where a joint counts the motion of this body, the farther from ground; −1 where that of the other."""
+        return 1.0 if self.graph.edges[edge][1] == node else -1.0
+
+    def _relative_twists(self, freedom: Freedom) -> dict[int, Array]:
+        """Relative twist of each joint that moves, by its number."""
+        out: dict[int, Array] = {}
         for name, coordinate, rate in freedom.drives:
-            k = self.number[name]
-            found[k] = found.get(k, np.zeros(6)) + rate * self.kinematics.joints[k].twists[coordinate]
-        return found
+            k = self._number[name]
+            out[k] = out.get(k, np.zeros(6)) + rate * self.graph.joints[k].twists[coordinate]
+        return out
 
 
 def _unit(freedom: Freedom) -> Array:

@@ -6,67 +6,67 @@ loops what holds at first order holds over a distance; inside loops that is not 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from kinform.kinematics.mobility.closure import Closure
-from kinform.kinematics.mobility.loops import Solution
+from kinform.kinematics.constants import INDEPENDENT_ROW
+from kinform.kinematics.loops.block_closure import Solution
+from kinform.kinematics.loops.closure import Closure
 from kinform.model.arrays import Array
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Joint, Mobility
 from kinform.model.names import BodyName
 
-__all__ = ["coupled_mobility", "coupling_rows", "restricted"]
-
-
-INDEPENDENT = 1e-9
-"""Share of the largest entry below which what is left of a row is rounding."""
+__all__ = ["coupled_mobility", "coupling_rows", "restrict_closure"]
 
 
 def coupling_rows(
-    function: Function, joints: Sequence[Joint], body_of: Callable[[str], BodyName], offset: Sequence[int]
+    function: Function, joints: Sequence[Joint], body_of: Mapping[str, BodyName], offset: Sequence[int]
 ) -> Array:
     """(c, rates) rows that are zero where the stated ratios hold.
 
-    `body_of`: the body that contains a part or group; `offset`: first rate of each joint, and their number.
-    Couplings of joints that have not one freedom say nothing here.
+    `body_of`: the body that contains a part or group that a joint is between; `offset`: first rate of each joint, and
+    their number. Couplings of joints that have not one freedom say nothing here.
     """
     intended = {joint.name: joint for joint in function.joints}
-    index = {frozenset(joint.bodies): k for k, joint in enumerate(joints)}
+    number = {frozenset(joint.bodies): k for k, joint in enumerate(joints)}
     rows = []
     for coupling in function.couplings:
         row = np.zeros(offset[-1])
-        ends = [_end(intended[name], joints, index, body_of) for name in coupling.joints if name in intended]
-        known = [end for end in ends if end is not None]
-        if len(known) < 2 or known[0][0] == known[1][0]:
+        ends = []
+        for wanted in (intended[name] for name in coupling.joints if name in intended):
+            first, second = (body_of[name] for name in wanted.between)
+            k = number.get(frozenset((first, second)))
+            sense = None if k is None else _sense(joints[k], wanted, first)
+            if k is not None and sense is not None:
+                ends.append((k, sense))
+        if len(ends) < 2 or ends[0][0] == ends[1][0]:
             continue
-        for (k, sign), factor in zip(known, (1.0, -coupling.ratio), strict=True):
-            row[offset[k]] = sign * factor
+        for (k, sense), factor in zip(ends, (1.0, -coupling.ratio), strict=True):
+            row[offset[k]] = sense * factor
         rows.append(row / np.abs(row).max())
     return np.array(rows).reshape(-1, offset[-1])
 
 
-def _end(
-    intended: IntendedJoint,
-    joints: Sequence[Joint],
-    index: dict[frozenset[BodyName], int],
-    body_of: Callable[[str], BodyName],
-) -> tuple[int, float] | None:
-    """The joint, and the sign of its rate in the designer's sense."""
-    first, second = (body_of(name) for name in intended.between)
-    k = index.get(frozenset((first, second)))
-    if k is None or joints[k].freedoms != 1 or intended.axis is None:
+def _sense(joint: Joint, intended: IntendedJoint, first: BodyName) -> float | None:
+    """The sign of the joint's rate in the designer's sense, with the designer's `first` body; None where it has not one
+    freedom, or no direction is stated."""
+    if joint.freedoms != 1 or intended.axis is None:
         return None
-    twist = joints[k].twists[0]
-    turns = float(np.linalg.norm(twist[:3])) > INDEPENDENT * float(np.linalg.norm(twist[3:]))
+    twist = joint.twists[0]
+    turns = float(np.linalg.norm(twist[:3])) > INDEPENDENT_ROW * float(np.linalg.norm(twist[3:]))
     along = float((twist[:3] if turns else twist[3:]) @ intended.axis)
-    return k, (1.0 if along > 0.0 else -1.0) * (1.0 if first == joints[k].bodies[0] else -1.0)
+    return (1.0 if along > 0.0 else -1.0) * (1.0 if first == joint.bodies[0] else -1.0)
 
 
-def restricted(closure: Closure, rows: Array) -> Closure:
-    """The closure with the freedoms that the rows leave: each still driven by one rate of 1, the others follow."""
+def restrict_closure(closure: Closure, rows: Array) -> Closure:
+    """The closure with the freedoms that the rows leave: each still driven by one rate of 1, the others follow.
+
+    The rows, written in the freedoms, are brought to echelon form: each independent one makes the last freedom that it
+    has follow those before it.
+    """
     every = closure.rates
     reduced = rows @ every[:, : rows.shape[1]].T
     pivots: list[int] = []
@@ -74,11 +74,11 @@ def restricted(closure: Closure, rows: Array) -> Closure:
         for pivot, before in zip(pivots, reduced, strict=False):
             row -= before * row[pivot]
         size = np.abs(row).max(initial=0.0)
-        if size <= INDEPENDENT:
+        if size <= INDEPENDENT_ROW:
             row[:] = 0.0
             pivots.append(-1)
             continue
-        last = int(np.flatnonzero(np.abs(row) > INDEPENDENT * size)[-1])
+        last = int(np.flatnonzero(np.abs(row) > INDEPENDENT_ROW * size)[-1])
         row /= row[last]
         for before in reduced[: len(pivots)]:
             before -= row * before[last]
@@ -89,15 +89,15 @@ def restricted(closure: Closure, rows: Array) -> Closure:
         if k in follow:
             continue
         rates = every[k] - sum((row[k] * every[pivot] for pivot, row in follow.items()), np.zeros(every.shape[1]))
-        columns = np.flatnonzero(np.abs(rates) > INDEPENDENT * np.abs(rates).max())
+        columns = np.flatnonzero(np.abs(rates) > INDEPENDENT_ROW * np.abs(rates).max())
         solutions.append(Solution(solution.driver, columns, rates[columns]))
         block_of.append(closure.block_of[k])
     return replace(closure, solutions=tuple(solutions), block_of=tuple(block_of))
 
 
-def coupled_mobility(mobility: Mobility, closure: Closure, tied: Closure, rows: Array) -> Mobility:
-    """The counts of `mobility` (of `closure`) with the stated couplings, of which `tied` is what they leave."""
-    lost = closure.mobility - tied.mobility
+def coupled_mobility(mobility: Mobility, closure: Closure, coupled: Closure, rows: Array) -> Mobility:
+    """The counts of `mobility` (of `closure`) with the stated couplings, of which `coupled` is what they leave."""
+    lost = closure.mobility - coupled.mobility
     in_loops = {int(c) for block in closure.blocks if block.cycles for c in _columns(closure, block.edges)}
     touched = {int(c) for c in np.flatnonzero(np.abs(rows).max(axis=0, initial=0.0) > 0.0)}
     finite = None if mobility.finite is None or touched & in_loops else mobility.finite - lost
@@ -106,9 +106,9 @@ def coupled_mobility(mobility: Mobility, closure: Closure, tied: Closure, rows: 
         reason = "; ".join(filter(None, [reason, "stated couplings act on joints in loops: not tried over a distance"]))
     return replace(
         mobility,
-        instantaneous=tied.mobility,
+        instantaneous=coupled.mobility,
         finite=finite,
-        effective=(tied.mobility if finite is None else finite) - mobility.idle,
+        effective=(coupled.mobility if finite is None else finite) - mobility.idle,
         redundant=mobility.redundant - lost + len(rows),
         blocked=mobility.blocked - lost,
         finite_reason=reason,

@@ -14,25 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.kinematics.constants import EVEN_TEETH, FEWEST_TEETH, IN_PLANE, RATIO_AGREES, TIP_MARGIN, TOOTH_POSES
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Meshing
 
 __all__ = ["Side", "meshing"]
-
-
-EVEN = 0.03
-"""Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
-tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
-FEWEST = 5
-"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
-POSES = 24
-"""Poses in which the sections are held against each other while one tooth passes."""
-SKEW = 1e-3
-"""rad: axes that are parallel or perpendicular to this lie in one plane."""
-AGREE = 0.01
-"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +57,7 @@ class _Outline:
             return np.hypot(arm[:, 0], arm[:, 1]), np.arctan2(arm[:, 1], arm[:, 0])
         return arm @ np.array([-self.along[1], self.along[0]]), arm @ self.along
 
-    def moved(self, points: Array, by: float) -> Array:
+    def move(self, points: Array, by: float) -> Array:
         """Points (…, 2) after a motion of `by` along."""
         if not self.turns:
             return np.asarray(points + by * self.along)
@@ -111,7 +99,7 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
     `axis` (3,): unit, across the section; `normal` (3,): unit, of the contact, into the second side; `ratio`: of the
     values at this pose, as the normals give it. "" as a reason where the section says nothing.
     """
-    plane = np.stack(_basis(axis))
+    plane = -np.stack(perpendicular(axis))
     outlines = []
     for side in sides:
         outline = _outline(side, axis, place, plane)
@@ -127,13 +115,13 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
             return row
     one, two = (row for row in rows if not isinstance(row, str))
     mean = math.copysign(one.pitch / two.pitch, ratio)
-    if abs(ratio / mean - 1.0) > AGREE:
+    if abs(ratio / mean - 1.0) > RATIO_AGREES:
         return f"the ratio at this pose is {ratio:.5g}, that of {one.count} and {two.count} teeth {mean:.5g}"
     ahead, behind = _rolled(first, second, one.pitch, first.sense * second.sense / mean)
     if not (np.isfinite(ahead).all() and np.isfinite(behind).all()):
         return "the teeth let go of each other before the next ones meet"
     error = float(max(np.ptp(ahead), np.ptp(behind)))
-    if error > EVEN * two.pitch:
+    if error > EVEN_TEETH * two.pitch:
         return f"while one tooth passes the motion departs by {error / two.pitch:.2g} of a pitch from a constant ratio"
     lower, upper = _reach(first, one, touch)
     other = [abs(mean) * value for value in _reach(second, two, touch)]
@@ -151,25 +139,18 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
     )
 
 
-def _basis(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors that are right-handed with the axis."""
-    u = cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
-    u /= np.linalg.norm(u)
-    return u, cross(axis, u)
-
-
 def _outline(side: Side, axis: Array, place: Array, plane: Array) -> _Outline | None:
     """The section across the axis at the place; None where the side does not move in this plane."""
     omega, v = side.twist[:3], side.twist[3:]
     edges = _section(side.mesh, side.X_WP, axis, place, plane)
     size = float(np.linalg.norm(omega))
     if size > 0.0:
-        if float(np.linalg.norm(cross(omega, axis))) > SKEW * size:
+        if float(np.linalg.norm(cross(omega, axis))) > IN_PLANE * size:
             return None
         centre = plane @ (cross(omega, v) / size**2)
         return _Outline(edges, centre, np.zeros(2), math.copysign(1.0, float(omega @ axis)))
     along = plane @ v
-    if float(np.linalg.norm(along)) < (1.0 - SKEW**2) * float(np.linalg.norm(v)):
+    if float(np.linalg.norm(along)) < (1.0 - IN_PLANE**2) * float(np.linalg.norm(v)):
         return None
     return _Outline(edges, plane @ place, along / np.linalg.norm(along), 1.0)
 
@@ -204,29 +185,35 @@ class _Row:
 
 
 def _teeth(outline: _Outline, touch: Array) -> _Row | str:
-    """The teeth at the level of the contact."""
+    """The teeth at the level of the contact, or why there are none.
+
+    A tooth is where the outline enters the material. A whole wheel has them at even distances all round; of a rack or a
+    sector count those beside the contact that come at the distance of the median of the nearest gaps.
+    """
     levels, places = outline.coordinates(touch[None])
     along, leading = outline.crossings(levels, outline.edges)
-    known = np.isfinite(along[0])
-    along, leading = along[0][known], leading[0][known]
+    crossed = np.isfinite(along[0])
+    along, leading = along[0][crossed], leading[0][crossed]
     # the side that leads of each tooth: they come once a tooth
     starts = np.sort(outline.apart(places[0], along[leading]))
-    if len(starts) < FEWEST or 2 * len(starts) != len(along):
-        return f"one side has only {len(starts)} at the contact where teeth would be" if len(starts) < FEWEST else ""
+    if len(starts) < FEWEST_TEETH or 2 * len(starts) != len(along):
+        return (
+            f"one side has only {len(starts)} at the contact where teeth would be" if len(starts) < FEWEST_TEETH else ""
+        )
     gaps = np.diff(starts)
     if outline.turns:
         gaps = np.append(gaps, starts[0] + 2.0 * math.pi - starts[-1])
         pitch = 2.0 * math.pi / len(starts)
-        if np.abs(starts - starts[0] - pitch * np.arange(len(starts))).max() <= EVEN * pitch:
+        if np.abs(starts - starts[0] - pitch * np.arange(len(starts))).max() <= EVEN_TEETH * pitch:
             return _Row(len(starts), pitch, -math.inf, math.inf)
     middle = int(np.argmin(np.abs(starts)))
     pitch = float(np.median(gaps[max(0, middle - 2) : middle + 2]))
     low, high = middle, middle
-    while low > 0 and abs(starts[low] - starts[low - 1] - pitch) <= EVEN * pitch:
+    while low > 0 and abs(starts[low] - starts[low - 1] - pitch) <= EVEN_TEETH * pitch:
         low -= 1
-    while high + 1 < len(starts) and abs(starts[high + 1] - starts[high] - pitch) <= EVEN * pitch:
+    while high + 1 < len(starts) and abs(starts[high + 1] - starts[high] - pitch) <= EVEN_TEETH * pitch:
         high += 1
-    if high - low + 1 < FEWEST:
+    if high - low + 1 < FEWEST_TEETH:
         return "the teeth at the contact do not come at even distances"
     pitch = float(starts[high] - starts[low]) / (high - low)
     ends = np.sort(outline.apart(places[0], along[~leading]))
@@ -238,27 +225,29 @@ def _rolled(first: _Outline, second: _Outline, pitch: float, follow: float) -> t
     """(POSES,) how far the second side can go forwards and backwards (along) while the first passes one pitch and the
     second follows in the constant ratio `follow` (along over along); nan where nothing stops it."""
     ends = [_near(first, second), _near(second, first)]
-    out = np.full((2, POSES), np.nan)
-    for k, share in enumerate(np.linspace(0.0, 1.0, POSES, endpoint=False)):
-        own = first.moved(ends[0], share * pitch)
-        other = second.moved(ends[1], share * pitch * follow)
-        out[:, k] = _stops(second, own, other)
+    out = np.full((2, TOOTH_POSES), np.nan)
+    for k, share in enumerate(np.linspace(0.0, 1.0, TOOTH_POSES, endpoint=False)):
+        still = first.move(ends[0], share * pitch)
+        moving = second.move(ends[1], share * pitch * follow)
+        out[:, k] = _stops(second, still, moving)
     return out[0], out[1]
 
 
 def _near(outline: _Outline, other: _Outline) -> Array:
     """Edges of an outline that come where the other can reach while one tooth passes."""
-    if other.turns:
-        level = other.coordinates(other.edges.reshape(-1, 2))[0]
-        mine = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
-        return np.asarray(outline.edges[(mine <= 1.02 * level.max()).any(axis=1)])
     level = other.coordinates(other.edges.reshape(-1, 2))[0]
-    mine = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
-    return np.asarray(outline.edges[((mine >= level.min()) & (mine <= level.max())).any(axis=1)])
+    reached = other.coordinates(outline.edges.reshape(-1, 2))[0].reshape(-1, 2)
+    if other.turns:
+        return np.asarray(outline.edges[(reached <= TIP_MARGIN * level.max()).any(axis=1)])
+    return np.asarray(outline.edges[((reached >= level.min()) & (reached <= level.max())).any(axis=1)])
 
 
 def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]:
-    """How far `moving` edges can go forwards and backwards until they meet `still` ones; negative where they overlap."""
+    """How far `moving` edges can go forwards and backwards until they meet `still` ones; negative where they overlap.
+
+    Straight edges meet first at a corner of one of them: each corner of the one side is held against the material of the
+    other at its own level.
+    """
     forwards: list[float] = []
     backwards: list[float] = []
     for corners, edges, sign in ((still, moving, 1.0), (moving, still, -1.0)):

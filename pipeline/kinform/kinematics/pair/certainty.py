@@ -12,13 +12,31 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.kinematics.pair.evidence import COAXIAL, FAR, Evidence, Item
-from kinform.kinematics.pair.freedoms import fits, freedoms
-from kinform.kinematics.pair.subspace import name_space
-from kinform.model.arrays import Array
+from kinform.foundation.words import counted
+from kinform.kinematics.constants import (
+    ACROSS_LINE,
+    ALONG_AXIS,
+    FILLED_SECTOR,
+    MISSED_AXES,
+    ON_RADIUS,
+    PASSING_GAP,
+    STRAY_AREA,
+    STRAY_AREA_APART,
+    THREAD_AXES,
+    THREAD_FIT,
+    THREAD_LEAN,
+    THREAD_SECTORS,
+    THREAD_SLOPE,
+    TILTED_AXES,
+    WIDE_CONTACT,
+    WIDE_GAP,
+)
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
+from kinform.kinematics.pair.lower_pairs import name_space
+from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
@@ -29,23 +47,6 @@ TOUCHING = ("point", "line")
 """Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
 HIGHER = (*TOUCHING, "freeform", "other")
 """Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
-MISSED = 0.5
-"""Axes that miss each other by less than this share of the contact tolerance are meant to be one."""
-TILTED = 4.0
-"""So are axes within this many times the alignment."""
-APART = 2e-3
-"""Gaps below this share of the size of the smaller body are as good as none."""
-ROUND = 0.02
-"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
-STRAY = (5e-4, 2e-2)
-"""Share of the squared size of the smaller body below which a one-directional contact may be a stray: where
-it touches, and where it does not."""
-MOST_LINES, SECTORS = 4, 8
-"""Axes about which threads are suspected, and parts of a turn of which nearly all must lean alike."""
-LEAN, BETTER = 5e-3, 0.75
-"""Advance a radian, in radii, and share of the squared speeds that a screw may leave, of what leans like a thread."""
-SPREAD = 0.15
-"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims."""
 
 
 def certainty(
@@ -66,7 +67,7 @@ def certainty(
     if doubt:
         return "ambiguous", doubt
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
-    return "determined", f"the contact leaves {count} freedom{'' if count == 1 else 's'}{weakest}"
+    return "determined", f"the contact leaves {counted(count, 'freedom')}{weakest}"
 
 
 def meets(patches: Sequence[Patch]) -> bool:
@@ -74,7 +75,7 @@ def meets(patches: Sequence[Patch]) -> bool:
     lines = [patch.axis for patch in patches if patch.kind == "line"]
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
-        or (patch.kind == "plane" and lines and all(np.linalg.norm(cross(patch.axis, d)) < 1e-3 for d in lines))
+        or (patch.kind == "plane" and lines and all(np.linalg.norm(cross(patch.axis, d)) < ACROSS_LINE for d in lines))
         for patch in patches
     )
 
@@ -95,15 +96,16 @@ def momentary(evidence: Evidence, basis: Array) -> bool:
             arm = arm - np.outer(arm @ form.axis, form.axis)
         away = np.linalg.norm(arm, axis=1)
         if all(
-            (np.abs(away - radius) > ROUND * max(radius, ROUND * evidence.frame.length)).any()
+            (np.abs(away - radius) > ON_RADIUS * max(radius, ON_RADIUS * evidence.frame.length)).any()
             for radius in item.patch.radii
         ):
             return True
     return False
 
 
-def _count(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], tolerances: Tolerances) -> int:
-    preserved = fits(evidence, twists, evidence.rows @ twists)
+def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerances) -> int:
+    """How many freedoms the kept patches leave."""
+    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
     return int(freedoms(evidence, twists, preserved, keep, tolerances)[0].shape[1])
 
 
@@ -115,7 +117,7 @@ def _loose(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances
         firm &= [not item.patch.one_sided for item in evidence.items]
     if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
         return ""
-    kinds = sorted({item.patch.kind for item, good in zip(evidence.items, firm, strict=True) if not good})
+    kinds = sorted({item.patch.kind for item in evidence.chosen(~firm)})
     return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
 
 
@@ -127,13 +129,13 @@ def _nearly_one(evidence: Evidence, twists: Array, count: int, tolerances: Toler
     wide = np.repeat(curved, np.diff(evidence.start))
     widened = replace(
         evidence,
-        angle=np.where(wide, np.maximum(evidence.angle, TILTED * tolerances.alignment), evidence.angle),
-        position=evidence.position + np.where(wide, MISSED * evidence.contact, 0.0),
+        angle=np.where(wide, np.maximum(evidence.angle, TILTED_AXES * tolerances.alignment), evidence.angle),
+        position=evidence.position + np.where(wide, MISSED_AXES * evidence.contact, 0.0),
     )
-    found = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
-    if found == 0:
+    left = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
+    if left == 0:
         return ""
-    return f"axes that miss each other by little hold the bodies: as one axis they would leave {found} of 6 freedoms"
+    return f"axes that miss each other by little hold the bodies: as one axis they would leave {left} of 6 freedoms"
 
 
 def _threaded(evidence: Evidence, basis: Array) -> str:
@@ -142,7 +144,7 @@ def _threaded(evidence: Evidence, basis: Array) -> str:
     if form.type == "screw" or basis.shape[1] > 2:
         return ""
     coaxial = sorted((i for i in evidence.items if i.patch.kind in COAXIAL), key=lambda i: (-i.area, i.index))
-    lines = [(item.patch.axis, item.patch.point) for item in coaxial[:MOST_LINES]]
+    lines = [(item.patch.axis, item.patch.point) for item in coaxial[:THREAD_AXES]]
     if form.axis is not None and form.point is not None:
         lines.append((form.axis, form.point))
     for axis, point in lines:
@@ -157,29 +159,34 @@ def _threaded(evidence: Evidence, basis: Array) -> str:
 
 def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
     """m a radian of the screw about a line that leaves what touches besides surfaces of revolution about it much
-    more nearly free than the turn does; 0 where there is none."""
-    own = [i for i in evidence.items if i.patch.kind not in COAXIAL or i.patch.one_sided or not _about(i, axis)]
-    if all(i.patch.kind == "plane" and _about(i, axis) for i in own):
+    more nearly free than the turn does; 0 where there is none.
+
+    The advance is the one that makes the weighted squares of the speeds along the normals least. It counts where
+    contact goes all round the axis, leans against it, and is preserved better by the screw than by the turn.
+    """
+    leaning = [i for i in evidence.items if i.patch.kind not in COAXIAL or i.patch.one_sided or not _about(i, axis)]
+    if all(i.patch.kind == "plane" and _about(i, axis) for i in leaning):
         return 0.0
-    points, normals = np.concatenate([i.points for i in own]), np.concatenate([i.normals for i in own])
-    weights = np.concatenate([i.weights for i in own])
+    points, normals = np.concatenate([i.points for i in leaning]), np.concatenate([i.normals for i in leaning])
+    weights = np.concatenate([i.weights for i in leaning])
     arm = points - point
     radial = arm - (arm @ axis)[:, None] * axis
     radius = float(weights @ np.linalg.norm(radial, axis=1) / weights.sum())
     turning, sliding = np.einsum("ij,ij->i", normals, cross(axis, arm)), normals @ axis
     u, v = perpendicular(axis)
-    sector = np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * SECTORS).astype(int) % SECTORS
-    share = np.bincount(sector, weights=weights, minlength=SECTORS) / weights.sum()
-    if np.count_nonzero(share > 0.02) < SECTORS - 1 or weights @ sliding**2 < 0.01 * weights.sum():
+    sector = np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * THREAD_SECTORS).astype(int) % THREAD_SECTORS
+    share = np.bincount(sector, weights=weights, minlength=THREAD_SECTORS) / weights.sum()
+    filled = np.count_nonzero(share > FILLED_SECTOR) >= THREAD_SECTORS - 1
+    if not filled or weights @ sliding**2 < THREAD_SLOPE * weights.sum():
         return 0.0
     advance = -float(weights @ (turning * sliding) / (weights @ sliding**2))
     rest = float(weights @ (turning + advance * sliding) ** 2)
-    lean = abs(advance) > LEAN * radius and rest < BETTER * float(weights @ turning**2)
+    lean = abs(advance) > THREAD_LEAN * radius and rest < THREAD_FIT * float(weights @ turning**2)
     return advance if lean else 0.0
 
 
 def _about(item: Item, axis: Array) -> bool:
-    return float(np.linalg.norm(cross(item.patch.axis, axis))) < 0.01
+    return float(np.linalg.norm(cross(item.patch.axis, axis))) < ALONG_AXIS
 
 
 def _stray(evidence: Evidence) -> str:
@@ -188,9 +195,10 @@ def _stray(evidence: Evidence) -> str:
     if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():
         return ""
     area = sum(item.patch.area for item in evidence.items)
-    least = max(FAR * evidence.contact, APART * evidence.size)
+    least = max(WIDE_GAP * evidence.contact, PASSING_GAP * evidence.size)
     apart = all(item.patch.gap > least for item in evidence.items)
-    if area >= STRAY[apart] * evidence.size**2 or evidence.frame.length > SPREAD * evidence.size:
+    least_area = STRAY_AREA_APART if apart else STRAY_AREA
+    if area >= least_area * evidence.size**2 or evidence.frame.length > WIDE_CONTACT * evidence.size:
         return ""
     what = "they pass each other without touching" if apart else "they touch"
     return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

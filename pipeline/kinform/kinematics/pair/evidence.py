@@ -2,7 +2,7 @@
 
 Every patch counts with the square root of its area, shared over its samples, less where the gap is
 wide: in real joints a small journal decides beside a large thrust face, so neither equal nor area
-weights serve (design section 4).
+weights serve.
 """
 
 from __future__ import annotations
@@ -11,30 +11,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame, rows
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import GAP_BANDS, LOOSE_ANGLE, SIGMAS, STRAY_SHARE, TOUCHING_GAP
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["COAXIAL", "FAR", "GUIDES", "PITCH", "Evidence", "Item", "gather"]
+__all__ = ["COAXIAL", "GUIDES", "Evidence", "Item", "Member", "gather"]
 
 
 COAXIAL = ("cylinder", "cone", "torus", "revolution", "helicoid")
 """Kinds of patches with an axis that is a line."""
 GUIDES = (*COAXIAL, "sphere", "extrusion")
 """Kinds of curved patches that slide on themselves in a way that both sides share."""
-GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (np.inf, 0.25))
-"""(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
-PITCH = 5e-3
-"""Relative difference of pitches that are one."""
-FAR = GAP_BANDS[1][0]
-"""Gaps beyond this share of the contact tolerance have the least weight."""
 
-
-STRAY = 0.02
-"""Share of the contact area below which a one-sided patch counts only where it touches."""
+Member = tuple[int, Patch, bool]
+"""A patch with its index into Contacts.patches; turned where its part a belongs to the second body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +61,7 @@ class Evidence:
     """(n, 6)."""
     share: Array
     """(n,) weight of each row's square; sums to 1."""
-    start: NDArray[np.int64]
+    start: Ints
     """(items + 1,) first row of each patch."""
     angle: Array
     """(n,) rad, of the patch."""
@@ -86,11 +79,13 @@ class Evidence:
         """(items,) m²."""
         return np.array([item.area for item in self.items])
 
+    def chosen(self, chosen: Flags) -> list[Item]:
+        """The items of the flags (items,) that are set."""
+        return [item for item, flag in zip(self.items, chosen, strict=True) if flag]
 
-def gather(
-    patches: Sequence[tuple[int, Patch, bool]], tolerances: Tolerances, contact: float, size: float = 0.0
-) -> Evidence | None:
-    """Evidence of patches given as (index, patch, turned): turned when part a belongs to the second body.
+
+def gather(patches: Sequence[Member], tolerances: Tolerances, contact: float, size: float = 0.0) -> Evidence | None:
+    """Evidence of the patches between two bodies.
 
     `contact` is the contact tolerance (m), `size` the diagonal of the smaller body (m). None when no patch has
     an area.
@@ -126,8 +121,8 @@ def gather(
 
 def _stray(item: Item, total: float, contact: float) -> bool:
     """Facets of no known surface that pass near a small bit of a surface without touching it say nothing."""
-    apart = item.patch.gap > GAP_BANDS[0][0] * contact
-    return item.patch.one_sided and apart and item.area < STRAY * total
+    apart = item.patch.gap > TOUCHING_GAP * contact
+    return item.patch.one_sided and apart and item.area < STRAY_SHARE * total
 
 
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
@@ -149,7 +144,7 @@ def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contac
         normals=-patch.normals if turned else patch.normals,
         weights=weights,
         area=float(weights.sum()),
-        angle=0.2 if loose else tolerances.alignment + 3.0 * direction + 0.5 * patch.misalignment,
-        position=3.0 * position + clearance + offset if coaxial else 0.0,
-        interferes=patch.gap < -(patch.chord + 3.0 * position),
+        angle=LOOSE_ANGLE if loose else tolerances.alignment + SIGMAS * direction + 0.5 * patch.misalignment,
+        position=SIGMAS * position + clearance + offset if coaxial else 0.0,
+        interferes=patch.gap < -(patch.chord + SIGMAS * position),
     )

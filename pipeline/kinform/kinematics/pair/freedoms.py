@@ -8,28 +8,34 @@ else is free.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import span
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.pair.evidence import PITCH, Evidence
-from kinform.kinematics.pair.subspace import name_space, nearest_pair
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import (
+    CLEARLY_NEW,
+    CONE_SLACK,
+    DIFFERENCE_SLACK,
+    NEW_FREEDOM,
+    PURE_SLIDE,
+    SAME_PITCH,
+    SIGMAS,
+    THREAD_TURNING,
+)
+from kinform.kinematics.pair.evidence import Evidence
+from kinform.kinematics.pair.lower_pairs import name_space, nearest_pair
+from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["INDEPENDENT", "fits", "freedoms"]
+__all__ = ["freedoms", "preserved_motions"]
 
 
-INDEPENDENT = 0.03
-"""A motion adds a freedom when this much of its unit twist lies outside those already found."""
-CLEARLY = 0.5
-"""Above this share a further motion is not a variant of those already found."""
-RESIDUAL = 2.0
-"""What is left of a further motion may be off by this many times the tolerances: it is a difference."""
+def preserved_motions(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> Flags:
+    """(items, motions): does the patch slide on itself, within `slack` times its tolerances?
 
-
-def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> NDArray[np.bool_]:
-    """(items, motions): does the patch slide on itself, within `slack` times its tolerances?"""
+    `twists` (6, motions), scaled in the evidence's frame; `speeds` (n, motions) of the evidence's rows. Compared are
+    weighted sums of squares over the samples of a patch: of its speeds along the normals, and of those that a normal
+    off by `angle` and a surface off by `position` would give at the sample's own velocity.
+    """
     length = evidence.frame.length
     velocity = twists[3:].T[None] + cross(twists[:3].T[None], evidence.arms[:, None])
     speed = np.linalg.norm(velocity, axis=2)
@@ -38,36 +44,36 @@ def fits(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -
     for k, item in enumerate(evidence.items):
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
-            own = slice(evidence.start[k], evidence.start[k + 1])
-            slides = turning < 1e-9
-            allowed[own, slides] = (3.0 * item.patch.uncertainty[0] + 1e-6) * speed[own, slides]
+            samples = slice(evidence.start[k], evidence.start[k + 1])
+            slides = turning < PURE_SLIDE
+            allowed[samples, slides] = (SIGMAS * item.patch.uncertainty[0] + CONE_SLACK) * speed[samples, slides]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]
-    found = np.add.reduceat(weight * speeds**2, first, axis=0)
+    missed = np.add.reduceat(weight * speeds**2, first, axis=0)
     limit = np.add.reduceat(weight * allowed**2, first, axis=0)
-    kept = np.asarray(found <= slack**2 * limit + 1e-24)
+    preserved = np.asarray(missed <= slack**2 * limit + 1e-24)
     for k, item in enumerate(evidence.items):
         if item.patch.kind == "helicoid":
-            kept[k] = _screws(evidence, k, twists, slack)
-    return kept
+            preserved[k] = _screws(evidence, k, twists, slack)
+    return preserved
 
 
-def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> NDArray[np.bool_]:
+def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Flags:
     """(motions,): is it the screw motion of this thread? Its slope is a fact, like that of a cone: however small,
     no tolerance makes a turn or a slide of it. Only the axis may be off."""
     item, frame = evidence.items[number], evidence.frame
     row = int(evidence.start[number])
     angular, linear = twists[:3] / frame.length, twists[3:]
     square = np.einsum("ij,ij->j", angular, angular)
-    turning = square > (1e-3 / frame.length) ** 2
+    turning = square > (THREAD_TURNING / frame.length) ** 2
     square = np.where(turning, square, 1.0)
     advance = np.einsum("ij,ij->j", angular, linear) / square
     foot = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
     axis, middle = item.patch.axis, item.points.mean(axis=0)
     direction = angular / np.sqrt(square)
     tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
-    own = item.patch.point + axis * float(axis @ (middle - item.patch.point))
-    apart = own[:, None] - foot
+    beside = item.patch.point + axis * float(axis @ (middle - item.patch.point))
+    apart = beside[:, None] - foot
     apart = np.linalg.norm(apart - direction * np.einsum("ij,ij->j", direction, apart), axis=0)
     angle, reach = float(evidence.angle[row]), float(np.linalg.norm(item.points - middle, axis=1).max())
     wanted = item.patch.pitch / (2.0 * np.pi)
@@ -75,34 +81,32 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> NDA
         turning
         & (tilt <= slack * angle)
         & (apart <= slack * (float(evidence.position[row]) + angle * reach))
-        & (np.abs(advance - wanted) <= slack * PITCH * abs(wanted))
+        & (np.abs(advance - wanted) <= slack * SAME_PITCH * abs(wanted))
     )
 
 
 def freedoms(
-    evidence: Evidence,
-    twists: Array,
-    preserved: NDArray[np.bool_],
-    keep: NDArray[np.bool_],
-    tolerances: Tolerances,
+    evidence: Evidence, twists: Array, preserved: Flags, keep: Flags, tolerances: Tolerances
 ) -> tuple[Array, Array]:
     """Basis (6, k) of what the kept patches leave free, and the singular values (6,) that say so.
 
-    `preserved` (items, motions) is what `fits` says of the candidate `twists` (6, motions).
+    `preserved` (items, motions) is what `preserved_motions` says of the candidate `twists` (6, motions); `keep`
+    (items,) which patches count.
     A motion that differs from those already found by less than the patches can tell adds nothing.
     """
     basis = np.zeros((6, 0))
     for twist in twists[:, preserved[keep].all(axis=0)].T:
         rest = twist - basis @ (basis.T @ twist)
         size = float(np.linalg.norm(rest))
-        if size > INDEPENDENT and (size > CLEARLY or _preserved(evidence, (rest / size)[:, None], keep, RESIDUAL)):
-            basis = np.column_stack([basis, rest / size])
+        unit = rest / max(size, 1e-300)
+        if size > CLEARLY_NEW or (size > NEW_FREEDOM and _all_preserve(evidence, unit, keep, DIFFERENCE_SLACK)):
+            basis = np.column_stack([basis, unit])
     chosen = np.repeat(keep, np.diff(evidence.start))
     rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
     basis, values = _completed(rows, basis, tolerances)
     if name_space(basis, evidence.frame).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
-        if rounded is not None and _preserved(evidence, rounded, keep):
+        if rounded is not None and _all_preserve(evidence, rounded, keep):
             return _completed(rows, rounded, tolerances)
     return basis, values
 
@@ -117,6 +121,7 @@ def _completed(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array
     return span(null), values
 
 
-def _preserved(evidence: Evidence, twists: Array, keep: NDArray[np.bool_], slack: float = 1.0) -> bool:
-    """Does every kept patch slide on itself under each of the twists (6, n), within its tolerances?"""
-    return bool(fits(evidence, twists, evidence.rows @ twists, slack)[keep].all())
+def _all_preserve(evidence: Evidence, twists: Array, keep: Flags, slack: float = 1.0) -> bool:
+    """Does every kept patch slide on itself under the twist (6,) or each of the twists (6, n), within its tolerances?"""
+    twists = twists.reshape(6, -1)
+    return bool(preserved_motions(evidence, twists, evidence.rows @ twists, slack)[keep].all())

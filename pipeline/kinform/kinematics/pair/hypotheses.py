@@ -12,14 +12,24 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
-from kinform.kinematics.pair.evidence import COAXIAL, PITCH, Evidence, Item
+from kinform.kinematics.constants import (
+    CENTRE_SLACK,
+    DISTINCT_SLIDE,
+    LEAST_MEETING,
+    LEAST_POSITION,
+    MOST_DIRECTIONS,
+    MOST_FACES,
+    MOST_NORMALS,
+    MOST_SLIDES,
+    ONE_NORMAL,
+    SAME_PITCH,
+    SEPARATE_CENTRES,
+)
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.wording import components
 from kinform.model.arrays import Array
 
-__all__ = ["Line", "Motion", "describe", "motions"]
-
-
-MOST_DIRECTIONS = 24
-"""Directions tried, the best supported first: parts of real robots have hundreds of tiny planes."""
+__all__ = ["Line", "Motion", "candidate_motions", "motion_words"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +57,7 @@ class Motion:
     """m a turn; of a turn that advances, right-handed positive."""
 
 
-def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
+def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
     """Candidate motions in a fixed order, best supported first."""
     lines = _axes(evidence, alignment)
     centres = _centres(evidence)
@@ -62,7 +72,8 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
             out.append(Motion(True, twist, line.axis, line.point, True, pitch))
     for centre in centres:
         turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
-        turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > 1e-3 * frame.length]
+        apart = SEPARATE_CENTRES * frame.length
+        turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > apart]
         out += [Motion(True, rotation(d, centre, frame), d, centre, True) for d in turns]
     for direction, curved in directions:
         out.append(Motion(False, translation(direction), direction, frame.centre, curved))
@@ -74,17 +85,17 @@ def motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
 
 def _pitches(evidence: Evidence, line: Line) -> list[float]:
     """Pitches (m a turn) of the threads on a line; those that agree are one, by their areas."""
-    found: list[tuple[float, float]] = []
+    pitches: list[tuple[float, float]] = []
     threads = [evidence.items[k] for k in line.items if evidence.items[k].patch.kind == "helicoid"]
     for item in sorted(threads, key=lambda i: (-i.area, i.index)):
-        for n, (pitch, area) in enumerate(found):
-            if abs(item.patch.pitch - pitch) <= PITCH * abs(pitch):
+        for n, (pitch, area) in enumerate(pitches):
+            if abs(item.patch.pitch - pitch) <= SAME_PITCH * abs(pitch):
                 total = area + item.area
-                found[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
+                pitches[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
                 break
         else:
-            found.append((item.patch.pitch, item.area))
-    return [pitch for pitch, _ in found]
+            pitches.append((item.patch.pitch, item.area))
+    return [pitch for pitch, _ in pitches]
 
 
 def _axes(evidence: Evidence, alignment: float) -> list[Line]:
@@ -116,7 +127,11 @@ def _coaxial(a: Item, b: Item, alignment: float) -> bool:
 
 
 def _fit_line(items: list[Item], indices: list[int]) -> Line:
-    """Least squares line: each patch measures an offset at its place, and a direction."""
+    """The line of coaxial patches (Evidence.items of these `indices`), the largest first, by least squares.
+
+    Unknown are two shifts and two tilts of the largest patch's axis. Each patch measures an offset from it at its own
+    place along it, and a direction, with the weights of its fit and its clearance.
+    """
     best = items[0]
     axis = canonical(best.patch.axis)
     if len(items) == 1:
@@ -128,12 +143,12 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
     origin = best.patch.point + axis * float(axis @ (origin - best.patch.point))
     normal_matrix, right = np.zeros((4, 4)), np.zeros(4)
     for item in items:
-        own = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
+        along = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
         z = float(axis @ (item.points.mean(axis=0) - origin))
-        foot = item.patch.point + own * ((z - float(axis @ (item.patch.point - origin))) / float(own @ axis))
+        foot = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
         length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
         # what a patch does not know better than its fit and its clearance, it says less loudly
-        position = max(item.position, 1e-7 * length, 1e-12)
+        position = max(item.position, LEAST_POSITION * length, 1e-12)
         direction = max(item.patch.uncertainty[0], position / length)
         for k, unit in enumerate((u, v)):
             row = np.zeros(4)
@@ -141,7 +156,7 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
             normal_matrix += np.outer(row, row) / position**2
             right += row * float(unit @ (foot - origin)) / position**2
             normal_matrix[2 + k, 2 + k] += 1.0 / direction**2
-            right[2 + k] += float(unit @ own) / direction**2
+            right[2 + k] += float(unit @ along) / direction**2
     weight = np.sqrt(np.diag(normal_matrix))
     solution = np.linalg.lstsq(normal_matrix / np.outer(weight, weight), right / weight, rcond=None)[0] / weight
     fitted = canonical(axis + solution[2] * u + solution[3] * v)
@@ -164,7 +179,7 @@ def _centres(evidence: Evidence) -> list[Array]:
                 centres[n] = (merged, total, max(slack, item.position))
                 break
         else:
-            centres.append((item.patch.point, item.area, item.position + 1e-9 * evidence.frame.length))
+            centres.append((item.patch.point, item.area, item.position + CENTRE_SLACK * evidence.frame.length))
     return [centre for centre, _, _ in centres]
 
 
@@ -186,36 +201,30 @@ def _directions(candidates: list[tuple[Array, float]], alignment: float) -> list
 def _slides(
     evidence: Evidence, lines: list[Line], normals: list[tuple[Array, float]], alignment: float
 ) -> list[tuple[Array, bool]]:
-    """Directions that surfaces leave free: axes, and lines in which two planes meet."""
+    """Directions that surfaces leave free, and whether a curved one does: axes, lines in which two planes meet, and
+    directions in a plane, across the axes and across the coordinate axes."""
     planes = [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"]
-    found: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
-    drawn = [(item.patch.axis, item.area) for item in evidence.items if item.patch.kind == "extrusion"]
-    for axis, _ in _directions(drawn, alignment):
-        if all(np.linalg.norm(cross(axis, d)) > 0.25 * np.sin(alignment) for d, _ in found):
-            found.append((axis, True))
+    slides: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
 
     def add(direction: Array, curved: bool) -> None:
-        direction = _refined(direction, planes, alignment)
-        if all(np.linalg.norm(cross(direction, d)) > 0.25 * np.sin(alignment) for d, _ in found):
-            found.append((direction, curved))
+        if all(np.linalg.norm(cross(direction, d)) > DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
+            slides.append((direction, curved))
 
-    heavy = normals[: MOST_DIRECTIONS // 2]
-    for k, (a, _) in enumerate(heavy):
-        for b, _ in heavy[:k]:
-            line_of_both = cross(a, b)
-            if np.linalg.norm(line_of_both) > 0.1:
-                add(canonical(line_of_both), False)
-    for normal, _ in heavy[:6]:
-        for axis in perpendicular(normal):
-            add(canonical(axis), False)
-        for line in lines:
-            across = cross(normal, line.axis)
-            if np.linalg.norm(across) > 0.1:
-                add(canonical(across), False)
-    return found[: 3 * MOST_DIRECTIONS]
+    for axis, _ in _directions(
+        [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "extrusion"], alignment
+    ):
+        add(axis, True)
+    heavy = [normal for normal, _ in normals[:MOST_NORMALS]]
+    meeting = [cross(a, b) for k, a in enumerate(heavy) for b in heavy[:k]]
+    for normal in heavy[:MOST_FACES]:
+        meeting += [*perpendicular(normal), *(cross(normal, line.axis) for line in lines)]
+    for direction in meeting:
+        if np.linalg.norm(direction) > LEAST_MEETING:
+            add(_refine(canonical(direction), planes, alignment), False)
+    return slides[:MOST_SLIDES]
 
 
-def _refined(direction: Array, planes: list[tuple[Array, float]], alignment: float) -> Array:
+def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: float) -> Array:
     """The direction most perpendicular to all plane normals that are nearly so already."""
     near = [(n, w) for n, w in planes if abs(float(n @ direction)) <= np.sin(alignment)]
     if len(near) < 2:
@@ -223,7 +232,7 @@ def _refined(direction: Array, planes: list[tuple[Array, float]], alignment: flo
     normals = np.array([n for n, _ in near])
     spread = normals.T @ (normals * np.array([w for _, w in near])[:, None])
     values, vectors = np.linalg.eigh(spread)
-    if values[1] < 1e-3 * values[2]:
+    if values[1] < ONE_NORMAL * values[2]:
         flat = direction - vectors[:, 2] * float(vectors[:, 2] @ direction)
         return canonical(flat)
     return canonical(vectors[:, 0])
@@ -240,9 +249,9 @@ def _middle(evidence: Evidence, normal: Array, alignment: float) -> Array:
     return np.asarray(np.average(points, axis=0, weights=np.concatenate([i.weights for i in members])))
 
 
-def describe(motion: Motion) -> str:
+def motion_words(motion: Motion) -> str:
     """In words: "rotation about (0, 0, 1)"."""
-    axis = ", ".join(f"{x:.3g}" for x in np.where(np.abs(motion.axis) < 5e-4, 0.0, motion.axis))
+    axis = components(motion.axis)
     if motion.pitch:
-        return f"screw motion about ({axis}), {1e3 * motion.pitch:.4g} mm a turn"
-    return f"{'rotation about' if motion.turn else 'translation along'} ({axis})"
+        return f"screw motion about {axis}, {1e3 * motion.pitch:.4g} mm a turn"
+    return f"{'rotation about' if motion.turn else 'translation along'} {axis}"

@@ -6,10 +6,12 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
 from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
-from kinform.kinematics.groups import in_words
+from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence
-from kinform.kinematics.pair.hypotheses import describe
+from kinform.kinematics.pair.hypotheses import motion_words
+from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.wording import motions_in_words
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Blocker, Joint
 from kinform.model.names import BodyName, JointName
@@ -24,11 +26,7 @@ FREEDOMS = {
 
 
 def twists_of(
-    kind: str,
-    axis: Array | None,
-    point: Array | None,
-    pitch: float | None = None,
-    axis2: Array | None = None,
+    kind: str, axis: Array | None, point: Array | None, pitch: float | None = None, axis2: Array | None = None
 ) -> Array:
     """Basis (f, 6) of the twists (ω; v at the world's origin) that a joint of this type allows."""
     zero = np.zeros(3)
@@ -72,18 +70,19 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         twists = twist_at_origin(decision.basis, frame).T
     else:
         twists = twists_of(form.type, form.axis, point, form.pitch)
+    blocking = [(evidence.items[k], motion) for k, motion in decision.left_out]
     total = float(evidence.areas.sum())
     blockers = tuple(
         Blocker(
-            parts=evidence.items[k].patch.parts,
-            patch=evidence.items[k].index,
-            area=evidence.items[k].patch.area,
-            share=evidence.items[k].area / total,
-            place=np.average(evidence.items[k].points, axis=0, weights=evidence.items[k].weights),
-            gap=evidence.items[k].patch.gap,
-            forbids=describe(motion),
+            parts=item.patch.parts,
+            patch=item.index,
+            area=item.patch.area,
+            share=item.area / total,
+            place=np.average(item.points, axis=0, weights=item.weights),
+            gap=item.patch.gap,
+            forbids=motion_words(motion),
         )
-        for k, motion in decision.left_out
+        for item, motion in blocking
     )
     return Joint(
         name=JointName(f"{bodies[0]}~{bodies[1]}"),
@@ -101,39 +100,28 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         patches=tuple(sorted(item.index for item in kept)),
         blockers=blockers,
         singular_values=decision.singular_values,
-        motion=in_words(decision.basis, frame),
+        motion=motions_in_words(decision.basis, frame),
     )
 
 
-def stated_joint(
-    bodies: tuple[BodyName, BodyName],
-    kind: str,
-    axis: Array | None,
-    point: Array | None,
-    axis2: Array | None,
-    pitch: float | None,
-    *,
-    evidence: str,
-    reason: str,
-    patches: tuple[int, ...] = (),
-) -> Joint:
-    """A joint that somebody stated: an assumption, or the function of a stick body."""
-    direction = None if axis is None else canonical(axis)
-    centre = np.zeros(3) if point is None and kind in ("planar", "prismatic") else point
+def stated_joint(bodies: tuple[BodyName, BodyName], form: JointForm, evidence: str, reason: str) -> Joint:
+    """A joint that somebody stated: an assumption, the function of a stick body, or a suggestion that is applied."""
+    axis = None if form.axis is None else canonical(form.axis)
+    point = np.zeros(3) if form.point is None and form.type in ("planar", "prismatic") else form.point
     return Joint(
         name=JointName(f"{bodies[0]}~{bodies[1]}"),
         bodies=bodies,
-        type=kind,
-        axis=direction,
-        point=centre if kind != "fixed" else None,
-        axis2=None if axis2 is None else canonical(axis2),
-        pitch=pitch,
-        freedoms=FREEDOMS[kind],
-        twists=twists_of(kind, direction, centre, pitch, axis2),
+        type=form.type,
+        axis=axis,
+        point=point if form.type != "fixed" else None,
+        axis2=None if form.axis2 is None else canonical(form.axis2),
+        pitch=form.pitch,
+        freedoms=FREEDOMS[form.type],
+        twists=twists_of(form.type, axis, point, form.pitch, form.axis2),
         evidence=(evidence,),
         status="inferred",
         reason=reason,
-        patches=patches,
+        patches=(),
         blockers=(),
         singular_values=np.full(6, np.nan),
     )
@@ -151,9 +139,9 @@ def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
         clearance = max(patch.gap, 0.0) if patch.kind in COAXIAL else 0.0
         engaged = float(np.ptp(item.points @ patch.axis)) if patch.kind in COAXIAL else 0.0
         allowed = 2.0 * clearance / engaged if engaged > 0.0 else 0.0
-        excess = patch.misalignment - allowed - 3.0 * patch.uncertainty[0]
-        angle = max(angle, excess if excess > 1e-4 else 0.0)
+        excess = patch.misalignment - allowed - SIGMAS * patch.uncertainty[0]
+        angle = max(angle, excess if excess > LEAST_MISALIGNMENT else 0.0)
         if patch.kind in (*COAXIAL, "sphere"):
-            far = patch.offset - max(patch.gap, 0.0) - 3.0 * patch.uncertainty[1] - patch.chord
-            offset = max(offset, far if far > 1e-4 * evidence.frame.length else 0.0)
+            far = patch.offset - max(patch.gap, 0.0) - SIGMAS * patch.uncertainty[1] - patch.chord
+            offset = max(offset, far if far > LEAST_MISALIGNMENT * evidence.frame.length else 0.0)
     return angle, offset

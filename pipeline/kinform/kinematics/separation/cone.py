@@ -14,9 +14,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import (
+    CERTIFICATE_SHARE,
+    CONE_FREE,
+    CONE_HELD,
+    EQUAL_ROWS,
+    FAR_EXPONENT,
+    LEAST_ROW,
+    LONGEST_STEP,
+    MOST_RAYS,
+    NEWTON_STEPS,
+)
+from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = [
     "Opening",
@@ -24,29 +34,15 @@ __all__ = [
     "grams",
     "held_for_certain",
     "opening",
-    "reduced",
+    "opposed_and_preserved",
+    "rows_beside",
     "unit_rows",
     "unit_rows_of",
-    "within",
 ]
 
 
-FREE = 1e-4
-"""Speeds over the size of a unit twist below which rows do not move: rounding of meshes and of HiGHS."""
-HELD = 2e-3
-"""Speeds above which they do; in between nobody knows."""
-EQUAL = 1e-6
-"""A row counts as tight below this, and two rows as one."""
-MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
+_MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
 """Odd factors by which rows that are not equal hardly ever sum up to the same."""
-CERTAIN = 1e-6
-"""Least λ over the greatest of a certificate."""
-STEPS = 25
-"""Newton steps; certificates are found within a few."""
-FAR = 40.0
-"""Exponent at which the sum has evidently no minimum."""
-MOST_RAYS = 48
-"""Rays at an intermediate step beyond which there are too many to list."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,16 +61,16 @@ def unit_rows(rows: Array) -> Array:
     return unit_rows_of(rows, np.zeros(len(rows), dtype=np.int64))[0]
 
 
-def unit_rows_of(rows: Array, group: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
     size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    long = size > 1e-3
+    long = size > LEAST_ROW
     rows, group = rows[long] / size[long, None], group[long]
     if len(rows) < 2:
         return rows, group
     keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
-    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL)
-    order = (keys @ MIX[: keys.shape[1]]).argsort(kind="stable")
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL_ROWS)
+    order = (keys @ _MIX[: keys.shape[1]]).argsort(kind="stable")
     ordered = keys[order]
     again = (ordered[1:] == ordered[:-1]).all(axis=1)
     if not again.any():
@@ -84,38 +80,38 @@ def unit_rows_of(rows: Array, group: NDArray[np.int64]) -> tuple[Array, NDArray[
     return rows[kept], group[kept]
 
 
-def within(rows: Array, fixed: Array) -> Array:
+def rows_beside(rows: Array, fixed: Array) -> Array:
     """Unit rows as they are seen by twists that the orthonormal rows `fixed` (k, 6) do not see."""
     return unit_rows(rows - (rows @ fixed.T) @ fixed) if len(fixed) else rows
 
 
-def reduced(rows: Array) -> tuple[Array, Array]:
+def opposed_and_preserved(rows: Array) -> tuple[Array, Array]:
     """Bases (d, c) of the directions that unit rows (n, d) oppose and (d, d − c) of those they preserve."""
     if not len(rows):
         return np.zeros((rows.shape[1], 0)), np.eye(rows.shape[1])
     values, vectors = np.linalg.eigh(rows.T @ rows)
-    moved = values > FREE**2 * len(rows)
+    moved = values > CONE_FREE**2 * len(rows)
     return vectors[:, moved], vectors[:, ~moved]
 
 
-def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
+def held_for_certain(pairs: Sequence[Array]) -> Flags:
     """For each pair of bodies with unit rows (n, 6): is there λ > 0 with Rᵀλ = 0, so that nothing can leave?
 
-    True is proven. False says only that no such λ was found.
+    True is proven. False says only that no such λ was primal.
     """
-    found = np.zeros(len(pairs), dtype=bool)
+    held = np.zeros(len(pairs), dtype=bool)
     active = np.array([k for k, rows in enumerate(pairs) if len(rows) > 1], dtype=np.int64)
     if not len(active):
-        return found
+        return held
     rows = np.concatenate([pairs[k] for k in active])
     counts = np.array([len(pairs[k]) for k in active])
     values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
-    loose = values < FREE**2 * counts[:, None]
+    loose = values < CONE_FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     at = np.zeros((len(active), 6))
-    for _ in range(STEPS):
+    for _ in range(NEWTON_STEPS):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
-        weight = np.exp(-np.clip(exponent, -FAR, FAR))
+        weight = np.exp(-np.clip(exponent, -FAR_EXPONENT, FAR_EXPONENT))
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
         pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
         pull -= np.einsum("pij,pj->pi", still, pull)
@@ -125,19 +121,19 @@ def held_for_certain(pairs: Sequence[Array]) -> NDArray[np.bool_]:
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
         certificate = weight * (1.0 - change)
         # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
-        proven = np.minimum.reduceat(certificate, start) > CERTAIN * np.maximum.reduceat(weight, start)
-        found[active[proven]] = True
+        proven = np.minimum.reduceat(certificate, start) > CERTIFICATE_SHARE * np.maximum.reduceat(weight, start)
+        held[active[proven]] = True
         longest = np.maximum.reduceat(np.abs(change), start)
-        at = at + step * np.minimum(1.0, 2.0 / np.maximum(longest, 1e-300))[:, None]
-        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR)
+        at = at + step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
+        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR_EXPONENT)
         if not keep.any():
             break
         chosen = np.repeat(keep, counts)
         rows, counts, active, at, still = rows[chosen], counts[keep], active[keep], at[keep], still[keep]
-    return found
+    return held
 
 
-def grams(rows: Array, weight: Array, counts: NDArray[np.int64]) -> Array:
+def grams(rows: Array, weight: Array, counts: Ints) -> Array:
     """(pairs, 6, 6) Σ w r rᵀ of each pair's rows, one pair's after the other's and at least one of each."""
     start = np.concatenate([[0], np.cumsum(counts)[:-1]])
     products = weight[:, None, None] * rows[:, :, None] * rows[:, None, :]
@@ -151,18 +147,18 @@ def opening(rows: Array) -> Opening:
     """
     from scipy.optimize import linprog
 
-    basis, _ = reduced(rows)
+    basis, _ = opposed_and_preserved(rows)
     if basis.shape[1] == 0:
         return Opening(True, np.zeros(6), 0.0)
     inner = rows @ basis
-    found = linprog(-inner.mean(axis=0), A_ub=-inner, b_ub=np.zeros(len(inner)), bounds=(-1.0, 1.0), method="highs")
-    if found.status != 0:
+    primal = linprog(-inner.mean(axis=0), A_ub=-inner, b_ub=np.zeros(len(inner)), bounds=(-1.0, 1.0), method="highs")
+    if primal.status != 0:
         return Opening(None, np.zeros(6), 0.0)
-    speed = float((inner @ found.x).max())
-    if speed > HELD:
-        return Opening(False, basis @ found.x, speed)
-    if speed >= FREE:
-        return Opening(None, basis @ found.x, speed)
+    speed = float((inner @ primal.x).max())
+    if speed > CONE_HELD:
+        return Opening(False, basis @ primal.x, speed)
+    if speed >= CONE_FREE:
+        return Opening(None, basis @ primal.x, speed)
     dual = linprog(np.ones(len(inner)), A_eq=inner.T, b_eq=np.zeros(inner.shape[1]), bounds=(1.0, None), method="highs")
     return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
 
@@ -174,7 +170,7 @@ def extreme_rays(rows: Array) -> Array | None:
     """
     if len(rows) == 1:
         return rows
-    basis, _ = reduced(rows)
+    basis, _ = opposed_and_preserved(rows)
     inner = rows @ basis
     size = inner.shape[1]
     if size == 0:
@@ -187,7 +183,7 @@ def extreme_rays(rows: Array) -> Array | None:
     while rest:
         # the row that most rays violate cuts most away
         speeds = rays @ inner[rest].T
-        broken = (speeds < -EQUAL).sum(axis=0)
+        broken = (speeds < -EQUAL_ROWS).sum(axis=0)
         done += [k for k, n in zip(rest, broken, strict=True) if n == 0]
         rest = [k for k, n in zip(rest, broken, strict=True) if n > 0]
         if not rest:
@@ -219,11 +215,11 @@ def _independent(inner: Array) -> list[int]:
 def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | None:
     """The rays after one more row: those inside, and where edges of the cone cross it."""
     speed = rays @ row
-    inside, outside = np.flatnonzero(speed > EQUAL), np.flatnonzero(speed < -EQUAL)
-    kept = rays[speed >= -EQUAL]
+    inside, outside = np.flatnonzero(speed > EQUAL_ROWS), np.flatnonzero(speed < -EQUAL_ROWS)
+    kept = rays[speed >= -EQUAL_ROWS]
     if not len(inside):
         return kept
-    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL
+    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL_ROWS
     common = (tight[inside][:, None] & tight[outside][None]).reshape(-1, tight.shape[1])
     a, b = (x.ravel() for x in np.meshgrid(inside, outside, indexing="ij"))
     enough = common.sum(axis=1) >= rays.shape[1] - 2

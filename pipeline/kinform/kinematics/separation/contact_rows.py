@@ -10,18 +10,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.bodies.matrix import extreme_samples
-from kinform.kinematics.separation.cone import FREE, grams, held_for_certain, reduced, unit_rows_of
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import CONE_FREE
+from kinform.kinematics.pair.extremes import extreme_samples
+from kinform.kinematics.separation.cone import grams, held_for_certain, opposed_and_preserved, unit_rows_of
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["Cone", "ContactRows", "pair_cones", "stated"]
+__all__ = ["Cone", "ContactRows", "is_stated", "pair_cones"]
 
 
 Members = Sequence[tuple[int, bool]]
@@ -41,7 +41,7 @@ class Cone:
     @property
     def preserved(self) -> Array:
         """(6, f) orthonormal: contact-preserving motion."""
-        moved = np.hstack([reduced(self.rows)[0], self.fixed.T])
+        moved = np.hstack([opposed_and_preserved(self.rows)[0], self.fixed.T])
         return np.linalg.svd(moved, full_matrices=True)[0][:, moved.shape[1] :] if moved.shape[1] else np.eye(6)
 
 
@@ -69,6 +69,12 @@ class ContactRows:
         """The parts of a body."""
         return self._parts[body]
 
+    def members(self, joint: Joint) -> Members:
+        """The patches that carry the joint or block it."""
+        first = self.parts_of(joint.bodies[0])
+        indices = sorted({*joint.patches, *(blocker.patch for blocker in joint.blockers)})
+        return [(k, self._patches[k].parts[0] not in first) for k in indices]
+
     def cone(self, members: Members) -> Cone | None:
         """The cone of patches given as (index, turned): turned when part a belongs to the second body."""
         return self.cones([members])[0]
@@ -78,31 +84,35 @@ class ContactRows:
         keys = [tuple(members) for members in pairs]
         new = [key for key in dict.fromkeys(keys) if key not in self._cones]
         pieces = {key: [self.samples(k, turned=turned) for k, turned in key] for key in new}
-        some = [key for key in new if any(len(points) for points, _, _ in pieces[key])]
+        sampled = [key for key in new if any(len(points) for points, _, _ in pieces[key])]
         self._cones |= dict.fromkeys(new)
-        if some:
-            self._cones |= dict(zip(some, self._found(some, [pieces[key] for key in some]), strict=True))
+        if sampled:
+            self._cones |= dict(zip(sampled, self._solve(sampled, [pieces[key] for key in sampled]), strict=True))
         return [self._cones[key] for key in keys]
 
-    def _found(self, keys: Sequence[Members], pieces: Sequence[Sequence[tuple[Array, Array, Array]]]) -> list[Cone]:
-        """The cones of pairs with samples."""
-        points, normals, moments = (np.concatenate([one[k] for own in pieces for one in own]) for k in range(3))
-        counts = np.array([sum(len(one[0]) for one in own) for own in pieces])
+    def _solve(self, keys: Sequence[Members], pieces: Sequence[Sequence[tuple[Array, Array, Array]]]) -> list[Cone]:
+        """The cones of pairs with samples; `pieces`: of each pair, patch by patch, what `samples` gives.
+
+        Rows of patches that hold both ways span what is fixed; those of the others count across that only.
+        """
+        patches = [samples for of_pair in pieces for samples in of_pair]
+        points, normals, moments = (np.concatenate([samples[k] for samples in patches]) for k in range(3))
+        counts = np.array([sum(len(samples[0]) for samples in of_pair) for of_pair in pieces])
         owner = np.repeat(np.arange(len(keys)), counts)
         frames = _frames(points, counts)
         rows = self._rows(normals, moments, frames, owner)
         alone = [self._two_way(k) for key in keys for k, _ in key]
-        two = np.repeat(np.array(alone, np.bool_), [len(one[0]) for own in pieces for one in own])
+        two = np.repeat(np.array(alone, np.bool_), [len(samples[0]) for samples in patches])
         rows, group = unit_rows_of(rows, 2 * owner + ~two)
         of_both, of_one = group % 2 == 0, group % 2 == 1
         fixed = _opposed(rows[of_both], group[of_both] // 2, len(keys))
-        across = np.array([np.eye(6) - own.T @ own for own in fixed])
+        across = np.array([np.eye(6) - basis.T @ basis for basis in fixed])
         rows, owner = rows[of_one], group[of_one] // 2
         rows, owner = unit_rows_of(np.einsum("ni,nij->nj", rows, across[owner]), owner)
         parts = np.split(rows, np.cumsum(np.bincount(owner, minlength=len(keys)))[:-1])
-        return [Cone(*found) for found in zip(fixed, parts, frames, strict=True)]
+        return [Cone(*fields) for fields in zip(fixed, parts, frames, strict=True)]
 
-    def _rows(self, normals: Array, moments: Array, frames: Sequence[Frame], owner: NDArray[np.int64]) -> Array:
+    def _rows(self, normals: Array, moments: Array, frames: Sequence[Frame], owner: Ints) -> Array:
         """Rows (n, 6) of normals and moments (n, 3), each against twists scaled in the frame of its owner."""
         offset = np.array([self._matrix.centre - frame.centre for frame in frames])
         length = np.array([frame.length for frame in frames])
@@ -122,46 +132,41 @@ class ContactRows:
             self._held = frozenset(np.array(curved, dtype=int)[self._hold(curved)].tolist()) if curved else frozenset()
         return k in self._held
 
-    def _hold(self, curved: Sequence[int]) -> NDArray[np.bool_]:
+    def _hold(self, curved: Sequence[int]) -> Flags:
         """Of each of these patches, whether it is proven to hold what it touches."""
         counts = np.array([len(self._patches[k].points) for k in curved])
         frames = _frames(np.concatenate([self._patches[k].points for k in curved]), counts)
         pieces = [self.samples(k, turned=False) for k in curved]
         owner = np.repeat(np.arange(len(curved)), [len(points) for points, _, _ in pieces])
-        normals, moments = (np.concatenate([one[k] for one in pieces]) for k in (1, 2))
+        normals, moments = (np.concatenate([samples[k] for samples in pieces]) for k in (1, 2))
         rows, owner = unit_rows_of(self._rows(normals, moments, frames, owner), owner)
         return held_for_certain(np.split(rows, np.cumsum(np.bincount(owner, minlength=len(curved)))[:-1]))
 
     def samples(self, k: int, *, turned: bool) -> tuple[Array, Array, Array]:
         """Points, normals and moments (m) about the centre of J, of the extreme samples of one patch."""
         sign = -1.0 if turned else 1.0
-        own = slice(self._bounds[k], self._bounds[k + 1])
-        if own.start < own.stop:
-            return self._points[own], sign * self._normals[own], sign * self._moments[own]
+        rows = slice(self._bounds[k], self._bounds[k + 1])
+        if rows.start < rows.stop:
+            return self._points[rows], sign * self._normals[rows], sign * self._moments[rows]
         patch = self._patches[k]
         samples = extreme_samples(patch)
         points, normals = patch.points[samples], sign * patch.normals[samples]
         return points, normals, cross(points - self._matrix.centre, normals)
 
 
-def pair_cones(rows: ContactRows, joints: Sequence[Joint], patches: Sequence[Patch]) -> list[Cone | None]:
+def pair_cones(rows: ContactRows, joints: Sequence[Joint]) -> list[Cone | None]:
     """The rows of each joint's patches and blockers; None for joints that contact does not decide."""
-    decided = [k for k, joint in enumerate(joints) if not stated(joint)]
-    members: list[Members] = []
-    for k in decided:
-        own = sorted({*joints[k].patches, *(blocker.patch for blocker in joints[k].blockers)})
-        first = rows.parts_of(joints[k].bodies[0])
-        members.append([(n, patches[n].parts[0] not in first) for n in own])
-    found = dict(zip(decided, rows.cones(members), strict=True))
-    return [found.get(k) for k in range(len(joints))]
+    decided = [k for k, joint in enumerate(joints) if not is_stated(joint)]
+    cones = dict(zip(decided, rows.cones([rows.members(joints[k]) for k in decided]), strict=True))
+    return [cones.get(k) for k in range(len(joints))]
 
 
-def stated(joint: Joint) -> bool:
+def is_stated(joint: Joint) -> bool:
     """Is the joint what somebody stated, or what rims suggested, rather than what contact leaves?"""
     return not joint.patches or bool({"rim", "bolt circle", "assumption", "function"}.intersection(joint.evidence))
 
 
-def _frames(points: Array, counts: NDArray[np.int64]) -> list[Frame]:
+def _frames(points: Array, counts: Ints) -> list[Frame]:
     """The frames of groups of points (n, 3), one group after the other and none of them empty."""
     start = np.cumsum(counts) - counts
     low, high = np.minimum.reduceat(points, start), np.maximum.reduceat(points, start)
@@ -169,14 +174,14 @@ def _frames(points: Array, counts: NDArray[np.int64]) -> list[Frame]:
     return [Frame(centre, size or 1.0) for centre, size in zip(0.5 * (low + high), half, strict=True)]
 
 
-def _opposed(rows: Array, group: NDArray[np.int64], count: int) -> list[Array]:
+def _opposed(rows: Array, group: Ints, count: int) -> list[Array]:
     """(k, 6) orthonormal directions that the unit rows (n, 6) of each group, ascending, oppose."""
     out = [np.zeros((0, 6))] * count
     counts = np.bincount(group, minlength=count)
-    some = np.flatnonzero(counts)
-    if len(some):
-        values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts[some]))
-        moved = values > FREE**2 * counts[some, None]
-        for k, chosen, own in zip(some.tolist(), moved, vectors, strict=True):
-            out[k] = own[:, chosen].T
+    groups = np.flatnonzero(counts)
+    if len(groups):
+        values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts[groups]))
+        moved = values > CONE_FREE**2 * counts[groups, None]
+        for k, chosen, directions in zip(groups.tolist(), moved, vectors, strict=True):
+            out[k] = directions[:, chosen].T
     return out

@@ -15,31 +15,27 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind, blocks
-from kinform.kinematics.pair.answer import Answers, ask
-from kinform.kinematics.separation.cone import HELD, reduced, unit_rows, within
-from kinform.kinematics.separation.contact_rows import Cone, ContactRows, stated
-from kinform.kinematics.separation.releases import certainly_held, cone_of, released
+from kinform.kinematics.answers import Answers, ask
+from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, MOST_OPENING_ROWS, MOST_TOGETHER
+from kinform.kinematics.separation.cone import opposed_and_preserved, rows_beside, unit_rows
+from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
+from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint, Release, Separation
 from kinform.model.names import BodyName, JointName
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
 __all__ = ["Link", "links_between", "separations"]
-
-
-MOST_ROWS = 12_000
-"""Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
-MOST_TOGETHER = 8
-"""Bodies up to which those are told that leave together."""
-LARGEST = 1.0 / HELD
-"""Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +66,7 @@ def links_between(
     for k, patch in enumerate(patches):
         a, b = (cluster[part] for part in patch.parts)
         pair = tuple(sorted(body[part] for part in patch.parts))
-        used = pair[0] == pair[1] or (pair in carried and not stated(owner[pair]) and k in carried[pair])
+        used = pair[0] == pair[1] or (pair in carried and not is_stated(owner[pair]) and k in carried[pair])
         if a != b and used and len(patch.points):
             members[(a, b) if a < b else (b, a)].append((k, a > b))
     pairs = sorted(members)
@@ -85,7 +81,7 @@ def links_between(
         kept = twist_at_origin(cone.preserved, cone.frame).T
         out.append(Link(name, (a, b), None if next(certain) else cone, kept, slides.get(name)))
     for joint in joints:
-        if stated(joint):
+        if is_stated(joint):
             ends = [min(cluster[p] for p in rows.parts_of(name)) for name in joint.bodies]
             out.append(Link(joint.name, (ends[0], ends[1]), None, joint.twists))
     return out
@@ -104,30 +100,29 @@ def separations(
         if len(block) == 1:
             opened.update(loose)
             continue
-        own = [links[k] for k in block]
-        given = [(link.ends, link.cone, link.twists) for link in own]
-        solved = ask(answers, "opened", given, partial(_opened, own))
+        members = [links[k] for k in block]
+        question = [(link.ends, link.cone, link.twists) for link in members]
+        solved = ask(answers, "opened", question, partial(_opened, members))
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
             continue
         opened.update(block[k] for k in solved)
-    found, missing = _sets(names, ground, links, opened)
+    sets, missing = _sets(names, ground, links, opened)
     if missing:
         more = f"{missing} more can move out of contact, but only together with many others, or while these move too"
         reason = f"{reason}; {more}" if reason else more
-    return found, reason
+    return sets, reason
 
 
 def _opened(links: Sequence[Link]) -> tuple[int, ...] | None:
     """Indices of the links of one block that can open together; None where the program is too large or fails."""
     from scipy.optimize import linprog
-    from scipy.sparse import coo_matrix
 
     nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
     loose = [k for k, link in enumerate(links) if link.cone is not None]
     frame = _common([link.cone.frame for link in links if link.cone is not None])
     turned = [_in_frame(link, frame) for link in links]
-    if sum(map(len, turned)) > MOST_ROWS:
+    if sum(map(len, turned)) > MOST_OPENING_ROWS:
         return None
     width = 6 * (len(nodes) - 1)
     less: list[tuple[Array, int, int, int]] = []
@@ -137,44 +132,49 @@ def _opened(links: Sequence[Link]) -> tuple[int, ...] | None:
         if link.cone is None:
             equal.append((turned[k], a, b, -1))
         else:
-            equal.append((moved_rows(link.cone.fixed, link.cone.frame, frame), a, b, -1))
+            equal.append((rows_in_frame(link.cone.fixed, link.cone.frame, frame), a, b, -1))
             less.append((-turned[k], a, b, -1))
             less.append((-turned[k].mean(axis=0, keepdims=True), a, b, width + loose.index(k)))
-
-    def stacked(items: list[tuple[Array, int, int, int]]) -> tuple[coo_matrix | None, NDArray[np.float64]]:
-        data, i, j, at = [], [], [], 0
-        for rows, a, b, slack in items:
-            own = np.arange(at, at + len(rows))
-            for sign, column in ((-1.0, a), (1.0, b)):
-                if column >= 0:
-                    data.append((sign * rows).ravel())
-                    i.append(np.repeat(own, 6))
-                    j.append(np.tile(np.arange(column, column + 6), len(rows)))
-            if slack >= 0:
-                data.append(np.ones(len(rows)))
-                i.append(own)
-                j.append(np.full(len(rows), slack))
-            at += len(rows)
-        if not at:
-            return None, np.zeros(0)
-        shape = (at, width + len(loose))
-        return coo_matrix((np.concatenate(data), (np.concatenate(i), np.concatenate(j))), shape).tocsr(), np.zeros(at)
-
-    upper, zero = stacked(less)
-    fixed, none = stacked(equal)
-    bound = np.concatenate([np.full(width, LARGEST), np.ones(len(loose))])
-    lowest = np.concatenate([np.full(width, -LARGEST), np.zeros(len(loose))])
+    columns = width + len(loose)
+    upper, fixed = _stack(less, columns), _stack(equal, columns)
+    bound = np.concatenate([np.full(width, LARGEST_TWIST), np.ones(len(loose))])
+    lowest = np.concatenate([np.full(width, -LARGEST_TWIST), np.zeros(len(loose))])
     aim = np.concatenate([np.zeros(width), -np.ones(len(loose))])
-    found = linprog(
-        aim, A_ub=upper, b_ub=zero, A_eq=fixed, b_eq=none if fixed is not None else None,
-        bounds=np.stack([lowest, bound], axis=1), method="highs",
+    solved = linprog(
+        aim, A_ub=upper, b_ub=np.zeros(0 if upper is None else upper.shape[0]), A_eq=fixed,
+        b_eq=None if fixed is None else np.zeros(fixed.shape[0]), bounds=np.stack([lowest, bound], axis=1),
+        method="highs",
     )  # fmt: skip
-    if found.status != 0:
+    if solved.status != 0:
         return None
-    return tuple(loose[k] for k in np.flatnonzero(found.x[width:] > 0.5))
+    return tuple(loose[k] for k in np.flatnonzero(solved.x[width:] > 0.5))
+
+
+def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix | None:
+    """One matrix of items (rows (n, 6), first column of the first and of the second body's twist, column of the speed
+    s, −1 for none): the rows count the second body's twist less the first's, plus s. None without rows."""
+    from scipy.sparse import coo_matrix
+
+    data, i, j, count = [], [], [], 0
+    for rows, a, b, slack in items:
+        numbers = np.arange(count, count + len(rows))
+        for sign, column in ((-1.0, a), (1.0, b)):
+            if column >= 0:
+                data.append((sign * rows).ravel())
+                i.append(np.repeat(numbers, 6))
+                j.append(np.tile(np.arange(column, column + 6), len(rows)))
+        if slack >= 0:
+            data.append(np.ones(len(rows)))
+            i.append(numbers)
+            j.append(np.full(len(rows), slack))
+        count += len(rows)
+    if not count:
+        return None
+    return coo_matrix((np.concatenate(data), (np.concatenate(i), np.concatenate(j))), (count, columns)).tocsr()
 
 
 def _common(frames: Sequence[Frame]) -> Frame:
+    """One frame for contacts that have their own."""
     centres = np.array([frame.centre for frame in frames])
     whole = Frame.of(centres)
     length = whole.length if len(frames) > 1 and np.ptp(centres, axis=0).any() else 0.0
@@ -188,13 +188,13 @@ def _in_frame(link: Link, frame: Frame) -> Array:
         held, _ = np.linalg.qr(free, mode="complete") if free.shape[1] else (np.eye(6), None)
         rows: Array = held[:, free.shape[1] :].T
         return rows
-    return moved_rows(link.cone.rows, link.cone.frame, frame)
+    return rows_in_frame(link.cone.rows, link.cone.frame, frame)
 
 
-def moved_rows(rows: Array, own: Frame, frame: Frame) -> Array:
-    """Rows (n, 6) against twists scaled in `own` as rows against twists scaled in `frame`."""
+def rows_in_frame(rows: Array, source: Frame, frame: Frame) -> Array:
+    """Rows (n, 6) against twists scaled in `source` as rows against twists scaled in `frame`."""
     normals = rows[:, 3:]
-    moments = rows[:, :3] * own.length + cross(own.centre - frame.centre, normals)
+    moments = rows[:, :3] * source.length + cross(source.centre - frame.centre, normals)
     return np.hstack([moments / frame.length, normals])
 
 
@@ -249,7 +249,7 @@ def _sides(links: Sequence[Link], opened: Sequence[int], together: UnionFind) ->
         first, second = (together.find(end) for end in link.ends)
         ways = link.slides
         if ways is None:
-            ways = tuple(way for way in cone_of(link.cone, turns=False).releases if way.kind == "slide")
+            ways = tuple(way for way in leaving_of(link.cone, turns=False).releases if way.kind == "slide")
         slides = np.array([way.direction for way in ways]).reshape(-1, 3)
         extreme = all(way.extreme for way in ways)
         out[first].append(_Side(link.name, second, link.cone, -1.0, -slides, extreme))
@@ -288,9 +288,9 @@ def _pushed(start: int, rest: int, sides: dict[int, list[_Side]], direction: Arr
 
 def _in_the_way(side: _Side, direction: Array) -> bool:
     cone = side.cone
-    if len(cone.fixed) and float(np.abs(cone.fixed[:, 3:] @ direction).max()) > HELD:
+    if len(cone.fixed) and float(np.abs(cone.fixed[:, 3:] @ direction).max()) > CONE_HELD:
         return True
-    return bool((side.sign * (cone.rows[:, 3:] @ direction)).min() < -HELD)
+    return bool((side.sign * (cone.rows[:, 3:] @ direction)).min() < -CONE_HELD)
 
 
 def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]:
@@ -302,14 +302,14 @@ def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]
         slides = border[0].slides + 0.0
         order = np.lexsort(np.round(slides, 6).T)[::-1]
         return tuple(
-            released(np.concatenate([np.zeros(3), slide]), border[0].cone.frame, extreme=border[0].extreme)
+            release_of(np.concatenate([np.zeros(3), slide]), border[0].cone.frame, extreme=border[0].extreme)
             for slide in slides[order]
         )
     frame = border[0].cone.frame if len(border) == 1 else _common([side.cone.frame for side in border])
-    fixed = [moved_rows(side.cone.fixed, side.cone.frame, frame) for side in border]
-    rows = [side.sign * moved_rows(side.cone.rows, side.cone.frame, frame) for side in border]
-    held = reduced(unit_rows(np.concatenate(fixed)))[0].T
-    cone = Cone(held, within(unit_rows(np.concatenate(rows)), held), frame)
+    fixed = [rows_in_frame(side.cone.fixed, side.cone.frame, frame) for side in border]
+    rows = [side.sign * rows_in_frame(side.cone.rows, side.cone.frame, frame) for side in border]
+    held = opposed_and_preserved(unit_rows(np.concatenate(fixed)))[0].T
+    cone = Cone(held, rows_beside(unit_rows(np.concatenate(rows)), held), frame)
     if certainly_held([cone])[0]:
         return ()
-    return cone_of(cone, turns=False).releases
+    return leaving_of(cone, turns=False).releases

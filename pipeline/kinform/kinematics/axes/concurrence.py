@@ -11,19 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import FIRST_LOOK, LEAST_CROSSING, MET, RCOND
+from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["Locus", "meeting_shifts"]
-
-
-EXACT = 1e-15
-"""Relative to the coordinates: what meets within this meets as well as numbers can say."""
-SKEW = 0.05
-"""Lines at a smaller angle (sine) meet nowhere in particular."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,13 +56,13 @@ def meeting_shifts(loci: Sequence[Locus], sigmas: float) -> Array:
     for members, place in points:
         parts.setdefault(links.find(members[0]), []).append((members, place))
     for root in sorted(parts):
-        shifts += _agreed(loci, parts[root], sigmas)
+        shifts += _shifts(loci, parts[root], sigmas)
     return shifts
 
 
-def _agreed(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas: float) -> Array:
+def _shifts(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas: float) -> Array:
     """Shifts for these points, without the loci that would have to move by more than their uncertainty."""
-    if all(_distance(loci[k], place) <= EXACT * _reach(loci[k], place) for members, place in points for k in members):
+    if all(_distance(loci[k], place) <= MET * _reach(loci[k], place) for members, place in points for k in members):
         return np.zeros((len(loci), 3))
     while points:
         shifts = _solve(loci, points)
@@ -86,7 +80,7 @@ def _agreed(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas
 
 def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Array]]:
     """Points where two or more loci meet: their members, ascending, and a place near the point."""
-    found: list[tuple[set[int], Array, float]] = []
+    meetings: list[tuple[set[int], Array, float]] = []
     points_of: dict[int, set[int]] = {}
     for i, j in _neighbours(loci, sigmas):
         place, sine = _between(loci[i], loci[j])
@@ -97,16 +91,16 @@ def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Arr
             continue
         reach = 2.0 * spread / sine
         for n in sorted(points_of.get(i, set()) | points_of.get(j, set())):
-            members, other, wide = found[n]
+            members, other, wide = meetings[n]
             if np.linalg.norm(other - place) <= reach + wide:
                 members |= {i, j}
                 break
         else:
-            n = len(found)
-            found.append(({i, j}, place, reach))
+            n = len(meetings)
+            meetings.append(({i, j}, place, reach))
         for k in (i, j):
             points_of.setdefault(k, set()).add(n)
-    return [(sorted(members), place) for members, place, _ in found]
+    return [(sorted(members), place) for members, place, _ in meetings]
 
 
 def _neighbours(loci: Sequence[Locus], sigmas: float) -> list[tuple[int, int]]:
@@ -118,9 +112,8 @@ def _neighbours(loci: Sequence[Locus], sigmas: float) -> list[tuple[int, int]]:
     lines = _Lines(loci)
     pairs: set[tuple[int, int]] = set()
     for members in around.values():
-        own = np.array(members)
         for n, i in enumerate(members[:-1]):
-            others = own[n + 1 :]
+            others = np.array(members[n + 1 :])
             pairs.update((i, int(j)) for j in others[lines.may_meet(i, others, sigmas)])
     return sorted(pairs)
 
@@ -135,22 +128,22 @@ class _Lines:
         self.angle = np.array([locus.angle for locus in loci])
         self.position = np.array([locus.position for locus in loci])
 
-    def may_meet(self, i: int, others: NDArray[np.int64], sigmas: float) -> NDArray[np.bool_]:
+    def may_meet(self, i: int, others: Ints, sigmas: float) -> Flags:
         """Which of the others are not parallel to line i, and near enough to it."""
         a, b = self.axes[i], self.axes[others]
-        if not self.centre[i] and not self.centre[others].any() and float(np.abs(b - a).max()) < 0.5 * SKEW:
+        if not self.centre[i] and not self.centre[others].any() and float(np.abs(b - a).max()) < 0.5 * LEAST_CROSSING:
             return np.zeros(len(others), dtype=bool)
         normal = cross(b, a)
         sine = np.linalg.norm(normal, axis=1)
         apart = self.points[others] - self.points[i]
         along = np.linalg.norm(apart, axis=1)
-        skew = sine >= SKEW
+        skew = sine >= LEAST_CROSSING
         near = np.abs((apart * normal).sum(axis=1)) / np.where(skew, sine, 1.0)
         # the places where both are closest lie at most so far from the points of the lines
         reach = 2.0 * along / np.where(skew, sine, 1.0)
         spread = sigmas * (self.position[i] + self.position[others] + (self.angle[i] + self.angle[others]) * reach)
         # a centre and a line, or two centres, are few: no test
-        return np.asarray(self.centre[i] | self.centre[others] | (skew & (near <= 1.001 * spread)))
+        return np.asarray(self.centre[i] | self.centre[others] | (skew & (near <= FIRST_LOOK * spread)))
 
 
 def _reach(locus: Locus, place: Array) -> float:
@@ -171,7 +164,7 @@ def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
         return 0.5 * (centre.point + foot), 1.0
     normal = cross(a.axis, b.axis)
     sine = float(np.linalg.norm(normal))
-    if sine < SKEW:
+    if sine < LEAST_CROSSING:
         return None, sine
     apart = b.point - a.point
     along_a = float(cross(apart, b.axis) @ normal) / sine**2
@@ -202,12 +195,12 @@ def _solve(loci: Sequence[Locus], points: list[tuple[list[int], Array]]) -> Arra
     # eliminate the points, then take the least shifts that satisfy what is left
     free = matrix[:, width:]
     left, values, _ = np.linalg.svd(free, full_matrices=True)
-    rank = int(np.count_nonzero(values > 1e-9 * values[0]))
+    rank = int(np.count_nonzero(values > RCOND * values[0]))
     rest = left[:, rank:].T
     missed = rest @ right
-    if np.abs(missed).max(initial=0.0) <= 1e-15 * max(float(np.abs(loci[k].point).max()) for k in members):
+    if np.abs(missed).max(initial=0.0) <= MET * max(float(np.abs(loci[k].point).max()) for k in members):
         return shifts
-    solution = np.linalg.lstsq(rest @ matrix[:, :width], missed, rcond=1e-9)[0]
+    solution = np.linalg.lstsq(rest @ matrix[:, :width], missed, rcond=RCOND)[0]
     for k in members:
         shifts[k] = solution[start[k] : start[k] + len(bases[k])] @ bases[k]
     return shifts

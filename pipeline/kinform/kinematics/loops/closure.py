@@ -1,7 +1,7 @@
 """Mobility of the whole: loop closure in joint rates, block by block.
 
-Blocks of the graph of bodies and joints close independently; a bridge adds all its freedoms
-(design section 4; Davies 1981 for the closure equations). Definitions: see the results contract.
+Blocks of the graph of bodies and joints close independently; a bridge adds all its freedoms (Davies 1981 for the
+closure equations). The room's docstring has an example.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinform.foundation.graphs.graph import Forest, blocks, forest
-from kinform.kinematics.mobility.loops import FEW, Block, Solution, close_block
+from kinform.kinematics.constants import FEW_RATES
+from kinform.kinematics.loops.block_closure import Block, Solution, close_block
 from kinform.model.arrays import Array
 
 if TYPE_CHECKING:
@@ -65,13 +66,13 @@ class Closure:
 
 def close(
     nodes: int, edges: Sequence[tuple[int, int]], spaces: Sequence[Array], ground: int, size: float = 1.0,
-    doubts: Array | None = None, few: int = FEW,
+    doubts: Array | None = None, few: int = FEW_RATES,
 ) -> Closure:  # fmt: skip
     """Closure of joints between bodies 0 … nodes−1; `spaces[k]` is the (f, 6) twist basis of joint k,
     of its second body relative to its first, at the world's origin; `size` of the assembly (m);
     `doubts` (joints, 2): uncertainty of the directions (rad) and places (m) of the joints.
     Blocks of more than `few` joint rates are reduced loop by loop."""
-    offset = np.concatenate([[0], np.cumsum([len(s) for s in spaces])]).astype(int)
+    offset = np.cumsum([0, *map(len, spaces)])
     tree = forest(nodes, edges, ground)
     loose = sorted({r for r in tree.root if r != tree.root[ground]})
     prefer = _preference(edges, spaces, tree)
@@ -81,29 +82,23 @@ def close(
     for n, block in enumerate(blocks(nodes, edges)):
         columns = np.concatenate([np.arange(offset[k], offset[k + 1]) for k in block])
         closed.append(close_block(edges, spaces, block, prefer[columns], size, few, doubts))
-        for own in closed[-1].solutions:
-            solutions.append(Solution(int(columns[own.driver]), columns[own.columns], own.rates))
-            block_of.append(n)
-    for k in range(int(offset[-1]), int(offset[-1]) + 6 * len(loose)):
-        solutions.append(Solution(k, np.array([k]), np.ones(1)))
-        block_of.append(-1)
-    return Closure(
-        tuple(solutions), tuple(closed), tuple(block_of), tree, tuple(int(o) for o in offset), tuple(loose)
-    )  # fmt: skip
+        solutions += [Solution(int(columns[s.driver]), columns[s.columns], s.rates) for s in closed[-1].solutions]
+        block_of += [n] * len(closed[-1].solutions)
+    driven = range(int(offset[-1]), int(offset[-1]) + 6 * len(loose))
+    solutions += [Solution(k, np.array([k]), np.ones(1)) for k in driven]
+    block_of += [-1] * len(driven)
+    return Closure(tuple(solutions), tuple(closed), tuple(block_of), tree, tuple(offset.tolist()), tuple(loose))
 
 
 def _preference(edges: Sequence[tuple[int, int]], spaces: Sequence[Array], tree: Forest) -> Array:
     """(rates,) which rates rather drive: of joints with one freedom, near to ground, in their order."""
-    depth = [0] * len(tree.parent)
-    for node in tree.order:
-        if tree.parent[node] >= 0:
-            depth[node] = depth[tree.parent[node]] + 1
+    depth = tree.depths()
     rank = sorted(range(len(edges)), key=lambda k: (len(spaces[k]) > 1, min(depth[n] for n in edges[k]), k))
     place = np.empty(len(edges), dtype=np.int64)
     place[rank] = np.arange(len(edges))
     wide = max((len(s) for s in spaces), default=0) + 1
-    found = [wide * place[k] + np.arange(len(space)) for k, space in enumerate(spaces)]
-    return np.concatenate([np.zeros(0), *found])
+    ranks = [wide * place[k] + np.arange(len(space)) for k, space in enumerate(spaces)]
+    return np.concatenate([np.zeros(0), *ranks])
 
 
 def body_twists(closure: Closure, edges: Sequence[tuple[int, int]], spaces: Sequence[Array]) -> Array:

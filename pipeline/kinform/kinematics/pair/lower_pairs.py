@@ -13,16 +13,10 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, perpendicular
+from kinform.kinematics.constants import EXACT_PAIR, NEAR_PAIR
 from kinform.model.arrays import Array
 
 __all__ = ["JointForm", "name_space", "nearest_pair"]
-
-
-EXACT = 1e-6
-"""Twist spaces come out of snapped rows: what is zero is zero to rounding."""
-
-NEAR = 0.02
-"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +27,9 @@ class JointForm:
     axis: Array | None = None
     point: Array | None = None
     pitch: float | None = None
+    """m a turn."""
+    axis2: Array | None = None
+    """Of a universal joint: its axis in the second body."""
 
 
 def name_space(basis: Array, frame: Frame) -> JointForm:
@@ -41,16 +38,14 @@ def name_space(basis: Array, frame: Frame) -> JointForm:
     if freedoms == 0:
         return JointForm("fixed")
     _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-    turns = int(np.count_nonzero(values > EXACT))
+    turns = int(np.count_nonzero(values > EXACT_PAIR))
     mixed = basis @ right.T
     if freedoms == 1:
-        return _one(mixed[:, 0], turns, frame)
-    slides = mixed[3:, turns:]
+        return _one_freedom(mixed[:, 0], turns, frame)
     if turns == 1:
-        return _one_turn(mixed[:, 0], slides, frame)
-    if turns == 3 and freedoms == 3:
-        return _three_turns(basis, frame)
-    return JointForm("general")
+        return _one_turn(mixed[:, 0], mixed[3:, turns:], frame)
+    centre = _centre(basis, frame, 10.0 * EXACT_PAIR) if turns == 3 and freedoms == 3 else None
+    return JointForm("general") if centre is None else JointForm("spherical", None, centre)
 
 
 def nearest_pair(basis: Array, frame: Frame) -> Array | None:
@@ -63,20 +58,20 @@ def nearest_pair(basis: Array, frame: Frame) -> Array | None:
     if freedoms == 0:
         return None
     _, values, right = np.linalg.svd(basis[:3], full_matrices=True)
-    turns = int(np.count_nonzero(values > NEAR))
+    turns = int(np.count_nonzero(values > NEAR_PAIR))
     mixed = basis @ right.T
     if freedoms == 3 and turns == 3:
-        centre = _centre(basis, frame, NEAR)
+        centre = _centre(basis, frame, NEAR_PAIR)
         return None if centre is None else _orthonormal([rotation(e, centre, frame) for e in np.eye(3)])
     slides = mixed[3:, turns:]
     if turns == 0 or turns > 1:
         return None
     axis, point, lead = _axis_of(mixed[:, 0], frame)
     if freedoms == 1:
-        return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR * frame.length else None
-    if freedoms == 2 and np.linalg.norm(cross(axis, slides[:, 0])) < NEAR:
+        return _orthonormal([rotation(axis, point, frame)]) if abs(lead) < NEAR_PAIR * frame.length else None
+    if freedoms == 2 and np.linalg.norm(cross(axis, slides[:, 0])) < NEAR_PAIR:
         return _orthonormal([rotation(axis, point, frame), translation(axis)])
-    if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR:
+    if freedoms == 3 and np.linalg.norm(axis @ slides) < NEAR_PAIR:
         normal = cross(slides[:, 0], slides[:, 1])
         normal /= np.linalg.norm(normal)
         u, v = perpendicular(normal)
@@ -97,11 +92,11 @@ def _axis_of(twist: Array, frame: Frame) -> tuple[Array, Array, float]:
     return omega / math.sqrt(square), point, float(omega @ velocity) / square
 
 
-def _one(twist: Array, turns: int, frame: Frame) -> JointForm:
+def _one_freedom(twist: Array, turns: int, frame: Frame) -> JointForm:
     if turns == 0:
         return JointForm("prismatic", canonical(twist[3:]), frame.centre)
     axis, point, lead = _axis_of(twist, frame)
-    if abs(lead) < EXACT * frame.length:
+    if abs(lead) < EXACT_PAIR * frame.length:
         return JointForm("revolute", canonical(axis), point)
     return JointForm("screw", canonical(axis), point, 2.0 * math.pi * lead)
 
@@ -109,24 +104,18 @@ def _one(twist: Array, turns: int, frame: Frame) -> JointForm:
 def _one_turn(turn: Array, slides: Array, frame: Frame) -> JointForm:
     axis = turn[:3] / np.linalg.norm(turn[:3])
     along = np.linalg.norm(axis @ slides)
-    if slides.shape[1] == 1 and along > 1.0 - EXACT:
+    if slides.shape[1] == 1 and along > 1.0 - EXACT_PAIR:
         _, point, _ = _axis_of(turn, frame)
         return JointForm("cylindrical", canonical(axis), point)
-    if slides.shape[1] == 2 and along < EXACT:
+    if slides.shape[1] == 2 and along < EXACT_PAIR:
         return JointForm("planar", canonical(axis), frame.centre)
     return JointForm("general")
 
 
-def _three_turns(basis: Array, frame: Frame) -> JointForm:
-    """Spherical when one point rests under all three turns: v = ω × (c − o) for a single o."""
-    centre = _centre(basis, frame, 10.0 * EXACT)
-    return JointForm("general") if centre is None else JointForm("spherical", None, centre)
-
-
 def _centre(basis: Array, frame: Frame, tolerance: float) -> Array | None:
-    """The point (m) that rests under all three turns, or None if they miss it by more than `tolerance`."""
-    matrix = np.vstack([cross_matrix(basis[:3, k]) for k in range(3)])
-    right = np.concatenate([basis[3:, k] for k in range(3)])
+    """The point o (m) that rests under all three turns, v = ω × (c − o), or None if they miss it by more than
+    `tolerance`."""
+    matrix, right = cross_matrix(basis[:3].T).reshape(9, 3), basis[3:].T.ravel()
     offset, *_ = np.linalg.lstsq(matrix, right, rcond=None)
     if float(np.abs(matrix @ offset - right).max()) > tolerance:
         return None

@@ -13,32 +13,45 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.constants import HELD_TWICE, NAMED_CONTACT_AXIS, SITE_GAP
 from kinform.kinematics.pair.evidence import COAXIAL
-from kinform.kinematics.wording import Locked, locked, locked_text, rows_too_many
+from kinform.kinematics.wording import Locked, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Redundancy
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["redundancy_within", "sites"]
+__all__ = ["redundancy", "redundancy_within", "sites"]
 
 
-ROUGHLY = 0.02
-"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
-APART = 0.25
-"""Patches whose gap is below this share of the radius of the smaller one belong together."""
+def redundancy(
+    kind: str, text: str, rows: int, joints: Sequence[Joint], locked: Sequence[Locked], frame: Frame
+) -> Redundancy:
+    """A redundancy of these joints, with `locked` wrenches that are scaled in `frame`."""
+    wrenches = np.array([wrench for _, wrench in locked]).reshape(-1, 6)
+    # from (τ about the centre over the length; f) to (τ at the origin; f)
+    moment = wrenches[:, :3] * frame.length + cross(frame.centre, wrenches[:, 3:])
+    return Redundancy(
+        kind=kind,
+        text=text,
+        rows=rows,
+        joints=tuple(joint.name for joint in joints),
+        patches=tuple(sorted({index for joint in joints for index in joint.patches})),
+        directions=tuple(words for words, _ in locked),
+        wrenches=np.hstack([moment, wrenches[:, 3:]]),
+    )
 
 
 def redundancy_within(joint: Joint, patches: Sequence[Patch], tolerances: Tolerances) -> Redundancy | None:
     """What the separate contacts of one joint hold more than once; None where there is one, or nothing is."""
     if len(joint.patches) < 2:
         return None
-    own = [patches[k] for k in joint.patches]
-    groups = sites(own)
+    members = [patches[k] for k in joint.patches]
+    groups = sites(members)
     if len(groups) < 2:
         return None
-    frame = Frame.of(np.concatenate([p.points for p in own]))
-    spaces = [_held([own[k] for k in group], joint, frame, tolerances) for group in groups]
+    frame = Frame.of(np.concatenate([p.points for p in members]))
+    spaces = [_held([members[k] for k in group], joint, frame, tolerances) for group in groups]
     each = [space.shape[1] for space in spaces]
     needed = 6 - joint.freedoms
     excess = sum(each) - needed
@@ -50,20 +63,10 @@ def redundancy_within(joint: Joint, patches: Sequence[Patch], tolerances: Tolera
     which = f": {locked_text(plain)}" if named else ""
     held = str(each[0]) + " each" if len(set(each)) == 1 else " + ".join(map(str, each))
     text = (
-        f"{len(groups)} {_noun(joint, own)} {joint.name} hold {held} where {needed} would do: "
+        f"{len(groups)} {_noun(joint, members)} {joint.name} hold {held} where {needed} would do: "
         f"{rows_too_many(excess)}{which}{'; but the joint is ambiguous' if joint.status == 'ambiguous' else ''}"
     )
-    wrenches = np.array([wrench for _, wrench in named]).reshape(-1, 6)
-    moment = wrenches[:, :3] * frame.length + cross(frame.centre, wrenches[:, 3:])
-    return Redundancy(
-        kind="pair",
-        text=text,
-        rows=excess,
-        joints=(joint.name,),
-        patches=joint.patches,
-        directions=tuple(word for word, _ in named),
-        wrenches=np.hstack([moment, wrenches[:, 3:]]),
-    )
+    return redundancy("pair", text, excess, [joint], named, frame)
 
 
 def sites(patches: Sequence[Patch]) -> list[list[int]]:
@@ -75,7 +78,7 @@ def sites(patches: Sequence[Patch]) -> list[list[int]]:
         for n in range(k):
             if sets.find(k) == sets.find(n):
                 continue
-            near = APART * min(radii[k], radii[n])
+            near = SITE_GAP * min(radii[k], radii[n])
             if float(np.linalg.norm(centres[k] - centres[n])) - radii[k] - radii[n] > near:
                 continue
             if _distance(patches[k].points - centres[k], patches[n].points - centres[k]) <= near:
@@ -95,30 +98,30 @@ def _distance(a: Array, b: Array) -> float:
 def _held(patches: Sequence[Patch], joint: Joint, frame: Frame, tolerances: Tolerances) -> Array:
     """(6, r) orthonormal wrenches, scaled in `frame`, that a site on its own holds."""
     points = np.concatenate([p.points for p in patches])
-    own = Frame.of(points)
+    site = Frame.of(points)
     share = np.concatenate([np.sqrt(p.area) * p.weights / p.weights.sum() for p in patches])
-    weighted = rows(points, np.concatenate([p.normals for p in patches]), own) * np.sqrt(share / share.sum())[:, None]
-    free = span(scaled(joint.twists.T, own))
+    weighted = rows(points, np.concatenate([p.normals for p in patches]), site) * np.sqrt(share / share.sum())[:, None]
+    free = span(scaled(joint.twists.T, site))
     weighted = weighted - (weighted @ free) @ free.T
     _, values, right = np.linalg.svd(weighted, full_matrices=False)
     wrenches = right[values > tolerances.held]
-    # (τ about own centre over own length; f) in the common frame
+    # (τ about the site's centre over its length; f) in the common frame
     force = wrenches[:, 3:]
-    moment = wrenches[:, :3] * own.length + cross(own.centre - frame.centre, force)
+    moment = wrenches[:, :3] * site.length + cross(site.centre - frame.centre, force)
     return span(np.hstack([moment / frame.length, force]).T)
 
 
 def _twice(spaces: Sequence[Array]) -> list[Locked]:
     """What each site holds that those before it hold together."""
-    found: list[Locked] = []
+    twice: list[Locked] = []
     before = spaces[0]
     for space in spaces[1:]:
         left, cosines, _ = np.linalg.svd(space.T @ before, full_matrices=False)
-        both = space @ left[:, cosines > 1.0 - 1e-9]
+        both = space @ left[:, cosines > 1.0 - HELD_TWICE]
         if both.shape[1]:
-            found += locked(both.T, ROUGHLY)
+            twice += locked_wrenches(both.T, NAMED_CONTACT_AXIS)
         before = span(np.hstack([before, space]))
-    return found
+    return twice
 
 
 def _noun(joint: Joint, patches: Sequence[Patch]) -> str:

@@ -14,21 +14,16 @@ import numpy as np
 from kinform.design import Design
 from kinform.kinematics.bodies.classification import evidence_between
 from kinform.kinematics.bodies.extents import Extents
+from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES
 from kinform.kinematics.pair.decision import decide
-from kinform.kinematics.pair.evidence import Evidence
-from kinform.kinematics.pair.freedoms import fits
-from kinform.kinematics.pair.hypotheses import describe, motions
+from kinform.kinematics.pair.evidence import Evidence, Member
+from kinform.kinematics.pair.freedoms import preserved_motions
+from kinform.kinematics.pair.hypotheses import candidate_motions, motion_words
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
-__all__ = ["MOST_PATCHES", "Alternative", "Insight", "PatchRole", "insight"]
-
-
-MOST_PATCHES = 40
-"""Joints with more patches are not decided again without each."""
-MOST_SETS = 24
-"""Sets of several patches that are tried, the smallest area first."""
+__all__ = ["Alternative", "Insight", "PatchRole", "insight"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +87,8 @@ def insight(design: Design, name: str) -> Insight:
     assert kinematics is not None
     joint = next((j for j in kinematics.joints if j.name == name), None)
     if joint is None:
-        known = ", ".join(j.name for j in kinematics.joints) or "none"
-        raise KeyError(f"no joint is named {name!r}; there are: {known}")
+        names = ", ".join(j.name for j in kinematics.joints) or "none"
+        raise KeyError(f"no joint is named {name!r}; there are: {names}")
     tolerances = design.assembly.tolerances
     evidence = _evidence(design, joint)
     roles = _roles(design, joint, evidence)
@@ -116,7 +111,8 @@ def insight(design: Design, name: str) -> Insight:
     )
 
 
-def _members(design: Design, joint: Joint) -> list[tuple[int, Patch, bool]]:
+def _members(design: Design, joint: Joint) -> list[Member]:
+    """The patches between the two bodies."""
     assert design.kinematics is not None
     if design.contacts is None:
         return []
@@ -160,15 +156,15 @@ def _alternatives(design: Design, joint: Joint, evidence: Evidence | None) -> tu
     tolerances = design.assembly.tolerances
     sets: dict[frozenset[int], str] = {frozenset([item.index]): "" for item in evidence.items}
     wider: list[tuple[float, frozenset[int], str]] = []
-    candidates = motions(evidence, tolerances.alignment)
+    candidates = candidate_motions(evidence, tolerances.alignment)
     twists = np.array([m.twist for m in candidates]).reshape(-1, 6).T
-    preserved = fits(evidence, twists, evidence.rows @ twists)
+    preserved = preserved_motions(evidence, twists, evidence.rows @ twists)
     for k, motion in enumerate(candidates):
         broken = np.flatnonzero(~preserved[:, k])
         without = frozenset(evidence.items[i].index for i in broken)
         if 0 < len(broken) < len(evidence.items):
-            wider.append((float(evidence.areas[broken].sum()), without, describe(motion)))
-    for _, without, words in sorted(wider, key=lambda w: (w[0], sorted(w[1])))[:MOST_SETS]:
+            wider.append((float(evidence.areas[broken].sum()), without, motion_words(motion)))
+    for _, without, words in sorted(wider, key=lambda w: (w[0], sorted(w[1])))[:MOST_PATCH_SETS]:
         if not sets.get(without):
             sets[without] = words
     out, tried = [], 0
@@ -177,19 +173,18 @@ def _alternatives(design: Design, joint: Joint, evidence: Evidence | None) -> tu
         if rest is None:
             continue
         tried += 1
-        found = decide(rest, tolerances)
-        form = found.form
-        if (form.type, found.basis.shape[1]) != (joint.type, joint.freedoms) or found.status != joint.status:
-            order = tuple(sorted(without))
-            out.append(Alternative(order, words, form.type, found.basis.shape[1], found.status, form.axis))
-    remark = "" if len(wider) <= MOST_SETS else "not every set of patches that holds a motion was tried"
+        decision = decide(rest, tolerances)
+        form, freedoms = decision.form, decision.basis.shape[1]
+        if (form.type, freedoms, decision.status) != (joint.type, joint.freedoms, joint.status):
+            out.append(Alternative(tuple(sorted(without)), words, form.type, freedoms, decision.status, form.axis))
+    remark = "" if len(wider) <= MOST_PATCH_SETS else "not every set of patches that holds a motion was tried"
     return _least(out), tried, remark
 
 
-def _least(found: Sequence[Alternative]) -> tuple[Alternative, ...]:
+def _least(alternatives: Sequence[Alternative]) -> tuple[Alternative, ...]:
     """Without those that leave out more than another for the same outcome."""
     kept: list[Alternative] = []
-    for item in found:
+    for item in alternatives:
         smaller = (
             other for other in kept
             if set(other.without) < set(item.without)

@@ -11,23 +11,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.kinematics.mobility.loop_system import LoopSystem
+from kinform.kinematics.constants import (
+    BALANCED,
+    CLOSED,
+    COMPLEMENT,
+    MOST_PASSING,
+    MOST_TESTED_FREEDOMS,
+    RCOND,
+    SAME_LINE,
+    SLOW_ITERATIONS,
+)
+from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.model.arrays import Array
 
-__all__ = [
-    "BALANCED", "CLOSED", "TURNS", "UNBALANCED", "Pose", "complement", "first_order", "independent",
-    "second_order", "units",
-]  # fmt: skip
-
-
-CLOSED = 1e-7
-"""Relative: loops that miss by less than this per unit of step close, as in the first-order count."""
-BALANCED, UNBALANCED = 1e-6, 1e-4
-"""Curvature (of unit freedoms) that is rounding, and one that is not."""
-MOST = 40
-"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
-TURNS = 60
-"""Gauss–Newton iterations where convergence is linear: halving, at a simple singularity."""
+__all__ = ["Pose", "complement", "first_order", "independent", "second_order", "units"]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +74,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
     """
     count = pose.freedoms
     none = np.zeros((0, pose.free.shape[1]))
-    if count > MOST:
+    if count > MOST_TESTED_FREEDOMS:
         bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
         return ("extends" if bends.max() < BALANCED else "", none)
     i, j = np.triu_indices(count)
@@ -95,18 +92,18 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
         if values[0] > BALANCED or values[-1] < -BALANCED:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
-    for _ in range(TURNS):
+    for _ in range(SLOW_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
-        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=1e-9), value))
+        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
     left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
     passing = u[left < BALANCED]
     if not len(passing):
         return "obstructed", none
     distinct: list[Array] = []
-    for one in passing:
-        if len(distinct) < 12 and all(abs(float(one @ other)) < 0.999 for other in distinct):
-            distinct.append(one)
+    for direction in passing:
+        if len(distinct) < MOST_PASSING and all(abs(float(direction @ other)) < SAME_LINE for other in distinct):
+            distinct.append(direction)
     return "partly", np.array(distinct) @ pose.free
 
 
@@ -121,9 +118,10 @@ def complement(space: Array, part: Array) -> Array:
     if not len(part):
         return space
     _, values, right = np.linalg.svd(part @ space.T)
-    return right[int(np.count_nonzero(values > 1e-6)) :] @ space
+    return right[int(np.count_nonzero(values > COMPLEMENT)) :] @ space
 
 
 def units(vectors: Array) -> Array:
+    """The vectors (…, n) at length one."""
     out: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
     return out

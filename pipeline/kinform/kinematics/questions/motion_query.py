@@ -10,18 +10,16 @@ import numpy as np
 from kinform.design import Design
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.words import counted
+from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
-from kinform.kinematics.questions.ways import Attempt, attempt, pair_ways
-from kinform.kinematics.separation.releases import direction_words
+from kinform.kinematics.questions.motion_senses import Attempt, attempt, pair_ways
+from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["QueryAnswer", "QueryBlocker", "ask", "query"]
-
-
-THERE = 1e-3
-"""A unit twist is there when less than this of it lies outside the freedoms (scaled by the size)."""
+__all__ = ["QueryAnswer", "QueryBlocker", "query", "query_twist"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,15 +72,16 @@ def query(
         raise ValueError("the direction is zero")
     direction = direction / np.linalg.norm(direction)
     if turn is None:
-        return ask(design, a, b, np.concatenate([np.zeros(3), direction]), "slide")
+        return query_twist(design, a, b, np.concatenate([np.zeros(3), direction]), "slide")
     point = np.asarray(turn[1], dtype=float)
-    return ask(design, a, b, np.concatenate([direction, cross(point, direction)]), "turn")
+    return query_twist(design, a, b, np.concatenate([direction, cross(point, direction)]), "turn")
 
 
-def ask(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
+def query_twist(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
     """Whether b can move by the twist `motion` (ω; v at the world's origin) relative to a; `what` names it.
 
-    Raises KeyError for unknown names.
+    Asked are the freedoms of the pair's joint, those of the whole assembly, what blocks the joint, and, where all this
+    does not say yes, both senses of the motion against contacts that only push. Raises KeyError for unknown names.
     """
     kinematics = design.kinematics
     assert kinematics is not None
@@ -101,7 +100,7 @@ def ask(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer
     in_pair, residual = None, 1.0
     if joint is not None:
         residual = _outside(twist, joint.twists, frame)
-        in_pair = residual < THERE
+        in_pair = residual < MOTION_THERE
     outside = _in_assembly(design, first, second, twist, frame)
     left_out = {blocker.patch for blocker in joint.blockers} if joint is not None else set()
     blockers = _blockers([(k, p) for k, p in patches if in_pair is False or k in left_out], twist, frame)
@@ -109,15 +108,17 @@ def ask(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer
         in_pair = False if joint is not None else None
     every = design.contacts.patches if design.contacts is not None else ()
     ways = _pair_ways(kinematics, every, joint, first, motion, free=in_pair is True)
-    tries = _tries(kinematics, every, first, second, motion, frame, free=outside < THERE and not blockers)
-    in_all = all(one.possible for one in tries) if all(one.possible is not None for one in tries) else outside < THERE
+    tries = _tries(kinematics, every, first, second, motion, frame, free=outside < MOTION_THERE and not blockers)
+    in_all = (
+        all(one.possible for one in tries) if all(one.possible is not None for one in tries) else outside < MOTION_THERE
+    )
     in_all = in_all and not blockers
     culprits = tuple(_blocker(k, every[k]) for k in tries[0].patches)
     answer = QueryAnswer(
         (first, second), in_pair, in_all, residual if joint is not None else outside, blockers, "",
         ways, (tries[0].possible, tries[1].possible), culprits, tries[0].joints,
     )  # fmt: skip
-    freed = residual < THERE and joint is not None
+    freed = residual < MOTION_THERE and joint is not None
     return replace(answer, text=_sentence(a, b, what, motion, answer, freed=freed) + _doubt(design, joint))
 
 
@@ -128,7 +129,7 @@ def _pair_ways(
         return None
     if free:
         return True, True
-    return pair_ways(kinematics, patches, joint, motion if joint.bodies[0] == first else -motion, THERE)
+    return pair_ways(kinematics, patches, joint, motion if joint.bodies[0] == first else -motion, MOTION_THERE)
 
 
 def _tries(
@@ -144,7 +145,7 @@ def _tries(
     """The motion and its reverse in the assembly; nothing to try where its freedoms have it and nothing blocks."""
     if free and not any(joint.status == "blocked" for joint in kinematics.joints):
         return Attempt(True), Attempt(True)
-    tried = [attempt(kinematics, patches, first, second, sign * motion, frame, THERE) for sign in (1.0, -1.0)]
+    tried = [attempt(kinematics, patches, first, second, sign * motion, frame, MOTION_THERE) for sign in (1.0, -1.0)]
     return tried[0], tried[1]
 
 
@@ -155,8 +156,8 @@ def _body(design: Design, name: str) -> str:
     try:
         part = design.assembly.parts_of(name)[0]
     except KeyError:
-        known = sorted({*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)})
-        raise KeyError(f"no part, group or body {name!r}; there are: {', '.join(known)}") from None
+        names = sorted({*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)})
+        raise KeyError(f"no part, group or body {name!r}; there are: {', '.join(names)}") from None
     return design.kinematics.body_of(part).name
 
 
@@ -176,14 +177,14 @@ def _outside(twist: Array, space: Array, frame: Frame) -> float:
 
 def _in_assembly(design: Design, first: str, second: str, twist: Array, frame: Frame) -> float:
     assert design.kinematics is not None
-    index = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
     freedoms = design.kinematics.mobility.freedoms
     if len(freedoms) < design.kinematics.mobility.instantaneous:
         relative = Motions.of(design.kinematics).relative(first, second)
     else:
-        relative = freedoms[:, index[second]] - freedoms[:, index[first]]
+        node = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
+        relative = freedoms[:, node[second]] - freedoms[:, node[first]]
     size = np.linalg.norm(relative, axis=1) if len(relative) else np.zeros(0)
-    return _outside(twist, relative[size > 1e-9], frame)
+    return _outside(twist, relative[size > AT_REST], frame)
 
 
 def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> tuple[QueryBlocker, ...]:
@@ -192,7 +193,7 @@ def _blockers(patches: list[tuple[int, Patch]], twist: Array, frame: Frame) -> t
         speed = rows(patch.points, patch.normals, frame) @ twist
         arms = (patch.points - frame.centre) / frame.length
         motion = np.linalg.norm(twist[3:] + cross(twist[:3], arms), axis=1)
-        if np.sqrt((speed**2).mean()) > 0.02 * max(np.sqrt((motion**2).mean()), 1e-12):
+        if np.sqrt((speed**2).mean()) > BLOCKING_SPEED * max(np.sqrt((motion**2).mean()), 1e-12):
             out.append(_blocker(k, patch))
     return tuple(sorted(out, key=lambda q: (-q.area, q.patch)))
 
@@ -202,8 +203,9 @@ def _blocker(k: int, patch: Patch) -> QueryBlocker:
 
 
 def _sentence(a: str, b: str, what: str, motion: Array, answer: QueryAnswer, *, freed: bool) -> str:
+    """What contact does to the motion, and what is left of it in the assembly; `freed`: the joint has it."""
     blockers = answer.blocked_by
-    where = f"{len(blockers)} {'patch' if len(blockers) == 1 else 'patches'}"
+    where = counted(len(blockers), "patch", "patches")
     if answer.free_in_pair is None:
         head = f"{a} and {b} do not touch"
     elif freed:

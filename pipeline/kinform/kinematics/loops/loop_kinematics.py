@@ -17,11 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.algebra.displacements import carry, exponentials, inverse
+from kinform.foundation.algebra.screws import Frame, bracket, scaled
 from kinform.foundation.graphs.graph import forest
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import FAR_AXIS
+from kinform.model.arrays import Array, Flags
 
-__all__ = ["Closed", "LoopSystem", "bracket", "exponentials", "inverse", "loop_system"]
+__all__ = ["Closed", "LoopSystem", "loop_system"]
 
 Index = NDArray[np.intp]
 
@@ -51,7 +53,7 @@ class LoopSystem:
     """(joints,) first body of each joint."""
     levels: tuple[tuple[Index, Index], ...]
     """Coordinates that come first, second, … in their joints, with those joints."""
-    depths: tuple[tuple[Index, Index, Index, NDArray[np.bool_]], ...]
+    depths: tuple[tuple[Index, Index, Index, Flags], ...]
     """By distance from the root: bodies, their parents, the joints between, whether these point at the root."""
     chords: tuple[Index, Index, Index]
     """Joints that close the loops, with their first and second bodies."""
@@ -71,9 +73,9 @@ class LoopSystem:
 
     def close(self, q: Array) -> Closed:
         """Residual and Jacobian of the loops at configurations (D, n)."""
-        bodies, inside, across = self._placed(q)
+        bodies, inside, across = self._displacements(q)
         batch = len(q)
-        columns = _carried(bodies[:, self.first[self.joint]] @ inside, self.screws)
+        columns = carry(bodies[:, self.first[self.joint]] @ inside, self.screws)
         members, a, b = self.chords
         gap = bodies[:, a] @ across[:, members] @ inverse(bodies[:, b])
         turn = 0.5 * (gap[..., :3, :3] - np.swapaxes(gap[..., :3, :3], -1, -2))
@@ -90,9 +92,9 @@ class LoopSystem:
 
     def bodies(self, q: Array) -> Array:
         """(D, N, 4, 4) displacement of each body from the reference pose, at configurations (D, n)."""
-        return self._placed(q)[0]
+        return self._displacements(q)[0]
 
-    def _placed(self, q: Array) -> tuple[Array, Array, Array]:
+    def _displacements(self, q: Array) -> tuple[Array, Array, Array]:
         """Displacements of bodies, of coordinates within their joints, and across joints."""
         batch, joints = len(q), len(self.first)
         steps = exponentials(self.screws, q)
@@ -131,36 +133,26 @@ def loop_system(
     number = {body: i for i, body in enumerate(sorted({n for edge in edges for n in edge}))}
     inner = [(number[a], number[b]) for a, b in edges]
     sizes = [len(space) for space in spaces]
-    start = np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+    start = np.cumsum([0, *sizes])
     total = int(start[-1])
-    twists = np.concatenate([np.zeros((0, 6)), *spaces])
-    local = scaled(twists.T, frame).T / frame.length
-    turning = np.linalg.norm(local[:, :3], axis=1)
-    sliding = np.linalg.norm(local[:, 3:], axis=1)
-    turns = turning > 1e-9 * sliding
-    norms = np.where(turns, turning, sliding)
-    local = local / np.maximum(norms, 1e-300)[:, None]
-    local[~turns, :3] = 0.0
+    screws, turns = _unit_screws(np.concatenate([np.zeros((0, 6)), *spaces]), frame)
     held = np.zeros((len(ties), total))
     for line, (a, b, ratio) in zip(held, ties, strict=True):
         # a coordinate of one is so much of the joint's own value
         for k, factor in ((a, 1.0), (b, -ratio)):
-            line[start[k]] = (
-                factor
-                * (1.0 if turns[start[k]] else frame.length)
-                / np.linalg.norm(spaces[k][0, :3] if turns[start[k]] else spaces[k][0, 3:])
-            )
+            twist, turning = spaces[k][0], turns[start[k]]
+            length = 1.0 if turning else frame.length
+            line[start[k]] = factor * length / np.linalg.norm(twist[:3] if turning else twist[3:])
         line /= np.abs(line).max()
     tree = forest(len(number), inner, 0)
+    depth = tree.depths()
     reach = np.zeros((len(number), total))
-    depth = [0] * len(number)
     layers: dict[int, list[tuple[int, int, int, bool]]] = {}
     for node in tree.order[1:]:
         k, parent = tree.edge[node], tree.parent[node]
         backward = inner[k][1] != node
         reach[node] = reach[parent]
         reach[node, start[k] : start[k + 1]] = -1.0 if backward else 1.0
-        depth[node] = depth[parent] + 1
         layers.setdefault(depth[node], []).append((node, parent, k, backward))
     used = set(tree.edge)
     chords = [k for k in range(len(inner)) if k not in used]
@@ -172,16 +164,12 @@ def loop_system(
     first = np.array([a for a, _ in inner], dtype=np.intp)
     earlier = (joint[:, None] == joint[None]) & (place[None] < place[:, None])
     return LoopSystem(
-        screws=local,
+        screws=screws,
         joint=joint,
         first=first,
         levels=tuple((np.flatnonzero(place == n), joint[place == n]) for n in range(max(sizes, default=0))),
         depths=tuple(_layer(layers[d]) for d in sorted(layers)),
-        chords=(
-            np.array(chords, dtype=np.intp),
-            np.array([inner[k][0] for k in chords], dtype=np.intp),
-            np.array([inner[k][1] for k in chords], dtype=np.intp),
-        ),
+        chords=_columns([(k, *inner[k]) for k in chords]),
         loops=loops,
         ahead=reach[first[joint]] + earlier,
         reach=reach,
@@ -189,62 +177,22 @@ def loop_system(
     )
 
 
-def _layer(rows: Sequence[tuple[int, int, int, bool]]) -> tuple[Index, Index, Index, NDArray[np.bool_]]:
-    nodes, parents, members, backward = zip(*rows, strict=True)
-    return (
-        np.array(nodes, dtype=np.intp),
-        np.array(parents, dtype=np.intp),
-        np.array(members, dtype=np.intp),
-        np.array(backward, dtype=np.bool_),
-    )
+def _unit_screws(twists: Array, frame: Frame) -> tuple[Array, Flags]:
+    """Unit screws (n, 6) of twists (n, 6; ω; v at the world's origin) in the frame's units, and which of them turn."""
+    local = scaled(twists.T, frame).T / frame.length
+    turning = np.linalg.norm(local[:, :3], axis=1)
+    sliding = np.linalg.norm(local[:, 3:], axis=1)
+    turns = turning > FAR_AXIS * sliding
+    local = local / np.maximum(np.where(turns, turning, sliding), 1e-300)[:, None]
+    local[~turns, :3] = 0.0
+    return local, turns
 
 
-def exponentials(screws: Array, q: Array) -> Array:
-    """(D, n, 4, 4) exp(S q) of unit screws (n, 6), |ω| 1 or 0, by Rodrigues' formula; a slide has no ω and
-    falls out of the same terms."""
-    spin = _skew(screws[:, :3])
-    twice = spin @ spin
-    v = screws[:, 3:]
-    s, c = np.sin(q)[..., None], 1.0 - np.cos(q)[..., None]
-    out = np.zeros((*q.shape, 4, 4))
-    out[..., :3, :3] = np.eye(3) + s[..., None] * spin + c[..., None] * twice
-    along = q[..., None]
-    out[..., :3, 3] = along * v + c * (spin @ v[..., None])[..., 0] + (along - s) * (twice @ v[..., None])[..., 0]
-    out[..., 3, 3] = 1.0
-    return out
+def _layer(rows: Sequence[tuple[int, int, int, bool]]) -> tuple[Index, Index, Index, Flags]:
+    nodes, parents, members, backward = np.array(rows, dtype=np.intp).T
+    return nodes, parents, members, backward.astype(np.bool_)
 
 
-def _skew(w: Array) -> Array:
-    out = np.zeros((*w.shape[:-1], 3, 3))
-    out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = w[..., 0], w[..., 1], w[..., 2]
-    return out - np.swapaxes(out, -1, -2)
-
-
-def inverse(pose: Array) -> Array:
-    """Inverses of poses (…, 4, 4)."""
-    turned = np.swapaxes(pose[..., :3, :3], -1, -2)
-    out = np.zeros_like(pose)
-    out[..., :3, :3] = turned
-    out[..., :3, 3] = -(turned @ pose[..., :3, 3:])[..., 0]
-    out[..., 3, 3] = 1.0
-    return out
-
-
-def _carried(pose: Array, screws: Array) -> Array:
-    """Adjoint of each pose (…, n, 4, 4) on its screw (n, 6)."""
-    omega = (pose[..., :3, :3] @ screws[:, :3, None])[..., 0]
-    v = (pose[..., :3, :3] @ screws[:, 3:, None])[..., 0]
-    return np.concatenate([omega, v + _cross(pose[..., :3, 3], omega)], axis=-1)
-
-
-def bracket(a: Array, b: Array) -> Array:
-    """Lie bracket [a, b] of twists (…, 6): the rate of b when it is carried along by a."""
-    turn = _cross(a[..., :3], b[..., :3])
-    return np.concatenate([turn, _cross(a[..., :3], b[..., 3:]) + _cross(a[..., 3:], b[..., :3])], axis=-1)
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Cross product over last axes of three; `np.cross` takes several times as long on few vectors."""
-    a0, a1, a2 = a[..., 0], a[..., 1], a[..., 2]
-    b0, b1, b2 = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], axis=-1)
+def _columns(rows: Sequence[tuple[int, int, int]]) -> tuple[Index, Index, Index]:
+    first, second, third = np.array(rows, dtype=np.intp).reshape(-1, 3).T
+    return first, second, third

@@ -15,44 +15,38 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
-from kinform.kinematics.mobility.closure import Closure
-from kinform.kinematics.mobility.loops import CLOSED, FEW, Block, axes_frame, loop_matrix
-from kinform.kinematics.wording import Locked, axis_word, locked, locked_text, rows_too_many
+from kinform.kinematics.constants import CLOSED, EXACT_WRENCH, FEW_RATES, MOST_NAMED, MOST_SORTED_LOOPS
+from kinform.kinematics.loops.block_closure import Block, axes_frame, loop_matrix
+from kinform.kinematics.loops.closure import Closure
+from kinform.kinematics.mobility.joint_redundancy import redundancy
+from kinform.kinematics.wording import Locked, axis_word, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
 __all__ = ["redundancies_of_loops"]
 
 
-EXACT = 1e-6
-MANY = 60
-"""Up to so many loops in a block, what they hold together is told apart."""
-NAMED = 12
-"""So many bodies or joints are named in a text."""
-
-
-def redundancies_of_loops(
-    joints: Sequence[Joint], edges: Sequence[tuple[int, int]], closure: Closure, size: float
-) -> tuple[Redundancy, ...]:
-    """What is held more than once in the loops, block by block. `edges`: bodies of the joints; `size` (m)."""
+def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float) -> tuple[Redundancy, ...]:
+    """What is held more than once in the loops of the joints, block by block of their `closure`; `size` of the assembly
+    (m). Loops that hold too much alone are told first; what is left is looked for in sets of joints."""
     free = np.bincount([b for b in closure.block_of if b >= 0], minlength=len(closure.blocks))
     out: list[Redundancy] = []
     for block, mobility in zip(closure.blocks, free, strict=True):
-        own = [joints[k] for k in block.edges]
-        count = 6 * len(block.cycles) - sum(j.freedoms for j in own) + int(mobility)
+        members = [joints[k] for k in block.edges]
+        rates = sum(joint.freedoms for joint in members)
+        count = 6 * len(block.cycles) - rates + int(mobility)
         if count <= 0:
             continue
-        found = [_of_loop(own, cycle, size) for cycle in block.cycles]
-        alone = [one for one in found if one is not None]
-        rest = count - sum(one.rows for one in alone)
+        alone = [item for item in (_of_loop(members, cycle, size) for cycle in block.cycles) if item is not None]
+        rest = count - sum(item.rows for item in alone)
         if rest < 0:
-            out.append(_of_block(own, count))
+            out.append(_of_block(members, count))
             continue
         out += alone
-        if rest and len(block.cycles) <= MANY and sum(j.freedoms for j in own) <= FEW:
-            out += _together(own, block, count, rest)
+        if rest and len(block.cycles) <= MOST_SORTED_LOOPS and rates <= FEW_RATES:
+            out += _together(members, block, count, rest)
         elif rest:
-            out.append(_of_block(own, rest))
+            out.append(_of_block(members, rest))
     return tuple(out)
 
 
@@ -69,22 +63,14 @@ def _of_loop(joints: Sequence[Joint], cycle: Cycle, size: float) -> Redundancy |
     rank = int(np.count_nonzero(values > CLOSED * values[0])) if len(values) else 0
     if rank == 6:
         return None
-    space = locked(left[:, rank:].T)
-    bodies = _walked(joints, cycle)
+    space = locked_wrenches(left[:, rank:].T)
+    bodies = [joints[k].bodies[0 if sign > 0 else 1] for k, sign in cycle]
+    names = "-".join(bodies)
+    if len(bodies) > MOST_NAMED:
+        names = "-".join(bodies[: MOST_NAMED - 1]) + f"-… ({len(bodies)} bodies)"
     why = _reason(space, frame)
-    text = f"loop {_joined(bodies)}{why}: {rows_too_many(6 - rank)}: {locked_text([word for word, _ in space])}"
-    return _made("loop", text, 6 - rank, members, space, frame)
-
-
-def _walked(joints: Sequence[Joint], cycle: Cycle) -> list[str]:
-    """Bodies of the loop in the order of walking."""
-    return [joints[k].bodies[0 if sign > 0 else 1] for k, sign in cycle]
-
-
-def _joined(names: Sequence[str]) -> str:
-    if len(names) <= NAMED:
-        return "-".join(names)
-    return "-".join(names[: NAMED - 1]) + f"-… ({len(names)} bodies)"
+    text = f"loop {names}{why}: {rows_too_many(6 - rank)}: {locked_text([word for word, _ in space])}"
+    return redundancy("loop", text, 6 - rank, members, space, frame)
 
 
 def _reason(space: Sequence[Locked], frame: Frame) -> str:
@@ -97,7 +83,7 @@ def _reason(space: Sequence[Locked], frame: Frame) -> str:
         return " gives way to nothing"
     if len(moments) == 3:
         return " cannot turn" if not len(forces) else " only slides"
-    if len(forces) == 1 and len(moments) == 2 and np.abs(moments @ forces[0, 3:]).max() < EXACT:
+    if len(forces) == 1 and len(moments) == 2 and np.abs(moments @ forces[0, 3:]).max() < EXACT_WRENCH:
         return f" is planar, normal to {axis_word(forces[0, 3:])}"
     if len(forces) == 3 and not len(moments) and _concurrent(forces):
         return " is spherical: its axes meet in one point"
@@ -113,11 +99,16 @@ def _concurrent(forces: Array) -> bool:
     matrix = np.vstack([-cross_matrix(f) for f in forces[:, 3:]])
     right = forces[:, :3].ravel()
     point = np.linalg.lstsq(matrix, right, rcond=None)[0]
-    return bool(np.abs(matrix @ point - right).max() < 10.0 * EXACT)
+    return bool(np.abs(matrix @ point - right).max() < 10.0 * EXACT_WRENCH)
 
 
 def _together(joints: Sequence[Joint], block: Block, count: int, rest: int) -> list[Redundancy]:
-    """Self-stresses, `count` in all, that no loop of the basis has alone (`rest`), in minimal sets of joints."""
+    """Self-stresses, `count` in all, that no loop of the basis has alone (`rest`), in minimal sets of joints.
+
+    A combination z of the self-stresses gives each loop a wrench, and each joint the sum of those of its loops, which is
+    what it bears. Those of single loops are taken first. Then, as long as some are left, joint after joint is asked to
+    bear nothing, wherever a combination is left that is new: what still bears is a minimal set.
+    """
     spaces = [joint.twists for joint in joints]
     norms = np.concatenate([np.linalg.norm(scaled(s.T, block.frame), axis=0) for s in spaces])
     matrix = loop_matrix(spaces, block.cycles, block.frame, norms)
@@ -127,22 +118,22 @@ def _together(joints: Sequence[Joint], block: Block, count: int, rest: int) -> l
     for row, cycle in enumerate(block.cycles):
         for k, sign in cycle:
             bears[k] += sign * stress[:, row]
-    known = np.zeros((count, 0))
+    taken = np.zeros((count, 0))
     for row in range(len(block.cycles)):
         others = np.delete(stress, row, axis=1).reshape(count, -1)
-        known = span(np.hstack([known, _vanishing(np.eye(count), others)]), EXACT)
-    if known.shape[1] != count - rest:
+        taken = span(np.hstack([taken, _vanishing(np.eye(count), others)]), EXACT_WRENCH)
+    if taken.shape[1] != count - rest:
         return [_of_block(joints, rest)]
     out = []
-    while known.shape[1] < count:
+    while taken.shape[1] < count:
         chosen = np.eye(count)
         for k in reversed(range(len(joints))):
             fewer = _vanishing(chosen, bears[k])
-            if fewer.shape[1] and np.abs(fewer - known @ (known.T @ fewer)).max() > EXACT:
+            if fewer.shape[1] and np.abs(fewer - taken @ (taken.T @ fewer)).max() > EXACT_WRENCH:
                 chosen = fewer
-        members = [k for k in range(len(joints)) if np.abs(chosen.T @ bears[k]).max() > EXACT]
-        new = _beyond(chosen, known)
-        known = span(np.hstack([known, chosen]), EXACT)
+        members = [k for k in range(len(joints)) if np.abs(chosen.T @ bears[k]).max() > EXACT_WRENCH]
+        new = _beyond(chosen, taken)
+        taken = span(np.hstack([taken, chosen]), EXACT_WRENCH)
         out.append(_circuit([joints[k] for k in members], bears[members[0]].T @ new, new.shape[1], block.frame))
     return out
 
@@ -152,55 +143,36 @@ def _vanishing(space: Array, bears: Array) -> Array:
     if not space.shape[1]:
         return space
     left, values, _ = np.linalg.svd(space.T @ bears, full_matrices=True)
-    rank = int(np.count_nonzero(values > EXACT))
+    rank = int(np.count_nonzero(values > EXACT_WRENCH))
     rest: Array = space @ left[:, rank:]
     return rest
 
 
-def _beyond(space: Array, known: Array) -> Array:
-    """Orthonormal basis of what the columns span beyond those that are known."""
-    rest = space - known @ (known.T @ space)
+def _beyond(space: Array, taken: Array) -> Array:
+    """Orthonormal basis of what the columns span beyond those that are taken."""
+    rest = space - taken @ (taken.T @ space)
     left, values, _ = np.linalg.svd(rest, full_matrices=False)
-    basis: Array = left[:, values > EXACT]
+    basis: Array = left[:, values > EXACT_WRENCH]
     return basis
 
 
 def _circuit(joints: Sequence[Joint], first: Array, rows: int, frame: Frame) -> Redundancy:
     """`first` (6, rows): what the first of the joints bears."""
     values = np.linalg.svd(first, compute_uv=False)
-    full = len(values) == rows and bool(values.min() > EXACT)
-    space = locked(first.T) if full else []
-    names = [str(joint.name) for joint in joints]
-    which = f": {locked_text([word for word, _ in space])}, as {names[0]} bears it" if full else ""
-    text = f"joints {_named(names)} hold each other: {rows_too_many(rows)}{which}"
-    return _made("loops", text, rows, joints, space, frame)
+    full = len(values) == rows and bool(values.min() > EXACT_WRENCH)
+    space = locked_wrenches(first.T) if full else []
+    which = f": {locked_text([word for word, _ in space])}, as {joints[0].name} bears it" if full else ""
+    text = f"joints {_names(joints)} hold each other: {rows_too_many(rows)}{which}"
+    return redundancy("loops", text, rows, joints, space, frame)
 
 
 def _of_block(joints: Sequence[Joint], rows: int) -> Redundancy:
+    text = f"joints {_names(joints)} hold each other in many loops: {rows_too_many(rows)}, not told apart"
+    return redundancy("block", text, rows, joints, [], Frame(np.zeros(3), 1.0))
+
+
+def _names(joints: Sequence[Joint]) -> str:
     names = [str(joint.name) for joint in joints]
-    text = f"joints {_named(names)} hold each other in many loops: {rows_too_many(rows)}, not told apart"
-    return _made("block", text, rows, joints, [], Frame(np.zeros(3), 1.0))
-
-
-def _named(names: Sequence[str]) -> str:
-    if len(names) <= NAMED:
+    if len(names) <= MOST_NAMED:
         return ", ".join(names)
-    return ", ".join(names[: NAMED - 1]) + f", … ({len(names)} joints)"
-
-
-def _made(
-    kind: str, text: str, rows: int, joints: Sequence[Joint], space: Sequence[Locked], frame: Frame
-) -> Redundancy:
-    patches = sorted({index for joint in joints for index in joint.patches})
-    wrenches = np.array([wrench for _, wrench in space]).reshape(-1, 6)
-    # from (τ_c / L; f) to (τ at the origin; f)
-    moment = wrenches[:, :3] * frame.length + cross(frame.centre, wrenches[:, 3:])
-    return Redundancy(
-        kind=kind,
-        text=text,
-        rows=rows,
-        joints=tuple(joint.name for joint in joints),
-        patches=tuple(patches),
-        directions=tuple(word for word, _ in space),
-        wrenches=np.hstack([moment, wrenches[:, 3:]]),
-    )
+    return ", ".join(names[: MOST_NAMED - 1]) + f", … ({len(names)} joints)"

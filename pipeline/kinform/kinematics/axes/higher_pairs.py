@@ -16,22 +16,15 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics.mobility.closure import body_twists, close
+from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, SIGMAS
+from kinform.kinematics.loops.closure import body_twists
+from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.certainty import TOUCHING, meets
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint
 
-__all__ = ["agree", "is_higher"]
-
-
-SIGMAS = 3.0
-DOUBTFUL = 3.0
-"""A motion that the rows miss by less than this many times what is allowed is doubtful."""
-BENT = 0.1
-"""Share of a motion that may lie outside the space of the pair that is turned to contain it."""
-AT_REST = 1e-9
-"""Relative speed below which a motion does not concern a pair."""
+__all__ = ["align_higher_pairs", "is_higher"]
 
 
 def is_higher(joint: Joint, patches: Sequence[Patch]) -> bool:
@@ -56,45 +49,40 @@ class _Pair:
     position: Array
 
 
-def agree(
-    bodies: Sequence[Body], joints: Sequence[Joint], patches: Sequence[Patch], size: float, alignment: float
-) -> tuple[Joint, ...]:
-    """The joints, with the twists of higher pairs that close loops made consistent; `alignment` (rad) is the
-    angle up to which axes count as parallel."""
-    touching = [k for k, joint in enumerate(joints) if is_higher(joint, patches) and joint.status == "determined"]
-    if not touching:
-        return tuple(joints)
-    index = {body.name: k for k, body in enumerate(bodies)}
-    others = [joint for k, joint in enumerate(joints) if k not in set(touching)]
-    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in others]
-    ground = next(k for k, body in enumerate(bodies) if body.ground)
-    closure = close(len(bodies), edges, [j.twists for j in others], ground, size)
-    twists = body_twists(closure, edges, [j.twists for j in others])
+def align_higher_pairs(graph: JointGraph, patches: Sequence[Patch], size: float, alignment: float) -> tuple[Joint, ...]:
+    """The joints, with the twists of higher pairs that close loops made consistent.
+
+    `size` of the assembly (m); `alignment` (rad): the angle up to which axes count as parallel.
+    """
+    joints = list(graph.joints)
+    higher = [k for k, joint in enumerate(joints) if is_higher(joint, patches) and joint.status == "determined"]
+    if not higher:
+        return graph.joints
+    others = JointGraph(graph.bodies, tuple(joint for k, joint in enumerate(joints) if k not in set(higher)))
+    closure = others.close(size)
+    twists = body_twists(closure, others.edges, others.spaces)
     pairs = []
-    for k in touching:
-        a, b = (index[name] for name in joints[k].bodies)
+    for k in higher:
+        a, b = graph.edges[k]
         if closure.tree.root[a] == closure.tree.root[b] and len(twists):
-            pairs.append(_pair(k, joints[k], twists[:, b] - twists[:, a], patches, bodies, alignment))
-    out = list(joints)
+            touching = [patches[p] for p in joints[k].patches if patches[p].kind in TOUCHING]
+            pairs.append(_pair(k, graph.bodies[a], twists[:, b] - twists[:, a], touching, alignment))
     for group, motions in _groups(pairs, len(twists)):
-        kept, doubt = _preserved([pairs[g] for g in group], motions)
-        for g in group:
-            pair = pairs[g]
+        preserved, doubt = _preserved_motions([pairs[g] for g in group], motions)
+        for pair in (pairs[g] for g in group):
             if doubt:
-                out[pair.index] = replace(out[pair.index], status="ambiguous", reason=doubt)
-            elif len(kept):
-                out[pair.index] = _turned(out[pair.index], kept @ pair.relative[motions], pair.frame)
-    return tuple(out)
+                joints[pair.index] = replace(joints[pair.index], status="ambiguous", reason=doubt)
+            elif len(preserved):
+                relative = preserved @ pair.relative[motions]
+                joints[pair.index] = _turn_space(joints[pair.index], relative, pair.frame)
+    return tuple(joints)
 
 
-def _pair(
-    index: int, joint: Joint, relative: Array, patches: Sequence[Patch], bodies: Sequence[Body], alignment: float
-) -> _Pair:
-    first = next(body for body in bodies if body.name == joint.bodies[0])
-    own = [patches[k] for k in joint.patches if patches[k].kind in TOUCHING]
-    points = np.concatenate([p.points for p in own])
-    normals = np.concatenate([p.normals if p.parts[0] in first.parts else -p.normals for p in own])
-    counts = [len(p.points) for p in own]
+def _pair(index: int, first: Body, relative: Array, touching: Sequence[Patch], alignment: float) -> _Pair:
+    """The joint of this index, whose first body is `first`, with its patches along points and lines."""
+    points = np.concatenate([p.points for p in touching])
+    normals = np.concatenate([p.normals if p.parts[0] in first.parts else -p.normals for p in touching])
+    counts = [len(p.points) for p in touching]
     slip = relative[None, :, 3:] + cross(relative[None, :, :3], points[:, None])
     return _Pair(
         index=index,
@@ -102,8 +90,8 @@ def _pair(
         frame=Frame.of(points),
         rows=np.einsum("nmk,nk->nm", slip, normals),
         slip=slip,
-        angle=np.repeat([alignment + SIGMAS * p.uncertainty[0] for p in own], counts),
-        position=np.repeat([SIGMAS * p.uncertainty[1] + p.chord for p in own], counts),
+        angle=np.repeat([alignment + SIGMAS * p.uncertainty[0] for p in touching], counts),
+        position=np.repeat([SIGMAS * p.uncertainty[1] + p.chord for p in touching], counts),
     )
 
 
@@ -113,9 +101,8 @@ def _groups(pairs: Sequence[_Pair], count: int) -> list[tuple[list[int], list[in
     for g, pair in enumerate(pairs):
         speed = np.linalg.norm(pair.slip, axis=2).max(axis=0) if len(pair.slip) else np.zeros(count)
         turn = pair.frame.length * np.linalg.norm(pair.relative[:, :3], axis=1)
-        large = speed + turn
-        mine = np.flatnonzero(large > AT_REST * max(float(large.max(initial=0.0)), 1e-300))
-        for motion in mine.tolist():
+        size = speed + turn
+        for motion in np.flatnonzero(size > AT_REST * max(float(size.max(initial=0.0)), 1e-300)).tolist():
             sets.union(g, len(pairs) + motion)
     out: dict[int, tuple[list[int], list[int]]] = {}
     for g in range(len(pairs)):
@@ -127,8 +114,12 @@ def _groups(pairs: Sequence[_Pair], count: int) -> list[tuple[list[int], list[in
     return list(out.values())
 
 
-def _preserved(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Array, str]:
-    """(r, motions) combinations that all rows preserve within their uncertainty, and what is doubtful about that."""
+def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Array, str]:
+    """(r, motions) combinations that all rows preserve within their uncertainty, and what is doubtful about that.
+
+    Combinations are tried in the order of their singular values, the best preserved first, up to the first that some
+    row misses by more than its uncertainty allows.
+    """
     rows = np.concatenate([pair.rows[:, motions] for pair in pairs])
     slip = np.concatenate([pair.slip[:, motions] for pair in pairs])
     speed = np.maximum(np.linalg.norm(slip, axis=2).max(axis=0), 1e-300)
@@ -143,20 +134,20 @@ def _preserved(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Array, str]:
             missed = np.abs(pair.rows[:, motions] @ combination)
             share = max(share, float((missed / np.maximum(allowed, 1e-300)).max()) if missed.max() > 0.0 else 0.0)
         if share > 1.0:
-            doubtful = share < DOUBTFUL
+            doubtful = share < DOUBTFUL_MOTION
             return kept, "teeth or cams hold a motion by hardly more than their uncertainty" if doubtful else ""
         kept = np.vstack([kept, combination])
     return kept, ""
 
 
-def _turned(joint: Joint, motions: Array, frame: Frame) -> Joint:
+def _turn_space(joint: Joint, motions: Array, frame: Frame) -> Joint:
     """The joint with its space (f, 6) turned to contain the relative motions (r, 6), where it nearly does."""
     wanted = span(scaled(motions.T, frame)) if np.any(motions) else np.zeros((6, 0))
-    own = span(scaled(joint.twists.T, frame))
-    outside = wanted - own @ (own.T @ wanted)
-    if wanted.shape[1] == 0 or wanted.shape[1] > own.shape[1] or float(np.abs(outside).max()) > BENT:
+    space = span(scaled(joint.twists.T, frame))
+    outside = wanted - space @ (space.T @ wanted)
+    if wanted.shape[1] == 0 or wanted.shape[1] > space.shape[1] or float(np.abs(outside).max()) > MOST_TURNED:
         return joint
-    rest = own - wanted @ (wanted.T @ own)
+    rest = space - wanted @ (wanted.T @ space)
     left, _, _ = np.linalg.svd(rest, full_matrices=False)
-    basis = np.hstack([wanted, left[:, : own.shape[1] - wanted.shape[1]]])
+    basis = np.hstack([wanted, left[:, : space.shape[1] - wanted.shape[1]]])
     return replace(joint, twists=twist_at_origin(basis, frame).T)

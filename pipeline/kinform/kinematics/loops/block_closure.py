@@ -11,36 +11,29 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
-from kinform.model.arrays import Array
+from kinform.kinematics.constants import (
+    AXES_RANK,
+    CLOSED,
+    FACTOR_ROUNDING,
+    FAR_AXIS,
+    FEW_RATES,
+    LEAST_FRAME,
+    LOOSEST_CLOSED,
+    MOST_RATES,
+    PIVOT_SHARE,
+    RATE_ROUNDING,
+    SIGMAS,
+    SUM_ROUNDING,
+    SURE_DROPPED,
+    SURE_KEPT,
+)
+from kinform.model.arrays import Array, Ints
 
 __all__ = ["Block", "Solution", "axes_frame", "close_block", "loop_matrix"]
-
-
-CLOSED = 1e-7
-"""Relative singular value below which a combination of joint rates closes its loops; the axes have
-been made exactly parallel and coaxial before, so true zeros are rounding."""
-SLIDE = 1e-9
-"""A twist whose axis is farther away than the size of the assembly over this is a slide."""
-SIGMAS = 3.0
-"""Loops whose axes are in no such relation (Bennett's) close to this many times the uncertainty of the axes, ..."""
-LOOSEST = 1e-4
-"""... but to no more than this."""
-SURE = (1e-10, 1e-5)
-"""In the elimination, what is dropped is below the first and what is kept above the second, or else the decision is
-left to singular values."""
-FEW = 160
-"""Blocks of at most so many joint rates are decided at once."""
-MOST = 4000
-"""Largest number of joint rates for which singular values are affordable."""
-PIVOT = 0.3
-"""Any column of at least this share of the largest may be chosen: preference decides among these."""
-ROUNDING = 1e-10
-"""Rates below this share of the largest of a solution are zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +42,7 @@ class Solution:
 
     driver: int
     """Column of the driving rate."""
-    columns: NDArray[np.int64]
+    columns: Ints
     """Ascending."""
     rates: Array
 
@@ -70,7 +63,7 @@ class Block:
 
 def close_block(
     edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], prefer: Array, size: float,
-    few: int = FEW, doubts: Array | None = None,
+    few: int = FEW_RATES, doubts: Array | None = None,
 ) -> Block:  # fmt: skip
     """Closure of the joints `block` (indices into `edges` and `spaces`).
 
@@ -78,32 +71,32 @@ def close_block(
     (m). Blocks of more than `few` rates are reduced loop by loop. `doubts` (joints, 2): uncertainty of the
     directions (rad) and places (m) of the axes of all joints.
     """
-    own = [spaces[k] for k in block]
-    count = sum(len(s) for s in own)
+    members = [spaces[k] for k in block]
+    count = sum(map(len, members))
     if len(block) == 1:  # nothing closes, and nothing is compared in a frame
         free = tuple(Solution(c, np.array([c]), np.ones(1)) for c in range(count))
         return Block(tuple(block), (), Frame(np.zeros(3), size), free)
-    frame = axes_frame(own, size)
+    frame = axes_frame(members, size)
     local = {n: i for i, n in enumerate(sorted({n for k in block for n in edges[k]}))}
     cycles = short_cycles(len(local), [(local[edges[k][0]], local[edges[k][1]]) for k in block])
     if count == 0:
         return Block(tuple(block), tuple(cycles), frame, ())
-    norms = np.concatenate([np.linalg.norm(scaled(s.T, frame), axis=0) for s in own])
+    norms = np.concatenate([np.linalg.norm(scaled(s.T, frame), axis=0) for s in members])
     solutions, sure = None, True
     if count > few:
-        solutions, sure = _eliminated(own, cycles, norms, prefer, size)
-    if solutions is None or (not sure and count <= MOST):
+        solutions, sure = _eliminate(members, cycles, norms, prefer, size)
+    if solutions is None or (not sure and count <= MOST_RATES):
         closed = CLOSED
         if doubts is not None:
             blur = doubts[list(block)]
-            closed = max(CLOSED, min(LOOSEST, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())))
-        solutions, sure = _decomposed(loop_matrix(own, cycles, frame, norms), prefer, closed), True
+            closed = max(CLOSED, min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())))
+        solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed), True
     return Block(tuple(block), tuple(cycles), frame, _unscaled(solutions, norms), sure)
 
 
 def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, norms: Array) -> Array:
     """(6 loops, rates) closure equations in scaled twists, each column divided by its norm."""
-    start = np.concatenate([[0], np.cumsum([len(s) for s in spaces])]).astype(int)
+    start = np.cumsum([0, *map(len, spaces)])
     columns = np.hstack([scaled(s.T, frame) for s in spaces]) / norms
     matrix = np.zeros((6 * len(cycles), columns.shape[1]))
     for row, cycle in enumerate(cycles):
@@ -125,14 +118,14 @@ def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
     start = feet.mean(axis=0)
     missing = np.einsum("nij,nj->i", across, feet - start)
-    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=1e-6)[0]
+    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=AXES_RANK)[0]
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
-    return Frame(frame.centre, max(frame.length, 0.05 * size))
+    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
 
 
 def _turns(twist: Array, size: float) -> bool:
     """Whether a twist turns, beyond the rounding of a slide."""
-    return float(np.linalg.norm(twist[:3])) * size > SLIDE * float(np.linalg.norm(twist[3:]))
+    return float(np.linalg.norm(twist[:3])) * size > FAR_AXIS * float(np.linalg.norm(twist[3:]))
 
 
 def _feet(turns: Array, centre: Array) -> Array:
@@ -143,30 +136,30 @@ def _feet(turns: Array, centre: Array) -> Array:
     return feet
 
 
-def _decomposed(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
+def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
     """Solutions from the singular values of all equations at once."""
     _, values, right = np.linalg.svd(matrix)
     rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
     null: Array = right[rank:]
-    drivers = _chosen(null, prefer, len(null))
+    drivers = _drivers(null, prefer, len(null))
     # the preferred column that is well conditioned drives; all others follow from these
     reduced = np.linalg.solve(null[:, drivers], null)
     reduced[:, drivers] = np.eye(len(drivers))
     out = []
     for driver, row in sorted(zip(drivers, reduced, strict=True), key=lambda pair: pair[0]):
-        columns = np.flatnonzero(np.abs(row) > ROUNDING * np.abs(row).max())
+        columns = np.flatnonzero(np.abs(row) > RATE_ROUNDING * np.abs(row).max())
         out.append(Solution(driver, columns, row[columns]))
     return out
 
 
-def _chosen(matrix: Array, prefer: Array, count: int) -> list[int]:
+def _drivers(matrix: Array, prefer: Array, count: int) -> list[int]:
     """So many columns of the matrix that are independent, by pivoting with preference."""
     rest = matrix.copy()
     chosen: list[int] = []
     for _ in range(count):
         norms = np.linalg.norm(rest, axis=0)
         norms[chosen] = 0.0
-        good = np.flatnonzero(norms >= PIVOT * norms.max())
+        good = np.flatnonzero(norms >= PIVOT_SHARE * norms.max())
         best = int(good[np.argmin(prefer[good])])
         chosen.append(best)
         unit = rest[:, best] / norms[best]
@@ -174,11 +167,16 @@ def _chosen(matrix: Array, prefer: Array, count: int) -> list[int]:
     return chosen
 
 
-def _eliminated(
+def _eliminate(
     spaces: Sequence[Array], cycles: Sequence[Cycle], norms: Array, prefer: Array, size: float
 ) -> tuple[list[Solution], bool]:
-    """Solutions by eliminating rates loop by loop, and whether every decision on the way was clear."""
-    start = np.concatenate([[0], np.cumsum([len(s) for s in spaces])]).astype(int)
+    """Solutions by eliminating rates loop by loop, and whether every decision on the way was clear.
+
+    `depends[c]`: of each rate c, by which rates it is expressed so far, and with which factors; at first by itself. A
+    loop's six equations are written in the rates that are free by then, and determine up to six of them.
+    `users[c]`: the rates that are expressed by c.
+    """
+    start = np.cumsum([0, *map(len, spaces)])
     depends: list[dict[int, float]] = [{c: 1.0} for c in range(int(start[-1]))]
     users: list[set[int]] = [{c} for c in range(int(start[-1]))]
     sure = True
@@ -200,7 +198,7 @@ def _eliminated(
         sure &= clear
         if pivots:
             _substitute(depends, users, free_columns, matrix, pivots)
-    return _collected(depends), sure
+    return _solutions(depends), sure
 
 
 def _by_place(cycles: Sequence[Cycle]) -> list[Cycle]:
@@ -232,10 +230,10 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms = np.linalg.norm(rest, axis=0)
         norms[pivots] = 0.0
         largest = float(norms.max())
-        clear &= largest < SURE[0] or largest > SURE[1]
+        clear &= largest < SURE_DROPPED or largest > SURE_KEPT
         if largest < CLOSED:
             break
-        good = np.flatnonzero(norms >= PIVOT * largest)
+        good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
         best = int(good[np.argmax(prefer[good])])
         pivots.append(best)
         unit = rest[:, best] / norms[best]
@@ -245,29 +243,30 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
 
 
 def _substitute(
-    depends: list[dict[int, float]], users: list[set[int]], columns: NDArray[np.int64], matrix: Array, pivots: list[int]
+    depends: list[dict[int, float]], users: list[set[int]], columns: Ints, matrix: Array, pivots: list[int]
 ) -> None:
     """Express the pivots by the other columns of the equations, wherever they are used."""
     others = [n for n in range(len(columns)) if n not in set(pivots)]
     factors = -np.linalg.lstsq(matrix[:, pivots], matrix[:, others], rcond=None)[0]
     for pivot, row in zip((int(columns[p]) for p in pivots), factors, strict=True):
-        keep = np.flatnonzero(np.abs(row) > 1e-13)
+        keep = np.flatnonzero(np.abs(row) > FACTOR_ROUNDING)
         by = [(int(columns[others[n]]), float(row[n])) for n in keep]
         for user in users[pivot]:
-            own = depends[user]
-            share = own.pop(pivot)
+            factors_of = depends[user]
+            share = factors_of.pop(pivot)
             for free, factor in by:
-                total = own.get(free, 0.0) + share * factor
-                if abs(total) > 1e-14:
-                    own[free] = total
+                total = factors_of.get(free, 0.0) + share * factor
+                if abs(total) > SUM_ROUNDING:
+                    factors_of[free] = total
                     users[free].add(user)
                 else:
-                    own.pop(free, None)
+                    factors_of.pop(free, None)
                     users[free].discard(user)
         users[pivot] = set()
 
 
-def _collected(depends: list[dict[int, float]]) -> list[Solution]:
+def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
+    """One for each rate that is left free, with all rates that are expressed by it."""
     rows: dict[int, list[tuple[int, float]]] = {}
     for column, by in enumerate(depends):
         for free, factor in by.items():
@@ -275,7 +274,7 @@ def _collected(depends: list[dict[int, float]]) -> list[Solution]:
     out = []
     for driver in sorted(rows):
         largest = max(abs(f) for _, f in rows[driver])
-        kept = [(c, f) for c, f in rows[driver] if abs(f) > ROUNDING * largest]
+        kept = [(c, f) for c, f in rows[driver] if abs(f) > RATE_ROUNDING * largest]
         out.append(Solution(driver, np.array([c for c, _ in kept]), np.array([f for _, f in kept])))
     return out
 

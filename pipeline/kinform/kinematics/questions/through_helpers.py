@@ -13,15 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
-from kinform.kinematics.mobility.closure import body_twists, close
-from kinform.kinematics.pair.subspace import JointForm, name_space
+from kinform.kinematics.loops.closure import body_twists, close
+from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["Relative", "relative"]
+__all__ = ["HelperMotion", "motion_through_helpers"]
 
 
 @dataclass(frozen=True, eq=False)
-class Relative:
+class HelperMotion:
     """Relative motion of two bodies through helpers."""
 
     form: JointForm
@@ -31,7 +31,9 @@ class Relative:
     """All that take part, in the order of the kinematics."""
 
 
-def relative(kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]) -> Relative | None:
+def motion_through_helpers(
+    kinematics: Kinematics, first: str, second: str, named: AbstractSet[str]
+) -> HelperMotion | None:
     """The motion of `second` relative to `first` through bodies outside `named` and ground; None when
     no such body connects the two."""
     fixed = {body.name for body in kinematics.bodies if body.ground}
@@ -49,7 +51,7 @@ def relative(kinematics: Kinematics, first: str, second: str, named: AbstractSet
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     basis = span(scaled(twists.T, frame))
     names = tuple(sorted(used))
-    return Relative(name_space(basis, frame), basis.shape[1], names, tuple(joints))
+    return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints))
 
 
 def _connecting(joints: tuple[Joint, ...], first: str, second: str, helpers: set[str]) -> set[str]:

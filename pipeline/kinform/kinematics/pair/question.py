@@ -1,36 +1,30 @@
-"""Steps of the kinematics that depend on what they are given alone, so that their results may be known (`Answers`).
+"""What contact decides of one pair of bodies, from all that it depends on.
 
-The largest is what contact decides of one pair of bodies. Its `Question` does not hold which surfaces of a mesh touch, nor
-the names of the bodies: a change of those changes no answer.
+A `PairQuestion` does not hold which surfaces of a mesh touch, nor the names of the bodies: a change of those changes no
+`PairAnswer`, so that one of an earlier run may stand for it (`kinematics.answers`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.kinematics.bodies.matrix import extreme_samples
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.pair.extremes import extreme_samples
 from kinform.kinematics.pair.joint import joint_from_decision, misalignment
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, JointName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["Answer", "Answers", "Question", "answered", "ask", "bare_patches", "named"]
-
-Given = TypeVar("Given")
+__all__ = ["PairAnswer", "PairQuestion", "answer_pair", "bare_patches", "joint_between"]
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class PairQuestion:
     """What two bodies may do relative to each other, by the contact between them."""
 
     members: tuple[tuple[Patch, bool], ...]
@@ -43,10 +37,10 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class PairAnswer:
     """What the contact of two bodies says on its own."""
 
-    extremes: tuple[NDArray[np.int64], ...]
+    extremes: tuple[Ints, ...]
     """Samples that bound each patch, ascending."""
     joint: Joint | None
     """Of bodies without names, and with patches by their place in the question; None where no patch has an area."""
@@ -58,38 +52,25 @@ class Answer:
     """m."""
 
 
-Answers = Callable[[str, Sequence[Any], Callable[[], Any]], Any]
-"""Somebody who knows what a step, by its name, gives for all that it is given, or has it computed."""
-
-
-def ask(answers: Answers | None, step: str, given: Sequence[Any], compute: Callable[[], Given]) -> Given:
-    """What `compute` gives, which depends on nothing but what is `given`: None, numbers, texts, arrays, and tuples and
-    dataclasses of such."""
-    if answers is None:
-        return compute()
-    found: Given = answers(step, given, compute)
-    return found
-
-
 def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
     """The patches without the numbers of their surfaces, which stand for nothing but themselves."""
     return tuple(replace(patch, surfaces=(-1, -1)) for patch in patches)
 
 
-def answered(question: Question) -> Answer:
+def answer_pair(question: PairQuestion) -> PairAnswer:
     """The joint that the contact leaves, with the samples that bound each patch."""
     extremes = tuple(extreme_samples(patch) for patch, _ in question.members)
     members = [(k, patch, turned) for k, (patch, turned) in enumerate(question.members)]
     evidence = gather(members, question.tolerances, question.contact, question.size)
     if evidence is None:
-        return Answer(extremes, None)
+        return PairAnswer(extremes, None)
     decision = decide(evidence, question.tolerances)
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
     strict = twist_at_origin(decision.strict, evidence.frame).T if decision.status == "blocked" else None
-    return Answer(extremes, joint, strict, *misalignment(evidence, decision))
+    return PairAnswer(extremes, joint, strict, *misalignment(evidence, decision))
 
 
-def named(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequence[int]) -> Joint:
+def joint_between(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequence[int]) -> Joint:
     """The joint of an answer as that of these two bodies, whose patches have these indices into Contacts.patches."""
     return replace(
         joint,

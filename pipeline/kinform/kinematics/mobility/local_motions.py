@@ -7,53 +7,55 @@ Three tests, none of which needs another's result:
   the same: then the configurations near the pose are a manifold of as many dimensions as there are freedoms
   (constant rank theorem). Elsewhere the full solve tells what remains of each step: nothing at a shaky
   structure, motion along a branch at a bifurcation. A generic step that is kept spans the tangent cone.
-- second order: the curvature of the closure (`poses`).
+- second order: the curvature of the closure (`closed_pose`).
 - group: where the joints of a block generate a group of motions and each loop has its full rank in it, the
   closure is a submersion into that group and the pose regular (Hervé 1978), without any step.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.kinematics.mobility.loop_system import LoopSystem, bracket
-from kinform.kinematics.mobility.poses import (
+from kinform.foundation.algebra.screws import bracket
+from kinform.kinematics.constants import (
+    BRANCH_MIXES,
+    BRANCH_STEP,
     CLOSED,
-    TURNS,
+    CLOSURE_ROUNDING,
+    CONE_SHARE,
+    FAST_CHANGE,
+    FAST_ITERATIONS,
+    FINEST_VALUE,
+    HIGHER_ORDER,
+    LONGEST_CHANGE,
+    MANY_MIXES,
+    MIXES,
+    MOST_BRANCHES,
+    MOST_STEP_WORK,
+    SAME_BRANCH,
+    SEED,
+    SLOW_CHANGE,
+    SLOW_ITERATIONS,
+    STEP_ASIDE,
+    STEP_ASTRAY,
+    STEP_KEPT,
+    STEP_LOST,
+    STEP_SIZES,
+    STEPPED_RANK,
+    STEPPED_RANK_EXACT,
     UNBALANCED,
-    Pose,
-    complement,
-    independent,
-    second_order,
-    units,
 )
+from kinform.kinematics.loops.loop_kinematics import LoopSystem
+from kinform.kinematics.mobility.closed_pose import Pose, complement, independent, second_order, units
 from kinform.model.arrays import Array
 
-__all__ = ["Flex", "flex"]
-
-
-RANK = 1e-6
-"""Relative singular value below which a freedom counts as free at a stepped pose, whose loops are closed
-to rounding."""
-STEPS = (0.05, 0.01, 0.002)
-"""rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood."""
-EXACT = 1e-13
-"""Rounding of a closure."""
-FINEST = 1e-12
-"""Relative singular value that a full solve still uses: near a singularity of fourth order they are that small."""
-KEPT, LOST = 0.9, 0.1
-"""Share of a step that is left when the motion is real, and when it is none."""
-SEED = 20000
-MANY = 8
-"""Branches that are told apart."""
-WORK = 2e10
-"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
+__all__ = ["LocalMotions", "local_motions"]
 
 
 @dataclass(frozen=True, eq=False)
-class Flex:
+class LocalMotions:
     """What is known of the motions of one block at its pose."""
 
     freedoms: int
@@ -62,41 +64,39 @@ class Flex:
     """Of the motions: the largest of the branches through the pose; None where it was not decided."""
     lost: Array
     """(m, n) coordinate rates of freedoms that no branch has."""
-    branches: tuple[int, ...]
+    branches: tuple[int, ...] = ()
     """Dimensions of the branches that were found, eight at most; a single one where the pose is regular, and
     where the motions beside the pose make a cone that is no union of smooth branches."""
-    step: float
-    kept: float
+    step: float = 0.0
+    kept: float = 0.0
     """Least share kept of a generic step where the pose is regular, else the greatest of any step."""
-    residual: float
+    residual: float = 0.0
     """Greatest closure error of the stepped poses that count (rad, and shares of the size)."""
-    stepped: int | None
+    stepped: int | None = None
     """Freedoms of first order at stepped poses: the most; None where no step was kept."""
-    order: str
+    order: str = ""
     """Second order: "extends" (all freedoms), "partly" (some directions), "obstructed" (none), "" not tested."""
-    reason: str
+    reason: str = ""
     """Why `dimension` is not known; else empty."""
 
 
-def flex(system: LoopSystem) -> Flex:
+def local_motions(system: LoopSystem) -> LocalMotions:
     """Motions of the block at its reference pose."""
     pose = Pose.at(system, np.zeros(system.coordinates))
-    count = pose.freedoms
+    count, none = pose.freedoms, np.zeros((0, system.coordinates))
     if count == 0:
-        return Flex(0, 0, np.zeros((0, system.coordinates)), (), 0.0, 0.0, 0.0, 0, "", "")
+        return LocalMotions(0, 0, none, stepped=0)
     rng = np.random.default_rng(SEED)
-    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else 3, count))) @ pose.free
+    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else MIXES, count))) @ pose.free
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
-    for step in STEPS:
-        found = _regular(system, pose, mixes, step, STEPS[0])
-        if found is not None:
-            kept, residual = found
-            none = np.zeros((0, system.coordinates))
-            bent = bends.max() > UNBALANCED
-            reason = "steps close, but the second-order test finds an obstruction" if bent else ""
-            order = "obstructed" if bent else "extends"
-            return Flex(count, None if bent else count, none, (count,), step, kept, residual, count, order, reason)
-    return _singular(system, pose, rng)
+    for step in STEP_SIZES:
+        closed = _regular(pose, mixes, step, STEP_SIZES[0])
+        if closed is not None and bends.max() > UNBALANCED:
+            why = "steps close, but the second-order test finds an obstruction"
+            return LocalMotions(count, None, none, (count,), step, *closed, count, "obstructed", why)
+        if closed is not None:
+            return LocalMotions(count, count, none, (count,), step, *closed, count, "extends")
+    return _singular(pose, rng)
 
 
 def _submersion(system: LoopSystem, pose: Pose) -> bool:
@@ -112,46 +112,47 @@ def _submersion(system: LoopSystem, pose: Pose) -> bool:
     return pose.rank == len(algebra) * len(system.loops) + len(system.ties)
 
 
-def _regular(system: LoopSystem, pose: Pose, mixes: Array, stride: float, step: float) -> tuple[float, float] | None:
+def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[float, float] | None:
     """(least share kept of a stride, greatest residual) if walks of length `step` along mixes (D, n) close with
     the rank of the pose and find that rank again; else None. However short the strides, the walk goes on to the
     full step: obstructions of third and higher order cannot be told from rounding nearby."""
     q, kept = pose.q, 1.0
     for _ in range(round(step / stride)):
         ahead = q + stride * mixes
-        q, residual, jacobian = _solve(system, ahead, stride, pose.rank)
+        q, residual, jacobian = _solve(pose.system, ahead, stride, pose.rank)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
-        if residual.max() > CLOSED * step or kept < KEPT:
+        if residual.max() > CLOSED * step or kept < STEP_KEPT:
             return None
     worst = float(residual.max())
-    if worst > EXACT:
+    if worst > CLOSURE_ROUNDING:
         # misfit of the axes grows with the step, an obstruction of third or higher order with its powers
-        _, half, _ = _solve(system, pose.q + 0.5 * stride * mixes, stride, pose.rank)
-        if float(half.max()) < 0.3 * worst * stride / step:
+        _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose.rank)
+        if float(half.max()) < HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
-    return (kept, worst) if beyond < (RANK if worst > EXACT else 1e-3 * RANK) else None
+    return (kept, worst) if beyond < (STEPPED_RANK if worst > CLOSURE_ROUNDING else STEPPED_RANK_EXACT) else None
 
 
 def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = None) -> tuple[Array, Array, Array]:
-    """Configurations (D, n) near `start` that close the loops as well as Gauss–Newton can, their residuals (D,)
+    """Configurations (D, n) near `start` (D, n) that close the loops as well as Gauss–Newton can, their residuals (D,)
     and Jacobians (D, 6 loops, n).
-    With `rank` only so many singular values are used, and convergence is quadratic or there is none."""
+
+    No iteration moves by more than half of `step`. With `rank` only so many singular values are used, and convergence is quadratic or there is none."""
     q = start.copy()
     active = np.arange(len(q))
-    for _ in range(TURNS if rank is None else 12):
+    for _ in range(SLOW_ITERATIONS if rank is None else FAST_ITERATIONS):
         closed = system.close(q[active])
         left, values, right = np.linalg.svd(closed.jacobian, full_matrices=False)
-        used = values > FINEST * values.max(axis=1, initial=1e-300, keepdims=True)
+        used = values > FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
         if rank is not None:
             used[:, rank:] = False
         parts = np.einsum("dri,dr->di", left, closed.residual)
         change = -np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right)
         size = np.linalg.norm(change, axis=1)
-        change *= np.minimum(1.0, 0.5 * step / np.maximum(size, 1e-300))[:, None]
+        change *= np.minimum(1.0, LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
         q[active] += change
-        active = active[size > (1e-11 if rank is None else 1e-9)]
+        active = active[size > (SLOW_CHANGE if rank is None else FAST_CHANGE)]
         if not len(active):
             break
     closed = system.close(q)
@@ -179,9 +180,9 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
     closed = residual < CLOSED * step
-    stays = closed & (kept > LOST) & (np.linalg.norm(q - start, axis=1) < 2.0 * step)
+    stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
-    cone = right[: int(np.count_nonzero(values > 0.05 * values.max(initial=0.0)))] @ pose.free
+    cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
     return _Spread(
         q[stays],
         cone,
@@ -195,26 +196,24 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     """Is every step within the cone kept, so that the cone is the tangent space of one smooth branch?"""
     if not len(cone):
         return True
-    mixes = units(rng.normal(size=(3, len(cone)))) @ cone
+    mixes = units(rng.normal(size=(MIXES, len(cone)))) @ cone
     q, residual, _ = _solve(pose.system, pose.q + step * mixes, step)
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
-    return bool(residual.max() < CLOSED * step and kept.min() > KEPT and aside.max() < 0.2)
+    return bool(residual.max() < CLOSED * step and kept.min() > STEP_KEPT and aside.max() < STEP_ASIDE)
 
 
-def _singular(system: LoopSystem, pose: Pose, rng: np.random.Generator) -> Flex:
-    """Motions at a pose that is not regular: steps of two sizes have to agree."""
+def _singular(pose: Pose, rng: np.random.Generator) -> LocalMotions:
+    """Motions at a pose that is not regular: steps of two sizes have to agree with each other, and with the second
+    order. What they found is told with the reason where they do not."""
     order, along = second_order(pose, rng)
-    directions = np.concatenate([along, pose.free, units(rng.normal(size=(6, pose.freedoms))) @ pose.free])
-    blank = np.zeros((0, system.coordinates))
-    rows = 6 * len(system.loops)
-    work = 2.0 * len(directions) * TURNS * rows * system.coordinates * min(rows, system.coordinates)
-    if work > WORK:
-        return Flex(
-            pose.freedoms, None, blank, (), 0.0, 0.0, 0.0, None, order,
-            "the pose is singular, and the block too large for the steps that would tell its branches",
-        )  # fmt: skip
-    wide, narrow = STEPS[:2]
+    directions = np.concatenate([along, pose.free, units(rng.normal(size=(MANY_MIXES, pose.freedoms))) @ pose.free])
+    none = np.zeros((0, pose.system.coordinates))
+    rows, columns = 6 * len(pose.system.loops), pose.system.coordinates
+    if 2.0 * len(directions) * SLOW_ITERATIONS * rows * columns * min(rows, columns) > MOST_STEP_WORK:
+        why = "the pose is singular, and the block too large for the steps that would tell its branches"
+        return LocalMotions(pose.freedoms, None, none, order=order, reason=why)
+    wide, narrow = STEP_SIZES[:2]
     first, second = (_explore(pose, directions, step, rng) for step in (wide, narrow))
     reason = ""
     if second.dimension is None:
@@ -227,43 +226,41 @@ def _singular(system: LoopSystem, pose: Pose, rng: np.random.Generator) -> Flex:
         reason = "steps find a motion that the second-order test forbids"
     elif second.dimension == 0 and order != "obstructed" and second.reason:
         reason = second.reason
-    return Flex(
-        pose.freedoms, None if reason else second.dimension, blank if reason else second.lost, second.branches,
-        second.step, second.kept, second.residual, second.stepped, order, reason,
-    )  # fmt: skip
+    motions = replace(second, order=order, reason=reason)
+    return replace(motions, dimension=None, lost=none) if reason else motions
 
 
-def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generator) -> Flex:
-    """Branches through the pose that steps of one size find."""
+def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generator) -> LocalMotions:
+    """Branches through the pose that steps of one size find.
+
+    Where every step within the tangent cone is kept, the cone is the one branch. Else each end of a step whose freedoms
+    are new is a branch, of the dimension of the motions there; where the motions beside the pose are no union of smooth
+    branches, only the largest dimension counts.
+    """
     spread = _spread(pose, directions, step)
     lost = complement(pose.free, spread.cone)
     doubt = "the loops did not close after a step" if spread.undecided else ""
     if _smooth(pose, spread.cone, step, rng):
-        dimension = len(spread.cone)
-        stepped = [Pose.at(pose.system, q, RANK).freedoms for q in spread.ends[:1]]
-        return Flex(
-            pose.freedoms, dimension, lost, (dimension,) if dimension else (), step, spread.kept, spread.residual,
-            max(stepped, default=None), "", doubt,
-        )  # fmt: skip
-    branches: list[Pose] = []
+        count = len(spread.cone)
+        stepped = [Pose.at(pose.system, q, STEPPED_RANK).freedoms for q in spread.ends[:1]]
+        measured = step, spread.kept, spread.residual, max(stepped, default=None)
+        return LocalMotions(pose.freedoms, count, lost, (count,) if count else (), *measured, reason=doubt)
+    poses: list[Pose] = []
     dimensions: list[int | None] = []
     for end in spread.ends:
-        there = Pose.at(pose.system, end, RANK)
-        fresh = len(branches) < MANY or all(there.freedoms != other.freedoms for other in branches)
-        if fresh and not any(_same(there, other) for other in branches):
-            branches.append(there)
-            dimensions.append(_dimension(there, 0.1 * float(np.linalg.norm(end - pose.q)), rng))
-    known = [d for d in dimensions if d is not None]
-    decided = known if len(known) == len(dimensions) else []
+        there = Pose.at(pose.system, end, STEPPED_RANK)
+        fresh = len(poses) < MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
+        if fresh and not any(_same(there, other) for other in poses):
+            poses.append(there)
+            dimensions.append(_dimension(there, BRANCH_STEP * float(np.linalg.norm(end - pose.q)), rng))
+    decided = [] if None in dimensions else [d for d in dimensions if d is not None]
     if not decided:
         doubt = "a branch is singular itself"
-    elif not all(_smooth(pose, independent(b.free @ pose.free.T @ pose.free), step, rng) for b in branches):
+    elif not all(_smooth(pose, independent(b.free @ pose.free.T @ pose.free), step, rng) for b in poses):
         decided = [max(decided)]
-    return Flex(
-        pose.freedoms, max(decided, default=None), lost,
-        tuple(sorted(decided, reverse=True)), step, spread.kept, spread.residual,
-        max((b.freedoms for b in branches), default=None), "", doubt,
-    )  # fmt: skip
+    measured = step, spread.kept, spread.residual, max((b.freedoms for b in poses), default=None)
+    branches = tuple(sorted(decided, reverse=True))
+    return LocalMotions(pose.freedoms, max(decided, default=None), lost, branches, *measured, reason=doubt)
 
 
 def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
@@ -271,8 +268,8 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     count = pose.freedoms
     if count == 0:
         return 0
-    mixes = units(rng.normal(size=(2, count))) @ pose.free
-    if _regular(pose.system, pose, mixes, step, step) is not None:
+    mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
+    if _regular(pose, mixes, step, step) is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
     cone = _spread(pose, more, step).cone
@@ -286,4 +283,4 @@ def _same(a: Pose, b: Pose) -> bool:
     if a.freedoms == 0:
         return True
     cosines = np.linalg.svd(a.free @ b.free.T, compute_uv=False)
-    return bool(cosines.min() > 0.95)
+    return bool(cosines.min() > SAME_BRANCH)

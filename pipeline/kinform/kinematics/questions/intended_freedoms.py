@@ -9,7 +9,8 @@ import numpy as np
 
 from kinform.design import Design
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.kinematics.questions.query import QueryAnswer, ask
+from kinform.kinematics.constants import AT_REST
+from kinform.kinematics.questions.motion_query import QueryAnswer, query_twist
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint
 
@@ -48,7 +49,9 @@ def _answer(design: Design, joint: IntendedJoint) -> IntendedAnswer:
     wanted = _motions(joint)
     if not wanted:
         return IntendedAnswer(joint, None, (), f"the {joint.type} joint states no axis or point")
-    asked = tuple(IntendedMotion(kind, twist, ask(design, *joint.between, twist, kind)) for kind, twist in wanted)
+    asked = tuple(
+        IntendedMotion(kind, twist, query_twist(design, *joint.between, twist, kind)) for kind, twist in wanted
+    )
     missing = [item for item in asked if not item.answer.free_in_assembly]
     if not missing:
         return IntendedAnswer(joint, True, asked, "every freedom is there, in the whole assembly")
@@ -64,7 +67,7 @@ def _fixed(design: Design, joint: IntendedJoint, bodies: Sequence[str]) -> Inten
     index = {str(body.name): k for k, body in enumerate(design.kinematics.bodies)}
     freedoms = design.kinematics.mobility.freedoms
     relative = freedoms[:, index[bodies[1]]] - freedoms[:, index[bodies[0]]]
-    moves = bool(len(relative)) and float(np.abs(relative).max()) > 1e-9
+    moves = bool(len(relative)) and float(np.abs(relative).max()) > AT_REST
     text = (
         "they move relative to each other" if moves else "they are two bodies that do not move relative to each other"
     )

@@ -12,28 +12,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
-from kinform.kinematics.bodies.concurrence import Locus, meeting_shifts
+from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
+from kinform.kinematics.constants import DIRECTION_DECIMALS, EXACT_AXIS, MET, RCOND, SIGMAS, UNMOVED
 from kinform.kinematics.pair.joint import twists_of
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Misfit
 
-__all__ = ["snap", "uncertainties"]
+__all__ = ["snap_axes", "uncertainties"]
 
 
-SIGMAS = 3.0
-"""Two axes agree when they differ by less than this many times the sum of their uncertainties."""
-ROUNDING = 1e-9
-"""Uncertainty (rad, and relative to the reach) of exact geometry in double precision."""
-EXACT = 1e-14
-"""Relative: smaller moves are rounding, no misfit."""
-DIGITS = 12
-"""Decimals of a direction that several axes have in common."""
 LINES = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line, not only a direction."""
+CARRIERS = ("cylinder", "cone", "sphere")
+"""Kinds of patches whose fits say best where a joint is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +74,7 @@ class _Line:
         return replace(self, foot=self.locus(joints).point + shift) if np.any(shift) else self
 
 
-def snap(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tuple[tuple[Joint, ...], Misfit]:
+def snap_axes(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tuple[tuple[Joint, ...], Misfit]:
     """The joints with snapped axes and points, and the misfit. `reach`: size of the assembly (m)."""
     axes = [a for a in (_axis(k, joint, patches, reach) for k, joint in enumerate(joints)) if a is not None]
     lines = _lines([a for a in axes if a.axis is not None])
@@ -92,7 +86,7 @@ def snap(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tup
     out, misfit = list(joints), Misfit()
     for line in lines:
         for member in line.members:
-            out[member.joint], misfit = _moved(out[member.joint], member, line, misfit)
+            out[member.joint], misfit = _on_line(out[member.joint], member, line, misfit)
     return tuple(out), misfit
 
 
@@ -101,8 +95,8 @@ def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
     Patches on facets of no known surface have no say."""
     out = np.zeros((len(joints), 2))
     for k, joint in enumerate(joints):
-        own = [patches[p] for p in joint.patches if not patches[p].one_sided]
-        carriers = [p for p in own if p.kind in ("cylinder", "cone", "sphere")] or own
+        mating = [patches[p] for p in joint.patches if not patches[p].one_sided]
+        carriers = [p for p in mating if p.kind in CARRIERS] or mating
         out[k] = [min((p.uncertainty[n] for p in carriers), default=0.0) for n in (0, 1)]
     return out
 
@@ -111,23 +105,23 @@ def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     """Axes in bundles of one direction, and those again on common lines."""
     bundles = _bundles(sorted(axes, key=lambda a: (a.angle, a.name)))
     means = [_mean_direction(bundle) for bundle in bundles]
-    found = []
-    for bundle, direction in zip(bundles, _squared(means, [b[0].angle for b in bundles]), strict=True):
+    lines = []
+    for bundle, direction in zip(bundles, _square(means, [b[0].angle for b in bundles]), strict=True):
         for group in _coaxial(bundle, direction):
             foot = None
             if len(group) > 1:
                 foot = _mean_foot(group, direction)
                 foot = foot + direction * float(direction @ (group[0].point - foot))
-            found.append(_Line(tuple(group), direction, foot))
-    return found
+            lines.append(_Line(tuple(group), direction, foot))
+    return lines
 
 
 def _axis(index: int, joint: Joint, patches: Sequence[Patch], reach: float) -> _Axis | None:
     if joint.type in ("general", "universal") or (joint.axis is None and joint.type != "spherical"):
         return None
-    own = [patches[k] for k in joint.patches]
-    directed = [p for p in own if np.any(p.axis)] if joint.axis is not None else []
-    carriers = [p for p in own if p.kind in ("cylinder", "cone", "sphere")] or directed
+    touching = [patches[k] for k in joint.patches]
+    directed = [p for p in touching if np.any(p.axis)] if joint.axis is not None else []
+    carriers = [p for p in touching if p.kind in CARRIERS] or directed
     angle = min((p.uncertainty[0] for p in carriers if np.any(p.axis)), default=0.0)
     position = min((p.uncertainty[1] for p in carriers), default=0.0)
     return _Axis(
@@ -136,8 +130,8 @@ def _axis(index: int, joint: Joint, patches: Sequence[Patch], reach: float) -> _
         axis=joint.axis,
         point=np.zeros(3) if joint.point is None else joint.point,
         line=joint.type in LINES,
-        angle=max(angle, ROUNDING) if joint.axis is not None else 0.0,
-        position=max(position, ROUNDING * reach),
+        angle=max(angle, EXACT_AXIS) if joint.axis is not None else 0.0,
+        position=max(position, EXACT_AXIS * reach),
     )
 
 
@@ -146,7 +140,7 @@ def _bundles(axes: Sequence[_Axis]) -> list[list[_Axis]]:
     directions = np.array([a.direction for a in axes]).reshape(-1, 3)
     angles = np.array([a.angle for a in axes])
 
-    def parallel(leaders: NDArray[np.int64], k: int) -> NDArray[np.bool_]:
+    def parallel(leaders: Ints, k: int) -> Flags:
         sine = np.linalg.norm(cross(directions[leaders], directions[k]), axis=1)
         return np.asarray(sine <= SIGMAS * (angles[leaders] + angles[k]))
 
@@ -159,16 +153,14 @@ def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
     positions = np.array([a.position for a in bundle])
     lines = np.array([a.line for a in bundle])
 
-    def coaxial(leaders: NDArray[np.int64], k: int) -> NDArray[np.bool_]:
+    def coaxial(leaders: Ints, k: int) -> Flags:
         apart = np.linalg.norm(feet[leaders] - feet[k], axis=1)
         return np.asarray(lines[leaders] & lines[k] & (apart <= SIGMAS * (positions[leaders] + positions[k])))
 
     return _cluster(bundle, coaxial)
 
 
-def _cluster(
-    members: Sequence[_Axis], agree: Callable[[NDArray[np.int64], int], NDArray[np.bool_]]
-) -> list[list[_Axis]]:
+def _cluster(members: Sequence[_Axis], agree: Callable[[Ints, int], Flags]) -> list[list[_Axis]]:
     """Greedy clusters: each member joins the first cluster whose leader it agrees with."""
     clusters: list[list[_Axis]] = []
     leaders = np.zeros(len(members), dtype=np.int64)
@@ -188,7 +180,7 @@ def _mean_direction(bundle: Sequence[_Axis]) -> Array:
     lead = bundle[0].direction
     signed = [a.direction / a.angle**2 * (1.0 if float(a.direction @ lead) > 0.0 else -1.0) for a in bundle]
     # far below any uncertainty: the rounding of one axis is not carried to all others
-    return canonical(np.round(canonical(np.sum(signed, axis=0)), DIGITS))
+    return canonical(np.round(canonical(np.sum(signed, axis=0)), DIRECTION_DECIMALS))
 
 
 def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:
@@ -196,7 +188,7 @@ def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:
     return np.asarray(np.average([a.foot(direction) for a in group], axis=0, weights=weights))
 
 
-def _squared(directions: Sequence[Array], angles: Sequence[float]) -> list[Array]:
+def _square(directions: Sequence[Array], angles: Sequence[float]) -> list[Array]:
     """The directions with those exactly perpendicular that are so within their uncertainties (rad).
 
     The least turns, each weighed by its uncertainty, that satisfy all these conditions to first order;
@@ -217,28 +209,28 @@ def _squared(directions: Sequence[Array], angles: Sequence[float]) -> list[Array
             matrix[row, 2 * i : 2 * i + 2] = sigma[i] / sigma.max() * (turns[i] @ out[j])
             matrix[row, 2 * j : 2 * j + 2] = sigma[j] / sigma.max() * (turns[j] @ out[i])
         missing = -np.array([out[i] @ out[j] for i, j in zip(first, second, strict=True)])
-        missing[np.abs(missing) < 1e-15] = 0.0
+        missing[np.abs(missing) < MET] = 0.0
         if not np.any(missing):
             break
-        solution = np.linalg.lstsq(matrix, missing, rcond=1e-9)[0].reshape(-1, 2)
+        solution = np.linalg.lstsq(matrix, missing, rcond=RCOND)[0].reshape(-1, 2)
         for k in sorted({*first.tolist(), *second.tolist()}):
-            moved = out[k] + sigma[k] / sigma.max() * (solution[k] @ turns[k])
-            out[k] = canonical(moved) if np.any(moved != out[k]) else out[k]
+            turned = out[k] + sigma[k] / sigma.max() * (solution[k] @ turns[k])
+            out[k] = canonical(turned) if np.any(turned != out[k]) else out[k]
     return out
 
 
-def _moved(joint: Joint, old: _Axis, line: _Line, misfit: Misfit) -> tuple[Joint, Misfit]:
+def _on_line(joint: Joint, old: _Axis, line: _Line, misfit: Misfit) -> tuple[Joint, Misfit]:
     """The joint on its snapped line, and the misfit with what that moved."""
     direction, point = line.direction, joint.point
     if direction is not None:
         angle = float(np.linalg.norm(cross(old.direction, direction)))
-        if angle > max(misfit.angle, EXACT):
+        if angle > max(misfit.angle, UNMOVED):
             misfit = replace(misfit, angle=angle, angle_at=old.name)
     if line.foot is not None:
         along = 0.0 if direction is None else direction * float(direction @ (old.point - line.foot))
         point = line.foot + along
         distance = float(np.linalg.norm(point - old.point))
-        if distance > max(misfit.distance, EXACT * float(np.abs(old.point).max())):
+        if distance > max(misfit.distance, UNMOVED * float(np.abs(old.point).max())):
             misfit = replace(misfit, distance=distance, distance_at=old.name)
     twists = twists_of(joint.type, direction, point, joint.pitch, joint.axis2)
     return replace(joint, axis=direction, point=point, twists=twists), misfit

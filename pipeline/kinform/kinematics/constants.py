@@ -1,0 +1,460 @@
+"""Numbers that decide in the kinematics: of each what it is, and the reason or the measurement that chose it.
+
+Grouped by the module that uses them. What a user may set is in `model.tolerances`. Where no reason is given the number
+is a choice that was not measured. "Relative" is to what the sentence names, else to 1.
+"""
+
+from __future__ import annotations
+
+# --- more than one room ---------------------------------------------------------------------------------------------
+
+SIGMAS = 3.0
+"""Standard uncertainties by which fitted axes, centres and normals may be off: beyond it chance is below 1 %."""
+RCOND = 1e-9
+"""Relative singular value below which least squares ignore a direction: rounding, amplified a thousand times."""
+LEAST_FRAME = 0.05
+"""Share of the assembly's size that the scaling length of a block is at least: axes that meet have no size of their
+own."""
+CLOSED = 1e-7
+"""Relative singular value below which a combination of joint rates closes its loops; the axes have been made exactly
+parallel and coaxial before, so true zeros are rounding."""
+FAR_AXIS = 1e-9
+"""A twist whose axis is farther away than the size of the assembly over this is a slide."""
+MET = 1e-15
+"""Relative to the coordinates: what agrees within this agrees as well as numbers can say."""
+AT_REST = 1e-9
+"""Relative speed below which a motion does not concern a pair or a joint."""
+
+# --- derivation -----------------------------------------------------------------------------------------------------
+
+MANY_JOINTS = 48
+"""Joints from which it pays to begin another process."""
+MOST_BASIS_NUMBERS = 1_000_000
+"""Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
+
+# --- wording --------------------------------------------------------------------------------------------------------
+
+EXACT_MOTION = 1e-5
+"""Of unit twists, scaled in their frame: what is zero is zero to rounding and snapping."""
+EXACT_WRENCH = 1e-6
+"""The same of wrenches, whose joints are snapped already."""
+NO_LEAD = 1e-6
+"""Advance a turn, over the length of the frame, that is none."""
+NAMED_AXIS = 5e-4
+"""Directions this near (sine) to an axis of the world have its name: their components read 1, 0 and 0 then."""
+SHOWN_COMPONENT = 5e-4
+"""Components below this are shown as 0: they would not be seen in three digits beside 1."""
+SHOWN_COORDINATE = 1e-6
+"""The same of coordinates of a point, over the largest."""
+SAME_DIRECTION = 1e-3
+"""Two unit directions that differ by less are one; a screw with less advance a radian (over the size) is a turn."""
+
+# --- pair/evidence --------------------------------------------------------------------------------------------------
+
+GAP_BANDS = ((0.12, 1.0), (0.42, 0.5), (float("inf"), 0.25))
+"""(gap over the contact tolerance, weight): gaps weigh, they do not switch."""
+TOUCHING_GAP = GAP_BANDS[0][0]
+"""Gaps up to this share of the contact tolerance have full weight: the surfaces touch."""
+WIDE_GAP = GAP_BANDS[1][0]
+"""Gaps beyond this share have the least weight."""
+SAME_PITCH = 5e-3
+"""Relative difference of pitches that are one."""
+STRAY_SHARE = 0.02
+"""Share of the contact area below which a one-sided patch counts only where it touches."""
+LOOSE_ANGLE = 0.2
+"""rad by which the direction of facets of no known surface may be off."""
+
+# --- pair/hypotheses ------------------------------------------------------------------------------------------------
+
+MOST_DIRECTIONS = 24
+"""Directions tried, the best supported first: parts of real robots have hundreds of tiny planes."""
+MOST_NORMALS = 12
+"""Normals of planes, the heaviest first, of which each two suggest the line in which their planes meet."""
+MOST_FACES = 6
+"""Of these, how many suggest slides across themselves."""
+MOST_SLIDES = 72
+"""Slides that are tried in all."""
+SEPARATE_CENTRES = 1e-3
+"""Share of the contact's size from which on two centres of balls suggest the line through them."""
+CENTRE_SLACK = 1e-9
+"""Share of the contact's size by which centres that are known exactly may be apart and be one."""
+DISTINCT_SLIDE = 0.25
+"""Directions that differ by less than this share of the alignment are tried once."""
+LEAST_MEETING = 0.1
+"""Planes at a smaller angle (sine) have no line in common that could be told."""
+ONE_NORMAL = 1e-3
+"""Relative spread of normals below which they say one direction only."""
+LEAST_POSITION = 1e-7
+"""Share of a patch's length below which its place counts as no better known: keeps the weights of fits comparable."""
+
+# --- pair/freedoms --------------------------------------------------------------------------------------------------
+
+NEW_FREEDOM = 0.03
+"""A motion adds a freedom when this much of its unit twist lies outside those already found."""
+CLEARLY_NEW = 0.5
+"""Above this share a further motion is not a variant of those already found."""
+DIFFERENCE_SLACK = 2.0
+"""What is left of a further motion may be off by this many times the tolerances: it is a difference."""
+PURE_SLIDE = 1e-9
+"""Unit twists that turn by less are slides."""
+CONE_SLACK = 1e-6
+"""rad beyond the fit by which a slide along a cone may be off: rounding, for its slope is a fact."""
+THREAD_TURNING = 1e-3
+"""Unit twists that turn by less are not tried on a thread."""
+
+# --- pair/lower_pairs -----------------------------------------------------------------------------------------------
+
+EXACT_PAIR = 1e-6
+"""Twist spaces come out of snapped rows: what is zero is zero to rounding."""
+NEAR_PAIR = 0.02
+"""Spaces pieced together from patches that agree within their tolerances are off a lower pair by this much."""
+
+# --- pair/decision --------------------------------------------------------------------------------------------------
+
+DEEP_OVERLAP = 0.2
+"""Overlaps below this share of the contact tolerance are presses: they never excuse a patch."""
+PRESS_RATIO = 2.0
+"""Nor do overlaps within this many times those of the patches that carry the joint."""
+MOST_LEFT_OUT = 0.25
+"""Largest share of the contact area that consensus may leave out."""
+MOST_STOPPED = 0.6
+"""Largest share that end stops of a turn may have: a closed gripper's jaws touch over more than its hinge."""
+ALONG_AXIS = 0.01
+"""Normals and axes this near (sine) to an axis are along it."""
+OPPOSING_SPEED = 0.05
+"""Share of a patch's greatest normal speed that is opposition, and no rounding beside it."""
+
+# --- pair/certainty -------------------------------------------------------------------------------------------------
+
+MISSED_AXES = 0.5
+"""Axes that miss each other by less than this share of the contact tolerance are meant to be one."""
+TILTED_AXES = 4.0
+"""So are axes within this many times the alignment."""
+PASSING_GAP = 2e-3
+"""Gaps below this share of the size of the smaller body are as good as none."""
+ON_RADIUS = 0.02
+"""Relative: points this near to the radius of a surface from an axis are on a surface about that axis."""
+ACROSS_LINE = 1e-3
+"""Planes whose normals are this near (sine) to a line of contact lie across it."""
+STRAY_AREA = 5e-4
+"""Share of the squared size of the smaller body below which a one-directional contact that touches may be a stray."""
+STRAY_AREA_APART = 2e-2
+"""The same where it does not touch."""
+WIDE_CONTACT = 0.15
+"""Contact whose box is larger than this share of the smaller body is not one stray touch: feet, rims."""
+THREAD_AXES = 4
+"""Axes about which threads are suspected."""
+THREAD_SECTORS = 8
+"""Parts of a turn of which all but one must have contact where a thread is suspected."""
+FILLED_SECTOR = 0.02
+"""Share of the weight from which on such a part has contact."""
+THREAD_SLOPE = 0.01
+"""Mean square of the normals along the axis below which nothing leans."""
+THREAD_LEAN = 5e-3
+"""Advance a radian, in radii, of what leans like a thread."""
+THREAD_FIT = 0.75
+"""Share of the squared speeds that a screw may leave where facets lean like a thread."""
+
+# --- pair/joint -----------------------------------------------------------------------------------------------------
+
+LEAST_MISALIGNMENT = 1e-4
+"""rad, and share of the contact's size, of misalignment that is told."""
+
+# --- pair/extremes --------------------------------------------------------------------------------------------------
+
+NORMAL_SECTORS = 16
+"""Sectors of normals about the axis of a curved patch with many samples; of each its ends are kept."""
+FEW_SAMPLES = 12
+"""Patches with no more samples than this keep them all."""
+SAME_PLACE = 1e-6
+"""rad, and share of the height, by which samples of one line or ring differ: coordinates of mesh files are rounded."""
+STRAIGHT_EDGE = 1e-6
+"""Corners of a hull that stand out less than this share of its size are on an edge."""
+HULL_DIRECTIONS = 16
+"""Directions whose ends are corners of a hull: what lies inside of these corners is left out at once."""
+CAP = 1e-3
+"""Cosine with the mean above which all normals of a ball are those of a cap, whose rim spans them."""
+BALL_DIRECTIONS = 96
+"""Directions in which the ends of a ball's normals are looked for."""
+
+# --- bodies/fasteners -----------------------------------------------------------------------------------------------
+
+SUGGESTED_AXIS = 1e-3
+"""rad by which a suggested axis may differ from the normal of a planar joint."""
+
+# --- axes/snapping --------------------------------------------------------------------------------------------------
+
+EXACT_AXIS = 1e-9
+"""Uncertainty (rad, and relative to the reach) of exact geometry in double precision."""
+UNMOVED = 1e-14
+"""Relative: smaller moves are rounding, no misfit."""
+DIRECTION_DECIMALS = 12
+"""Decimals of a direction that several axes have in common: the rounding of one is not carried to all others."""
+
+# --- axes/concurrence -----------------------------------------------------------------------------------------------
+
+LEAST_CROSSING = 0.05
+"""Lines at a smaller angle (sine) meet nowhere in particular."""
+FIRST_LOOK = 1.001
+"""Slack of the first look at which lines may meet, which must not lose any to rounding."""
+
+# --- axes/proportions -----------------------------------------------------------------------------------------------
+
+FILE_ROUNDING = 1e-8
+"""rad, and share of the size: uncertainty of what the single precision of mesh files holds."""
+CLOSED_GAP = 1e-12
+"""rad, and shares of the size: loops that stay closed to this need nothing."""
+GLANCE = 0.1
+"""Share of that gap below which one look ahead is enough."""
+IMPROVED = 0.01
+"""Share of the gap before that moved axes may leave."""
+STRIDE = 0.12
+"""rad (of the joint that turns most) from one pose to the next."""
+STRIDES = 16
+"""Poses on each side of the start."""
+MOST_FITTED_FREEDOMS = 3
+"""Blocks with more freedoms are left as they are."""
+MOST_FITTED_RATES = 48
+"""So are blocks with more joint rates."""
+SOUND_POSE = 0.01
+"""Relative singular value that must be left: nearer to singular poses gaps say more of the pose than of the axes."""
+FITTED_RANK = 1e-6
+"""Relative singular value below which rows depend on the others."""
+EXACTLY_PARALLEL = 1e-14
+"""Sine below which axes are exactly parallel: snapping makes them so."""
+FITTING_ROUNDS = 8
+"""Rounds of Gauss and Newton, of the axes and of each pose: they converge in three."""
+POSE_CLOSED = 1e-13
+"""Change of a pose (rad, shares of the size) after which it is closed."""
+POSE_LOST = 1e-9
+"""Change after the last round beyond which it is not."""
+WAY_LOST = 1e-3
+"""Share of a direction that must be left among the freedoms of the next pose."""
+
+# --- axes/higher_pairs ----------------------------------------------------------------------------------------------
+
+DOUBTFUL_MOTION = 3.0
+"""A motion that the rows miss by less than this many times what is allowed is doubtful."""
+MOST_TURNED = 0.1
+"""Share of a motion that may lie outside the space of the pair that is turned to contain it."""
+
+# --- loops/block_closure --------------------------------------------------------------------------------------------
+
+LOOSEST_CLOSED = 1e-4
+"""Loops whose axes are in no relation that snapping knows (Bennett's) close to `SIGMAS` times the uncertainty of the
+axes, but to no more than this relative singular value."""
+FEW_RATES = 160
+"""Blocks of at most so many joint rates are decided at once."""
+MOST_RATES = 4000
+"""Largest number of joint rates for which singular values are affordable."""
+SURE_DROPPED = 1e-10
+"""In the elimination, what is dropped is below this, ..."""
+SURE_KEPT = 1e-5
+"""... and what is kept above this, or else the decision is left to singular values."""
+PIVOT_SHARE = 0.3
+"""Any column of at least this share of the largest may be chosen: preference decides among these."""
+RATE_ROUNDING = 1e-10
+"""Rates below this share of the largest of a solution are zero."""
+FACTOR_ROUNDING = 1e-13
+"""Factors of an elimination below this are zero, ..."""
+SUM_ROUNDING = 1e-14
+"""... and sums of products of them below this."""
+AXES_RANK = 1e-6
+"""Relative singular value below which axes are parallel where the point nearest to all of them is looked for."""
+
+# --- mobility/closed_pose -------------------------------------------------------------------------------------------
+
+BALANCED = 1e-6
+"""Curvature (of unit freedoms) that is rounding."""
+UNBALANCED = 1e-4
+"""Curvature that is none."""
+MOST_TESTED_FREEDOMS = 40
+"""Freedoms of a block up to which directions that pass the second-order test are looked for."""
+SLOW_ITERATIONS = 60
+"""Gauss–Newton iterations where convergence is linear: halving, at a simple singularity."""
+MOST_PASSING = 12
+"""Directions that pass the second-order test that are followed."""
+SAME_LINE = 0.999
+"""Cosine above which two of them are one."""
+COMPLEMENT = 1e-6
+"""Singular value below which a direction has no part in a space."""
+
+# --- mobility/local_motions -----------------------------------------------------------------------------------------
+
+SEED = 20000
+"""Of the random mixes of freedoms that are stepped along: the same in every run."""
+MIXES = 3
+"""Mixes of the freedoms, all of which must be kept: one could by chance lie in a branch of its own."""
+MANY_MIXES = 6
+"""Mixes at a singular pose, beside the freedoms themselves."""
+BRANCH_MIXES = 2
+"""Mixes at a pose that lies on one branch, as far as is known."""
+STEP_SIZES = (0.05, 0.01, 0.002)
+"""rad, and shares of the block's size: near a singular pose a long step leaves the neighbourhood."""
+STEPPED_RANK = 1e-6
+"""Relative singular value below which a freedom counts as free at a stepped pose, whose loops are closed to
+rounding."""
+STEPPED_RANK_EXACT = 1e-9
+"""The same where the loops close to rounding over the whole step: nothing of the axes' misfit is in it."""
+CLOSURE_ROUNDING = 1e-13
+"""Rounding of a closure."""
+HIGHER_ORDER = 0.3
+"""What a half stride leaves of a whole one's residual: more is misfit, which grows with the step, less an obstruction
+of higher order."""
+FAST_ITERATIONS = 12
+"""Gauss–Newton iterations where convergence is quadratic."""
+FAST_CHANGE = 1e-9
+"""Change after which such a solve has converged."""
+SLOW_CHANGE = 1e-11
+"""Change after which a full solve has."""
+LONGEST_CHANGE = 0.5
+"""Share of a step that one iteration may change at most."""
+FINEST_VALUE = 1e-12
+"""Relative singular value that a full solve still uses: near a singularity of fourth order they are that small."""
+STEP_KEPT = 0.9
+"""Share of a step that is left when the motion is real."""
+STEP_LOST = 0.1
+"""Share that is left when it is none."""
+STEP_ASTRAY = 2.0
+"""Steps that end farther than this many steps away lead elsewhere."""
+STEP_ASIDE = 0.2
+"""Share of a step that may go aside within a smooth branch."""
+CONE_SHARE = 0.05
+"""Relative singular value from which on the ends of steps span a direction of the tangent cone."""
+MOST_BRANCHES = 8
+"""Branches that are told apart."""
+SAME_BRANCH = 0.95
+"""Least cosine between the freedoms of two poses of one branch."""
+BRANCH_STEP = 0.1
+"""Share of the distance from the pose by which a branch is stepped along."""
+MOST_STEP_WORK = 2e10
+"""Multiplications that the steps at a singular pose may take; a block that needs more stays undecided."""
+
+# --- mobility/finite_motion -----------------------------------------------------------------------------------------
+
+MOST_BLOCK_WORK = 5e8
+"""Multiplications of one singular value decomposition of a block; above it the block is not tried. A mesh of
+300 hinges has 5e7, one of 250 ball joints about 5e8."""
+MOVING_JOINT = 1e-3
+"""Share of the fastest rate from which on a joint is named as moving."""
+MOST_STATEMENTS = 4
+"""Blocks whose statements are told one by one."""
+
+# --- mobility/idle --------------------------------------------------------------------------------------------------
+
+IDLE_SECTORS = 12
+"""Parts of a turn that a ring is looked at in, ..."""
+IDLE_LEAST_SECTOR = 0.25
+"""... and share of their mean area that each must have."""
+IDLE_AXIS = 1e-3
+"""Sine between axes, and part of a unit turn outside a joint's freedoms, that is none."""
+IDLE_PLACE = 1e-4
+"""Share of the assembly's size by which axes and centres may lie apart."""
+INTENDED_AXIS = 0.02
+"""Sine by which the axis of an intended joint may be off that of the turn that it names, ..."""
+INTENDED_PLACE = 1e-2
+"""... and share of the assembly's size by which its place may."""
+
+# --- mobility/joint_redundancy, loop_redundancy ---------------------------------------------------------------------
+
+NAMED_CONTACT_AXIS = 0.02
+"""Directions of contacts this near (sine) to an axis of the world have its name: contacts are not snapped."""
+SITE_GAP = 0.25
+"""Patches whose gap is below this share of the radius of the smaller one belong together."""
+HELD_TWICE = 1e-9
+"""1 − cosine of directions that two sites both hold."""
+MOST_SORTED_LOOPS = 60
+"""Up to so many loops in a block, what they hold together is told apart."""
+MOST_NAMED = 12
+"""So many bodies or joints are named in a text."""
+
+# --- mobility/named_freedoms ----------------------------------------------------------------------------------------
+
+SAME_RATES = 1e-2
+"""An idle turn is one of the assembly's freedoms when it is within this share of one."""
+NO_TURN = 1e-10
+"""Turn (rad/s) beside a velocity (m/s) of at most 1, or its share of a larger one, that is none."""
+NO_PITCH = 1e-6
+"""m a turn beside an arm of at most 1 m, or its share of a longer one, that is none."""
+EXCHANGED = 0.1
+"""Rate in an idle turn from which on a driver may give way to it."""
+NO_TWIST = 1e-12
+"""Largest component of a relative twist that is none."""
+
+# --- mobility/couplings, stated_couplings ---------------------------------------------------------------------------
+
+FIXED_RATIO = 1e-6
+"""Relative: rates that keep their ratio to this are coupled."""
+TOOTHED_TURNS = 1.75
+"""Full turns of the convex edges of an outline from which on it has teeth."""
+INDEPENDENT_ROW = 1e-9
+"""Share of the largest entry below which what is left of a row is rounding."""
+
+# --- mobility/teeth -------------------------------------------------------------------------------------------------
+
+EVEN_TEETH = 0.03
+"""Share of the pitch by which teeth may stand elsewhere than at even distances, or leave the constant ratio:
+tessellated involutes of five points a flank stay below a third of it, straight flanks on wheels do not."""
+FEWEST_TEETH = 5
+"""Teeth of a whole wheel, and teeth in a row of a rack or a sector, from which on they are teeth and no cams."""
+TOOTH_POSES = 24
+"""Poses in which the sections are held against each other while one tooth passes."""
+IN_PLANE = 1e-3
+"""rad: axes that are parallel or perpendicular to this lie in one plane."""
+RATIO_AGREES = 0.01
+"""Relative: what the ratio at one pose, from the normals of the flanks, may differ from that of the teeth."""
+TIP_MARGIN = 1.02
+"""Teeth up to this share of the other wheel's tip radius are within its reach."""
+
+# --- separation/cone ------------------------------------------------------------------------------------------------
+
+CONE_FREE = 1e-4
+"""Speeds over the size of a unit twist below which rows do not move: rounding of meshes and of HiGHS."""
+CONE_HELD = 2e-3
+"""Speeds above which they do; in between nobody knows."""
+LEAST_ROW = 1e-3
+"""Length below which what is left of a unit row says nothing."""
+EQUAL_ROWS = 1e-6
+"""A row counts as tight below this, and two rows as one."""
+CERTIFICATE_SHARE = 1e-6
+"""Least λ over the greatest of a certificate."""
+NEWTON_STEPS = 25
+"""Newton steps; certificates are found within a few."""
+LONGEST_STEP = 2.0
+"""Change of an exponent that one Newton step may make at most."""
+FAR_EXPONENT = 40.0
+"""Exponent at which the sum has evidently no minimum."""
+MOST_RAYS = 48
+"""Rays at an intermediate step beyond which there are too many to list."""
+
+# --- separation/releases, separations -------------------------------------------------------------------------------
+
+MOST_RELEASES = 12
+"""Extreme directions up to which each is told."""
+MIDDLE_STEPS = 200
+"""Steps in which a direction inside a cone of very many extreme directions is looked for."""
+MIDDLE_STRIDE = 0.1
+"""Speed that such a step gives to the worst row."""
+MOST_OPENING_ROWS = 12_000
+"""Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
+MOST_TOGETHER = 8
+"""Bodies up to which those are told that leave together."""
+LARGEST_TWIST = 1.0 / CONE_HELD
+"""Bound of twist components where a pair opens by 1: what opens slower does not open for certain."""
+
+# --- questions ------------------------------------------------------------------------------------------------------
+
+MOTION_THERE = 1e-3
+"""A unit twist is there when less than this of it lies outside the freedoms (scaled by the size)."""
+BLOCKING_SPEED = 0.02
+"""Share of a patch's speed along its normals from which on it is named as blocking."""
+MOST_PROGRAM_ROWS = 20_000
+"""Rows of contact beyond which the linear program would take minutes."""
+MOST_CONTACTS_TRIED = 40
+"""Violated contacts up to which each is tried again, so that none is named without need."""
+MOST_ROWS_TRIED = 2_000
+"""Rows of contact up to which that is done."""
+MOST_PATCHES = 40
+"""Joints with more patches are not decided again without each."""
+MOST_PATCH_SETS = 24
+"""Sets of several patches that are tried, the smallest area first."""

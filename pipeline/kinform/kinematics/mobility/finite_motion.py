@@ -1,0 +1,216 @@
+"""Finite mobility of the assembly: which first-order freedoms are motions over a distance.
+
+Each block of the graph of bodies and joints is tried by itself (`local_motions`); a bridge closes no loop, so its
+freedoms are motions. A `general` joint is known by its velocities alone, which say nothing of where they
+lead: its block counts only where its other joints, with the general ones held, move as freely.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.graphs.graph import UnionFind, blocks
+from kinform.foundation.words import counted, listed
+from kinform.kinematics.answers import Answers, ask
+from kinform.kinematics.constants import LEAST_FRAME, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
+from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
+from kinform.kinematics.mobility.closed_pose import first_order
+from kinform.kinematics.mobility.local_motions import LocalMotions, local_motions
+from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
+from kinform.model.names import JointName
+
+__all__ = ["Finite", "finite_mobility"]
+
+
+PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
+"""Joints whose point says where the mechanism is."""
+
+
+@dataclass(frozen=True)
+class Finite:
+    """The count, what is special about the pose, and why one may believe it."""
+
+    count: int | None
+    reason: str
+    """Freedoms that are no motions, bifurcations, and what could not be decided; empty where all move."""
+    infinitesimal: int
+    singular: bool
+    certificates: tuple[FiniteCertificate, ...]
+
+
+def finite_mobility(
+    edges: Sequence[tuple[int, int]],
+    joints: Sequence[Joint],
+    nodes: int,
+    instantaneous: int,
+    size: float,
+    ties: Sequence[Coupling] = (),
+    answers: Answers | None = None,
+) -> Finite:
+    """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
+    `instantaneous` freedoms of first order; `size` of the assembly (m); `ties`: couplings of constant ratio, which
+    stand for the contacts that they go through."""
+    certificates = []
+    trees = UnionFind(nodes)
+    for a, b in edges:
+        trees.union(a, b)
+    # bridges, and trees that are loose
+    open_ended = 6 * (len({trees.find(n) for n in range(nodes)}) - 1)
+    for block in blocks(nodes, edges):
+        if len(block) == 1:
+            open_ended += joints[block[0]].freedoms
+            continue
+        couplings = tuple(tie for tie in ties if any(joints[k].name == tie.through for k in block))
+        question = ([edges[k] for k in block], [joints[k] for k in block], size, couplings)
+        certificate = ask(answers, "finite", question, partial(_block, *question))
+        if certificate is not None:
+            certificates.append(certificate)
+    first = [c.instantaneous for c in certificates if c.instantaneous is not None]
+    last = [c.finite for c in certificates if c.finite is not None]
+    statements = [c.statement for c in sorted(certificates, key=lambda c: c.finite is not None) if c.statement]
+    if len(first) == len(certificates) and open_ended + sum(first) != instantaneous:
+        why = "two ways to count the freedoms of first order disagree: a rank is on the edge"
+        return Finite(None, why, 0, False, tuple(certificates))
+    if len(statements) > MOST_STATEMENTS:
+        shown = MOST_STATEMENTS - 1
+        statements = [*statements[:shown], f"and {len(statements) - shown} more blocks of joints"]
+    return Finite(
+        count=open_ended + sum(last) if len(last) == len(certificates) else None,
+        reason="; ".join(statements),
+        infinitesimal=sum(c.infinitesimal for c in certificates),
+        singular=any(c.singular for c in certificates),
+        certificates=tuple(certificates),
+    )
+
+
+def _block(
+    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], size: float, ties: Sequence[Coupling] = ()
+) -> FiniteCertificate | None:
+    """The certificate of one block with loops; None where nothing in it moves, even at first order.
+
+    Gears whose ratios are known are tried as ratios; other general joints are held, and ambiguous ones leave the motion
+    unknown.
+    """
+    names = tuple(joint.name for joint in joints)
+    geared = _geared(edges, joints, ties)
+    if geared is not None:
+        kept, ratios = geared
+        members = [joints[k] for k in kept]
+        system = loop_system([edges[k] for k in kept], [j.twists for j in members], _frame(members, size), ratios)
+        certificate = _certificate([joint.name for joint in members], system)
+        return certificate and replace(certificate, joints=names)
+    frame = _frame(joints, size)
+    system = loop_system(edges, [joint.twists for joint in joints], frame)
+    rows, columns = 6 * len(system.loops), system.coordinates
+    if rows * columns * min(rows, columns) > MOST_BLOCK_WORK:
+        why = f"{len(joints)} joints in one block, from {names[0]} to {names[-1]}, are too many to be tried"
+        return FiniteCertificate(names, None, None, statement=why)
+    doubtful = [joint.name for joint in joints if joint.status == "ambiguous"]
+    general = [joint.name for joint in joints if joint.type == "general"]
+    if not doubtful and not general:
+        return _certificate(names, system)
+    count = first_order(system)
+    if count == 0:
+        return None
+    if not doubtful:
+        held = [joint.twists[:0] if joint.type == "general" else joint.twists for joint in joints]
+        certificate = _certificate(names, loop_system(edges, held, frame))
+        if certificate is not None and certificate.finite == count:
+            return certificate
+    why = f"{_few(doubtful)} is ambiguous" if doubtful else f"{_few(general)} is known by its velocities only"
+    if len(doubtful or general) > 1:
+        why = why.replace(" is ", " are ").replace("its", "their")
+    return FiniteCertificate(names, count, None, statement=f"not known how the loops move over a distance: {why}")
+
+
+def _geared(
+    edges: Sequence[tuple[int, int]], joints: Sequence[Joint], ties: Sequence[Coupling]
+) -> tuple[list[int], list[tuple[int, int, float]]] | None:
+    """Joints that are left when the contacts of gears are taken out, and the ratios between these (by their places
+    among them); None where there are no gears, or something else is not certain."""
+    meshing = {tie.through: (tie.joints, tie.meshing.ratio) for tie in ties if tie.meshing is not None}
+    general = [joint.name for joint in joints if joint.type == "general"]
+    if not general or not set(general) <= set(meshing) or any(joint.status == "ambiguous" for joint in joints):
+        return None
+    kept = [k for k, joint in enumerate(joints) if joint.type != "general"]
+    place = {joints[k].name: n for n, k in enumerate(kept)}
+    gears = [meshing[name] for name in general]
+    if not all(name in place for names, _ in gears for name in names):
+        return None
+    return kept, [(place[a], place[b], ratio) for (a, b), ratio in gears]
+
+
+def _frame(joints: Sequence[Joint], size: float) -> Frame:
+    """Centre and size of a block. Points of joints that meet have no size of their own: then a share of
+    the assembly's counts, as for the first-order count."""
+    placed = [j.point for j in joints if j.point is not None and j.type in PLACED]
+    placed = placed or [j.point for j in joints if j.point is not None]
+    if not placed:
+        return Frame(np.zeros(3), size)
+    low, high = np.min(placed, axis=0), np.max(placed, axis=0)
+    return Frame(0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), LEAST_FRAME * size))
+
+
+def _certificate(names: Sequence[JointName], system: LoopSystem) -> FiniteCertificate | None:
+    """How the loops of these joints move, with names and in words; None where nothing moves."""
+    motions = local_motions(system)
+    if not motions.freedoms:
+        return None
+    # a shaky part that rides along is as short of freedoms on the one branch
+    always = len(motions.branches) == 1 and motions.stepped == motions.freedoms
+    decided = motions.dimension is not None
+    singular = decided and any(count < motions.freedoms for count in motions.branches) and not always
+    rates = np.abs(motions.lost).max(axis=0, initial=0.0)
+    moves = tuple(names[k] for k in np.unique(system.joint[rates > MOVING_JOINT * rates.max(initial=0.0)]))
+    return FiniteCertificate(
+        joints=tuple(names),
+        instantaneous=motions.freedoms,
+        finite=motions.dimension,
+        infinitesimal=len(motions.lost),
+        singular=singular,
+        branches=motions.branches,
+        step=motions.step,
+        kept=round(motions.kept, 6),
+        residual=_bound(motions.residual),
+        stepped=motions.stepped,
+        second_order=motions.order,
+        moves=moves,
+        statement=_statement(names, moves, motions, singular),
+    )
+
+
+def _bound(residual: float) -> float:
+    """The next power of ten: what is below rounding is not worth a digit."""
+    return float(10.0 ** math.ceil(math.log10(max(residual, 1e-15))))
+
+
+def _statement(names: Sequence[str], moves: Sequence[str], motions: LocalMotions, singular: bool) -> str:
+    """What is special about the motions; "" where all freedoms of first order are motions at a regular pose."""
+    if motions.dimension is None:
+        return f"not known how the loops of {_few(names)} move over a distance: {motions.reason}"
+    freedoms, lost, branches = counted(motions.freedoms, "freedom"), len(motions.lost), motions.branches
+    sentences = []
+    if lost:
+        verb = "is" if lost == 1 else "are"
+        sentences.append(
+            f"{lost} of {freedoms} {verb} only infinitesimal: {_few(moves)} give at first order and then lock (shaky)"
+        )
+    if singular and len(branches) > 1:
+        sentences.append(
+            f"the pose is a bifurcation: {_few(names)} have {freedoms} here, and {len(branches)} branches "
+            f"({' and '.join(map(str, branches))} freedoms) were found that lead out of it"
+        )
+    elif singular:
+        sentences.append(f"the pose is singular: {_few(names)} have {freedoms} here and {branches[0]} beside it")
+    return "; ".join(sentences)
+
+
+def _few(names: Sequence[str], limit: int = 4) -> str:
+    """ "a, b and c"; beyond the limit "a, b, c, d and 3 more"."""
+    return listed(list(names) if len(names) <= limit + 1 else [*names[:limit], f"{len(names) - limit} more"])

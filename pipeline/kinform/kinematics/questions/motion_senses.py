@@ -1,0 +1,203 @@
+"""Is one motion there, forward or backward: in a pair, and in the whole assembly with contacts that push only?
+
+In the assembly the motion between two bodies is prescribed and everything else is free: the linear program
+min 1ᵀs, JV + s ≥ 0, s ≥ 0 is at zero when it can be done. Where not, it could be done without the contacts
+that have s > 0; those of them that can be put back are, one by one. The others block it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinform.foundation.algebra.screws import Frame, scaled
+from kinform.foundation.graphs.graph import blocks
+from kinform.kinematics.constants import MOST_CONTACTS_TRIED, MOST_PROGRAM_ROWS, MOST_ROWS_TRIED
+from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
+from kinform.model.arrays import Array, Ints
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Joint, Kinematics
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+__all__ = ["Attempt", "attempt", "pair_ways"]
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """One sense of a motion in the whole assembly: `possible` is None where it was too large to decide."""
+
+    possible: bool | None
+    patches: tuple[int, ...] = ()
+    """Indices into Contacts.patches: without these it could be done."""
+    joints: tuple[str, ...] = ()
+    """Joints that somebody stated, and that would have to give."""
+
+
+def pair_ways(
+    kinematics: Kinematics, patches: Sequence[Patch], joint: Joint, twist: Array, tolerance: float
+) -> tuple[bool, bool] | None:
+    """Whether contact lets the second body of the joint move by the twist (ω; v at the origin), and by its reverse.
+
+    None where contact does not decide the joint.
+    """
+    if is_stated(joint):
+        return None
+    rows = ContactRows(kinematics.matrix, kinematics.bodies, patches)
+    cone = rows.cone(rows.members(joint))
+    if cone is None:
+        return None
+    unit = scaled(twist[:, None], cone.frame)[:, 0]
+    unit = unit / np.linalg.norm(unit)
+    if len(cone.fixed) and float(np.linalg.norm(cone.fixed @ unit)) > tolerance:
+        return False, False
+    speed = cone.rows @ unit
+    return bool((speed >= -tolerance).all()), bool((speed <= tolerance).all())
+
+
+def attempt(
+    kinematics: Kinematics,
+    patches: Sequence[Patch],
+    first: str,
+    second: str,
+    twist: Array,
+    frame: Frame,
+    tolerance: float,
+) -> Attempt:
+    """Can the second body move relative to the first by the twist (ω; v at the origin), the assembly taking part?
+
+    `frame`: of the motion, in which the twist has about unit size; slower violations than `tolerance` are none.
+    Unknown are the twists of the other bodies on paths between the two; each contact of these gives rows that must not
+    be negative.
+    """
+    node = {str(body.name): k for k, body in enumerate(kinematics.bodies)}
+    joints = _between(kinematics, node[first], node[second], node)
+    others = sorted({node[name] for joint in joints for name in joint.bodies} - {node[first], node[second]})
+    column = {n: 6 * k for k, n in enumerate(others)}
+    goal = scaled(twist[:, None], frame)[:, 0]
+    prescribed = {node[first]: np.zeros(6), node[second]: goal / np.linalg.norm(goal)}
+    source = ContactRows(kinematics.matrix, kinematics.bodies, patches)
+    program = _Program(6 * len(others))
+    for joint in joints:
+        ends = [node[name] for name in joint.bodies]
+        for rows, label in _rows(source, joint, frame):
+            program.add(rows, label, ends, column, prescribed)
+    if not program.count:
+        return Attempt(True)
+    slack = program.violations() if program.count <= MOST_PROGRAM_ROWS else None
+    if slack is None:
+        return Attempt(None)
+    worst: dict[int | str, float] = {}
+    for k in np.flatnonzero(slack > tolerance):
+        worst[program.labels[k]] = max(worst.get(program.labels[k], 0.0), float(slack[k]))
+    broken = sorted(worst, key=lambda label: (worst[label], str(label)))
+    blocking = _fewest(broken, program, tolerance)
+    return Attempt(
+        not blocking,
+        tuple(sorted(label for label in blocking if isinstance(label, int))),
+        tuple(sorted(label for label in blocking if isinstance(label, str))),
+    )
+
+
+class _Program:
+    """min 1ᵀs with AV + s ≥ −b and s ≥ 0, rows added contact by contact."""
+
+    def __init__(self, width: int):
+        self.count = 0
+        """Rows so far."""
+        self.labels: list[int | str] = []
+        """Of each row: the patch, or the name of the stated joint, that it belongs to."""
+        self._width = width
+        self._right: list[Array] = []
+        self._entries: list[tuple[Array, Ints, Ints]] = []
+
+    def add(
+        self,
+        rows: Array,
+        label: int | str,
+        ends: Sequence[int],
+        column: Mapping[int, int],
+        prescribed: Mapping[int, Array],
+    ) -> None:
+        """Rows (n, 6) of the twist of the second of two bodies less that of the first: each body has its `column`, or
+        its twist is `prescribed`."""
+        numbers = np.arange(self.count, self.count + len(rows))
+        bound = np.zeros(len(rows))
+        for sign, node in zip((-1.0, 1.0), ends, strict=True):
+            if node in prescribed:
+                bound += sign * rows @ prescribed[node]
+            else:
+                columns = np.tile(column[node] + np.arange(6), len(rows))
+                self._entries.append(((sign * rows).ravel(), np.repeat(numbers, 6), columns))
+        self._right.append(bound)
+        self.labels += [label] * len(rows)
+        self.count += len(rows)
+
+    @cached_property
+    def _matrix(self) -> csr_matrix:
+        """A, once all rows are there."""
+        from scipy.sparse import coo_matrix
+
+        none = (np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64))
+        data, rows, columns = (np.concatenate(parts) for parts in zip(none, *self._entries, strict=True))
+        return coo_matrix((data, (rows, columns)), (self.count, self._width)).tocsr()
+
+    def violations(self, without: Collection[int | str] = ()) -> Array | None:
+        """(rows,) s at the optimum without the rows of these labels, which have 0; None where HiGHS gives up."""
+        from scipy.optimize import linprog
+        from scipy.sparse import hstack, identity
+
+        chosen = np.array([label not in without for label in self.labels])
+        count = int(chosen.sum())
+        solved = linprog(
+            np.concatenate([np.zeros(self._width), np.ones(count)]),
+            A_ub=hstack([-self._matrix[chosen], -identity(count)]).tocsr(),
+            b_ub=np.concatenate(self._right)[chosen],
+            bounds=[(None, None)] * self._width + [(0.0, None)] * count,
+            method="highs",
+        )
+        if solved.status != 0:
+            return None
+        out = np.zeros(self.count)
+        out[chosen] = solved.x[self._width :]
+        return out
+
+
+def _fewest(broken: Sequence[int | str], program: _Program, tolerance: float) -> set[int | str]:
+    """Of the contacts without which the motion is there, a set none of which can be put back."""
+    out = set(broken)
+    if len(broken) > MOST_CONTACTS_TRIED or program.count > MOST_ROWS_TRIED:
+        return out
+    for label in broken:
+        if len(out) == 1:
+            break
+        slack = program.violations(out - {label})
+        if slack is not None and slack.max(initial=0.0) <= tolerance:
+            out.discard(label)
+    return out
+
+
+def _between(kinematics: Kinematics, first: int, second: int, index: dict[str, int]) -> list[Joint]:
+    """The joints on paths between two bodies: those in one block with an edge that would join them."""
+    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
+    block = next(b for b in blocks(len(kinematics.bodies), [*edges, (first, second)]) if len(edges) in b)
+    return [kinematics.joints[k] for k in block if k < len(edges)]
+
+
+def _rows(source: ContactRows, joint: Joint, frame: Frame) -> list[tuple[Array, int | str]]:
+    """Rows (n, 6) ≥ 0 of the motion of the second body relative to the first, patch by patch; of a stated joint
+    those that hold both ways."""
+    if is_stated(joint):
+        free = scaled(joint.twists.T, frame)
+        basis = np.linalg.qr(free, mode="complete")[0][:, free.shape[1] :].T if free.shape[1] else np.eye(6)
+        return [(np.vstack([basis, -basis]), str(joint.name))]
+    out: list[tuple[Array, int | str]] = []
+    for k, turned in source.members(joint):
+        rows = source.rows(k, frame, turned=turned)
+        out.append((rows / np.maximum(np.linalg.norm(rows, axis=1), 1e-300)[:, None], k))
+    return out
