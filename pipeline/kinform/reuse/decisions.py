@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from kinform.kinematics.pair.question import PairAnswer
+from kinform.kinematics.pair.question import Answer
 from kinform.kinematics.separation.releases import Leaving
 from kinform.model.kinematics import Blocker, FiniteCertificate, Joint, Release
 from kinform.reuse import fingerprints
@@ -25,9 +25,7 @@ __all__ = ["Known"]
 One = TypeVar("One")
 Two = TypeVar("Two")
 
-_CLASSES: dict[str, type] = {
-    cls.__name__: cls for cls in (Blocker, FiniteCertificate, Joint, Leaving, PairAnswer, Release)
-}
+_CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Blocker, FiniteCertificate, Joint, Leaving, Answer, Release)}
 
 
 class Known:

@@ -10,7 +10,7 @@ from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, stated_roots
 from kinform.kinematics.pair.evidence import Evidence, Member, gather
-from kinform.kinematics.pair.question import PairAnswer, PairQuestion, answer_pair, joint_between
+from kinform.kinematics.pair.question import Answer, Question, answer_pair, joint_between
 from kinform.model.arrays import Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
@@ -37,19 +37,19 @@ class Pairs:
         self.extremes: dict[int, Ints] = {}
         """Samples that bound the patches that were looked at."""
 
-    def decide(self, members: Sequence[Member], bodies: Sequence[Body]) -> PairAnswer:
+    def decide(self, members: Sequence[Member], bodies: Sequence[Body]) -> Answer:
         """What the patches between two bodies say."""
         tolerances = self.assembly.tolerances
         contact, size = _scales(members, bodies, tolerances, self._tolerance, self._extents)
-        question = PairQuestion(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
+        question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
         answer = ask(self._answers, "pair", (question,), lambda: answer_pair(question))
         self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
         return answer
 
 
-def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[PairAnswer, Joint]]:
+def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]:
     """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
-    known_answers: dict[tuple[int, ...], PairAnswer] = {}
+    known_answers: dict[tuple[int, ...], Answer] = {}
     stated = stated_roots(pairs.assembly, merger)
     while True:
         bodies = merger.bodies()
@@ -60,7 +60,7 @@ def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[PairAnswer, Joi
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
             if a != b:
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
-        out: dict[Pair, tuple[PairAnswer, Joint]] = {}
+        out: dict[Pair, tuple[Answer, Joint]] = {}
         fused = False
         for pair in sorted(touching):
             members = touching[pair]

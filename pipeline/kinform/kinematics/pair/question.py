@@ -1,7 +1,7 @@
 """What contact decides of one pair of bodies, from all that it depends on.
 
-A `PairQuestion` does not hold which surfaces of a mesh touch, nor the names of the bodies: a change of those changes no
-`PairAnswer`, so that one of an earlier run may stand for it (`kinematics.answers`).
+A `Question` does not hold which surfaces of a mesh touch, nor the names of the bodies: a change of those changes no
+`Answer`, so that one of an earlier run may stand for it (`kinematics.answers`).
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, JointName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["PairAnswer", "PairQuestion", "answer_pair", "bare_patches", "joint_between"]
+__all__ = ["Answer", "Question", "answer_pair", "bare_patches", "joint_between"]
 
 
 @dataclass(frozen=True, eq=False)
-class PairQuestion:
+class Question:
     """What two bodies may do relative to each other, by the contact between them."""
 
     members: tuple[tuple[Patch, bool], ...]
@@ -37,7 +37,7 @@ class PairQuestion:
 
 
 @dataclass(frozen=True, eq=False)
-class PairAnswer:
+class Answer:
     """What the contact of two bodies says on its own."""
 
     extremes: tuple[Ints, ...]
@@ -57,17 +57,17 @@ def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
     return tuple(replace(patch, surfaces=(-1, -1)) for patch in patches)
 
 
-def answer_pair(question: PairQuestion) -> PairAnswer:
+def answer_pair(question: Question) -> Answer:
     """The joint that the contact leaves, with the samples that bound each patch."""
     extremes = tuple(extreme_samples(patch) for patch, _ in question.members)
     members = [(k, patch, turned) for k, (patch, turned) in enumerate(question.members)]
     evidence = gather(members, question.tolerances, question.contact, question.size)
     if evidence is None:
-        return PairAnswer(extremes, None)
+        return Answer(extremes, None)
     decision = decide(evidence, question.tolerances)
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
     strict = twist_at_origin(decision.strict, evidence.frame).T if decision.status == "blocked" else None
-    return PairAnswer(extremes, joint, strict, *misalignment(evidence, decision))
+    return Answer(extremes, joint, strict, *misalignment(evidence, decision))
 
 
 def joint_between(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequence[int]) -> Joint:
