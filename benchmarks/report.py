@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from kinform import results
-from kinform.reports.page import page
+from kinform.reports.page import page_html
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "page"))
 
@@ -41,7 +41,7 @@ def main(paths: list[str]) -> None:
     for name in paths:
         design = results.read(Path(name))
         start = time.perf_counter()
-        text = page(design)
+        text = page_html(design)
         made = time.perf_counter() - start
         facets = sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None)
         print(f"{Path(name).name:<28}{facets:>10}{len(text.encode()) / 1e6:>8.2f}{made:>9.1f}{opened(text):>9.2f}")

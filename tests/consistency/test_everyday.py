@@ -13,7 +13,7 @@ from kinform.consistency import check
 from kinform.errors import InputError
 from kinform.foundation.words import length
 from kinform.model.findings import Finding
-from kinform.reports.words import place
+from kinform.reports.phrases import place
 
 
 def checked(path: Path):

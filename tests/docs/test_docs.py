@@ -12,7 +12,7 @@ from known import ROOT
 from pictures import pixels
 
 from kinform.consistency import rules_markdown
-from kinform.reports.page.png import png
+from kinform.reports.page.raster import png
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from known import FIXTURES
 from markup import NASTY
 
 from kinform import stages
-from kinform.reports.page import page
+from kinform.reports.page import page_html
 
 
 @pytest.fixture(scope="session")
@@ -53,7 +53,7 @@ def page_of():
 
     def made(design):
         if id(design) not in known:
-            known[id(design)] = design, page(design)
+            known[id(design)] = design, page_html(design)
         return known[id(design)][1]
 
     return made

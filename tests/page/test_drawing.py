@@ -23,9 +23,8 @@ from kinform.reports.page.freedoms import freedom_motions
 from kinform.reports.page.meshes import shape_of
 from kinform.reports.page.packing import Blob, quantised, restored
 from kinform.reports.page.pictures import Artist
-from kinform.reports.page.plots import Plot, Series, drawn
-from kinform.reports.page.png import png
-from kinform.reports.page.raster import View, rasterise
+from kinform.reports.page.plots import Plot, Series, plot_svg
+from kinform.reports.page.raster import View, png, rasterise
 
 VIEWER = files("kinform.reports.page").joinpath("assets", "viewer")
 
@@ -150,7 +149,7 @@ def _heights(svg, kind):
 
 def test_limits_stand_at_their_value_between_the_ticks():
     time = np.linspace(0.0, 2.0, 50)
-    svg = drawn(
+    svg = plot_svg(
         Plot("yaw", "°", (Series("", 10 * np.sin(time)),), (("required limit", -20.0), ("required limit", 15.0))), time
     )
     ticks = [float(t) for t in re.findall(r'text-anchor="end">([-\d.]+)</text>', svg)]
@@ -165,7 +164,7 @@ def test_a_long_curve_is_thinned_but_keeps_its_peaks_and_its_gaps():
     values[12_345], values[777] = 3.0, -2.0
     values[15_000:15_200] = np.nan
     time = np.linspace(0.0, 1.0, len(values))
-    path = re.search(r'class="curve curve-0" d="([^"]+)"', drawn(Plot("x", "N", (Series("", values),)), time))[1]
+    path = re.search(r'class="curve curve-0" d="([^"]+)"', plot_svg(Plot("x", "N", (Series("", values),)), time))[1]
     heights = [float(y) for y in re.findall(r" ([\d.]+)", path)]
     assert len(heights) < 1000
     flat = max(set(heights), key=heights.count)

@@ -13,7 +13,7 @@ from markup import NASTY, read
 
 from kinform import results, stages
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.reports.page import Scene, facts, page, summary
+from kinform.reports.page import Scene, facts, page_html, page_summary
 from kinform.reports.page.agreement import rows
 
 SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
@@ -35,7 +35,7 @@ def test_names_are_text_and_nothing_else(nasty, page_of):
 
 
 def test_the_summary_for_pull_requests_shows_names_as_they_are(nasty):
-    text = summary(nasty)
+    text = page_summary(nasty)
     assert not re.search(r"<\w", text)
     for line in text.splitlines():
         if line.startswith("|"):
@@ -44,7 +44,7 @@ def test_the_summary_for_pull_requests_shows_names_as_they_are(nasty):
 
 def test_a_heading_of_the_summary_says_what_it_is_about(derive_design):
     design = derive_design(OVERLAPS)
-    headings = [line for line in summary(design).splitlines() if line.startswith("## ") and " KF" in line]
+    headings = [line for line in page_summary(design).splitlines() if line.startswith("## ") and " KF" in line]
     told = facts.findings(design)
     assert len(headings) == len(told) > 0
     for heading, finding in zip(headings, told, strict=True):
@@ -65,7 +65,7 @@ def test_the_same_design_gives_the_same_bytes_also_from_its_file(derive_design, 
     design = derive_design(OVERLAPS)
     results.write(design, tmp_path / "a.h5")
     text = page_of(design)
-    assert text == page(results.read(tmp_path / "a.h5"))
+    assert text == page_html(results.read(tmp_path / "a.h5"))
     assert len(text.encode()) < 500_000
 
 
@@ -153,7 +153,7 @@ def test_every_serious_finding_has_a_row(derive_design):
 def test_without_the_rules_nothing_agrees_and_the_page_says_so(derive_design):
     design = replace(derive_design(SEEKER), report=None)
     assert not any(row.mark == "agrees" for row in rows(design))
-    text = " ".join(read(page(design)).texts)
+    text = " ".join(read(page_html(design)).texts)
     assert "not verified: the rules have not been run" in text
 
 
@@ -162,7 +162,7 @@ def test_a_page_is_made_of_what_is_known_so_far(stage):
     design = stages.import_(FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml")
     if stage == "contacts":
         design = stages.contacts(design)
-    found = read(page(design))
+    found = read(page_html(design))
     assert len(found.scene["parts"]) == len(design.assembly.parts)
     assert found.scene["joints"] == []
 
@@ -172,7 +172,7 @@ def test_a_function_without_geometry_has_a_page():
         stages.contacts(stages.import_(FIXTURES / "functional" / "stick_four_bar" / "stick_four_bar.toml"))
     )
     design = stages.check(stages.simulate(stages.mass(design)))
-    scene = read(page(design)).scene
+    scene = read(page_html(design)).scene
     assert scene["meshes"] == []
     assert len(scene["joints"]) == 4
     assert np.ptp([scene["low"], scene["high"]], axis=0).max() > 0

@@ -103,7 +103,7 @@ def check(
 def _without_baseline(report: CheckReport, baseline: Path) -> CheckReport:
     """The report without what the baseline adopts; says on stderr what of it is gone."""
     from kinform.consistency import read_baseline, with_baseline
-    from kinform.reports.words import one_line
+    from kinform.foundation.words import one_line
 
     text = _read(baseline, "baseline", "kinform check F.h5 --write-baseline B.json")
     left, gone = with_baseline(report, read_baseline(text, str(baseline)))

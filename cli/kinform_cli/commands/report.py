@@ -40,18 +40,18 @@ def report(
     if png is not None:
         _make_folder(png)
     design = files.read(source)
-    from kinform.reports.page import Scene, page, pictures, summary
+    from kinform.reports.page import Scene, page_html, page_pictures, page_summary
 
     with Working("report"):
         scene = Scene(design)
-        text = page(design, scene)
-        images = {} if png is None else pictures(scene)
+        text = page_html(design, scene)
+        images = {} if png is None else page_pictures(scene)
     files.write_text(output, text)
     console.say(f"{output}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
     if png is not None:
         for name, data in images.items():
             files.write_bytes(png / name, data)
-        files.write_text(png / "summary.md", summary(design))
+        files.write_text(png / "summary.md", page_summary(design))
         console.say(f"{png}: {counted(len(images), 'picture')} and summary.md")
     if design.report is None:
         console.warn("the rules have not been run, and the page says so: kinform check F.h5 -o F.h5")

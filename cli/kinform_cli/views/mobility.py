@@ -10,7 +10,7 @@ from kinform.design import Design
 from kinform.foundation.words import rate
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Coupling, Mobility
-from kinform.reports.motions import follower_rates, freedom_text
+from kinform.reports.freedom_phrases import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
 from kinform_cli.constants import MOST_NAMES, NO_ANGLE
 from kinform_cli.tables import Rows, stacked

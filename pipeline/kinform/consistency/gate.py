@@ -71,12 +71,12 @@ def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckRepor
 
 def _asked(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is selected, or one that it speaks for."""
-    return any(selected(other, settings) for other in RULES if other is rule or other.code in rule.speaks_for)
+    return any(selected(other, settings) for other in RULES if other.code == rule.code or other.code in rule.speaks_for)
 
 
 def _judged(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is selected, or one that speaks for it."""
-    return any(selected(other, settings) for other in RULES if other is rule or rule.code in other.speaks_for)
+    return any(selected(other, settings) for other in RULES if other.code == rule.code or rule.code in other.speaks_for)
 
 
 def _run(rule: Rule, context: Context) -> Applied:

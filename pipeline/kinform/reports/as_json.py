@@ -9,7 +9,7 @@ from typing import Any
 
 from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport
-from kinform.reports.words import verdict_line
+from kinform.reports.phrases import verdict_line
 
 __all__ = ["SCHEMA", "document", "render"]
 

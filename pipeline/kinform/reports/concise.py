@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from kinform.design import Design
+from kinform.foundation.words import one_line
 from kinform.model.findings import CheckReport
-from kinform.reports.words import one_line, rule_counts, severity_counts, verdict_line, where
+from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
 __all__ = ["render"]
 

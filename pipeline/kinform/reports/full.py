@@ -5,21 +5,12 @@ from __future__ import annotations
 import textwrap
 
 from kinform.design import Design
+from kinform.foundation.words import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.words import (
-    accepted,
-    one_line,
-    place,
-    rule_counts,
-    severity_counts,
-    skipped,
-    verdict_line,
-    where,
-)
+from kinform.reports.constants import WIDTH
+from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_line, where
 
 __all__ = ["render"]
-
-WIDTH = 80
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:

@@ -6,8 +6,9 @@ No line begins with text that a user chose: a part cannot be named so that it be
 from __future__ import annotations
 
 from kinform.design import Design
+from kinform.foundation.words import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
-from kinform.reports.words import details, one_line, rule_counts, severity_counts, verdict_line
+from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
 
 __all__ = ["render"]
 

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.words import details, verdict_line
+from kinform.reports.phrases import details, verdict_line
 
 __all__ = ["render"]
 

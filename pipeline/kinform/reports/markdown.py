@@ -10,17 +10,9 @@ import re
 from collections.abc import Sequence
 
 from kinform.design import Design
+from kinform.foundation.words import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.words import (
-    accepted,
-    details,
-    one_line,
-    rule_counts,
-    severity_counts,
-    skipped,
-    verdict_line,
-    where,
-)
+from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_line, where
 
 __all__ = ["cell_code", "code", "escaped", "render", "table"]
 

@@ -16,7 +16,7 @@ from urllib.parse import quote
 
 from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
-from kinform.reports.words import verdict_line
+from kinform.reports.phrases import verdict_line
 from kinform.version import __version__
 
 if TYPE_CHECKING:

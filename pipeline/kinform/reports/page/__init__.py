@@ -1,13 +1,13 @@
 """One self-contained page about a design, pictures of it, and a summary for pull requests.
 
-`page` gives the HTML, `pictures` the PNG files by name, `summary` the Markdown that embeds them. Nothing is
+`page_html` gives the HTML, `page_pictures` the PNG files by name, `page_summary` the Markdown that embeds them. Nothing is
 written here, and nothing depends on clock, host or paths.
 """
 
 from __future__ import annotations
 
-from kinform.reports.page.render import page
+from kinform.reports.page.html import page_html
+from kinform.reports.page.pull_request import page_pictures, page_summary
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.summary import pictures, summary
 
-__all__ = ["Scene", "page", "pictures", "summary"]
+__all__ = ["Scene", "page_html", "page_pictures", "page_summary"]

@@ -16,8 +16,7 @@ from kinform.foundation import words
 from kinform.model.findings import SEVERITIES
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.page.asked import asked
-from kinform.reports.page.words import axis, contact, joint_sentence, place
+from kinform.reports.page.phrases import axis, contact, joint_sentence, requirement_words
 
 __all__ = ["MARKS", "Row", "rows"]
 
@@ -141,7 +140,9 @@ class _Table:
     def _requirement(self, wanted: Requirement) -> Row:
         """What is asked for, and what was found where it does not hold."""
         found = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
-        row = self._row(wanted.name, "", "; ".join(found), asked(self.design.assembly, wanted), (wanted.name,), True)
+        row = self._row(
+            wanted.name, "", "; ".join(found), requirement_words(self.design.assembly, wanted), (wanted.name,), True
+        )
         return replace(row, behaviour="met") if row.mark == "agrees" else row
 
     def _motion(self) -> Row:
@@ -201,7 +202,7 @@ class _Table:
             text += f" {'along' if joint.type == 'prismatic' else 'normal to' if joint.type == 'planar' else 'about'} "
             text += axis(joint.axis) + (f" and {axis(joint.axis2)}" if joint.axis2 is not None else "")
         if joint.point is not None and joint.type not in ("prismatic", "planar", "fixed"):
-            text += f" through {place(joint.point, self.units)}"
+            text += f" through {words.place(joint.point, self.units)}"
         if joint.range is not None:
             text += f", range {_limits(joint, self.units)}"
         return text

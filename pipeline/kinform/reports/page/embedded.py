@@ -13,23 +13,19 @@ from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-from kinform.reports.page.colours import FITS, OVERLAP
+from kinform.reports.constants import BOX_MARGIN, FIT_COLOURS, MOST_SAMPLES, OVERLAP_COLOUR
 from kinform.reports.page.focus import Focus
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.movements import Movement
 from kinform.reports.page.packing import Blob, quantised
+from kinform.reports.page.phrases import joint_sentence, patch_words
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.words import joint_sentence, patch_words
 from kinform.reports.values.plain import plain
 
-__all__ = ["packed"]
+__all__ = ["embedded_scene"]
 
 
-MOST_SAMPLES = 400
-"""Samples of one contact patch that are drawn; of larger ones an even choice."""
-
-
-def packed(scene: Scene) -> tuple[dict[str, Any], str]:
+def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
     """JSON of the scene, and the bytes it points into as base64 of deflate."""
     blob = Blob()
     numbers = {digest: k for k, digest in enumerate(scene.shapes)}
@@ -59,8 +55,8 @@ def packed(scene: Scene) -> tuple[dict[str, Any], str]:
         ],
         "joints": [_joint(scene, joint) for joint in scene.joints],
         "patches": _patches(scene, blob),
-        "fits": FITS,
-        "overlapColour": OVERLAP,
+        "fits": FIT_COLOURS,
+        "overlapColour": OVERLAP_COLOUR,
         "overlaps": [
             {
                 "parts": item.parts,
@@ -80,7 +76,7 @@ def packed(scene: Scene) -> tuple[dict[str, Any], str]:
 
 def _joint(scene: Scene, joint: Joint) -> dict[str, Any]:
     number = {body.name: k for k, body in enumerate(scene.bodies)}
-    point, size = scene.placed(joint)
+    point, size = scene.sign_of(joint)
     return {
         "name": joint.name,
         "wanted": ", ".join(scene.wanted.get(joint.name, [])),
@@ -123,7 +119,7 @@ def _patches(scene: Scene, blob: Blob) -> dict[str, Any]:
         start += len(points)
     table = np.concatenate(rows) if rows else np.zeros((0, 7))
     low, high = scene.box
-    pad = 0.02 * scene.size
+    pad = BOX_MARGIN * scene.size
     lows = np.concatenate([low - pad, [-1.0] * 3, [0.0]])
     sizes = np.concatenate([high - low + 2 * pad, [2.0] * 3, [largest]])
     offset = blob.columns(quantised(table, lows, sizes)) if len(table) else 0

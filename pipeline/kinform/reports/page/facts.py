@@ -1,4 +1,4 @@
-"""What the page lists: findings with their rules' words, joints with their evidence, assumptions, rules."""
+"""What the page says of a design: the verdict; findings with their rules' words, joints with their evidence, assumptions, rules."""
 
 from __future__ import annotations
 
@@ -11,15 +11,26 @@ from kinform.foundation import words
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.findings import SEVERITIES
 from kinform.model.kinematics import Joint
+from kinform.reports.constants import MOST_LISTED_PATCHES
+from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
-from kinform.reports.page.words import assumption, joint_sentence, patch_words, place
-from kinform.reports.words import where
+from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
-__all__ = ["Assumed", "FindingFacts", "JointFacts", "RuleFacts", "assumed", "findings", "joints", "rules"]
+__all__ = [
+    "Assumed", "FindingFacts", "JointFacts", "RuleFacts", "Verdict", "assumptions", "findings", "joints", "rules", "verdict_of",
+]  # fmt: skip
 
-MOST_PATCHES = 14
-"""Patches that a joint lists; the rest are counted."""
 SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """`kind`: consistent, inconsistent or unverified; `sign` says it without colour."""
+
+    kind: str
+    sign: str
+    line: str
+    counts: str
 
 
 @dataclass(frozen=True)
@@ -78,6 +89,16 @@ class RuleFacts:
     reason: str
 
 
+def verdict_of(design: Design) -> Verdict:
+    """Of a design; without findings in the file it is not verified."""
+    if design.report is None:
+        return Verdict("unverified", "?", "not verified: the rules have not been run", "run `kinform check`")
+    line = verdict_line(design.report)
+    kind = line if line in ("consistent", "inconsistent") else "unverified"
+    sign = {"consistent": "✓", "inconsistent": "✕", "unverified": "?"}[kind]
+    return Verdict(kind, sign, line, f"{severity_counts(design.report)} · {rule_counts(design.report)}")
+
+
 def findings(design: Design) -> list[FindingFacts]:
     """All findings, errors first, in the order of the report."""
     report = design.report
@@ -86,9 +107,9 @@ def findings(design: Design) -> list[FindingFacts]:
     units = design.assembly.units
     out = []
     for index, finding in enumerate(report.findings):
-        spot = None if finding.place is None else place(finding.place, units)
-        given = (
-            ("found", finding.found), ("intended", finding.intended), ("place", spot),
+        place = None if finding.place is None else words.place(finding.place, units)
+        values = (
+            ("found", finding.found), ("intended", finding.intended), ("place", place),
             ("declared at", where(finding) or None),
         )  # fmt: skip
         out.append(
@@ -100,7 +121,7 @@ def findings(design: Design) -> list[FindingFacts]:
                 sign=SIGNS[finding.severity],
                 subject=", ".join(finding.subject),
                 message=finding.message,
-                facts=tuple((name, value) for name, value in given if value is not None),
+                facts=tuple((name, value) for name, value in values if value is not None),
                 remedy=finding.remedy or "",
                 why=_why(finding.code),
             )
@@ -127,7 +148,7 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
     units = design.assembly.units
     found = () if design.contacts is None else design.contacts.patches
     carried = sorted((found[k] for k in joint.patches if k < len(found)), key=lambda p: (-p.area, p.parts, p.surfaces))
-    listed = tuple(f"{' and '.join(p.parts)}: {patch_words(p, units)}" for p in carried[:MOST_PATCHES])
+    listed = tuple(f"{' and '.join(p.parts)}: {patch_words(p, units)}" for p in carried[:MOST_LISTED_PATCHES])
     facts = [("between", " and ".join(joint.bodies)), ("evidence", ", ".join(joint.evidence) or "none")]
     values = [float(v) for v in joint.singular_values if math.isfinite(v)]
     tolerances = design.assembly.tolerances
@@ -149,7 +170,7 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
     return JointFacts(
         index=index, name=joint.name, wanted=", ".join(wanted), sentence=joint_sentence(joint, units),
         status=joint.status, reason=joint.reason, facts=tuple(facts), patches=listed,
-        more=max(0, len(carried) - MOST_PATCHES), blockers=blockers,
+        more=max(0, len(carried) - MOST_LISTED_PATCHES), blockers=blockers,
     )  # fmt: skip
 
 
@@ -175,7 +196,7 @@ def _end(known: JointRange, end: RangeEnd, design: Design) -> str:
     return f"{value} ({stopped})" if stopped else value
 
 
-def assumed(design: Design) -> list[Assumed]:
+def assumptions(design: Design) -> list[Assumed]:
     """Everything that is not derived from the meshes: stated by the user, or chosen by kinform."""
     assembly, you, we = design.assembly, "you", "kinform"
     out = [Assumed(you, " and ".join(a.between), f"{assumption(a)}: {a.reason}") for a in assembly.assumptions]

@@ -11,9 +11,9 @@ from kinform.design import Design
 from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.reports.page.movements import Mark, Movement
-from kinform.reports.page.subjects import subjects
+from kinform.reports.page.subjects import subjects_of
 
-__all__ = ["Focus", "focus"]
+__all__ = ["Focus", "focus_of"]
 
 
 MEETING = ("KF412", "KF423", "KF505")
@@ -36,9 +36,9 @@ class Focus:
     """Parts that run into each other there."""
 
 
-def focus(design: Design, movements: Sequence[Movement], finding: Finding) -> Focus:
+def focus_of(design: Design, movements: Sequence[Movement], finding: Finding) -> Focus:
     """Of one finding; parts that meet on the way are shown where they do."""
-    parts, joints = subjects(design, finding.subject)
+    parts, joints = subjects_of(design, finding.subject)
     place = None if finding.place is None else np.array(finding.place)
     if finding.code in MEETING:
         for k, movement in enumerate(movements):
@@ -54,12 +54,12 @@ def _shows(design: Design, finding: Finding, movement: Movement, mark: Mark) -> 
     if finding.code == "KF505":
         return movement.kind == "simulation" and set(mark.parts) == set(finding.subject)
     if finding.code == "KF412":
-        return movement.joint in subjects(design, finding.subject[:1])[1] and set(mark.parts) == set(
+        return movement.joint in subjects_of(design, finding.subject[:1])[1] and set(mark.parts) == set(
             finding.subject[1:]
         )
     asked = next((r for r in design.assembly.function.requirements if r.name in finding.subject), None)
     if asked is None or finding.found != "collision":
         return False
-    sides = [subjects(design, [side])[0] for side in asked.values.get("between", ())]
+    sides = [subjects_of(design, [side])[0] for side in asked.values.get("between", ())]
     kind = "simulation" if asked.values.get("over") == "motion" else "freedom"
     return movement.kind == kind and len(sides) == 2 and all(set(side) & set(mark.parts) for side in sides)

@@ -16,14 +16,9 @@ from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
+from kinform.reports.constants import CREASE, LINE_ANGLE
 
 __all__ = ["Shape", "shape_of", "shape_of_facets"]
-
-
-CREASE = np.radians(32.0)
-"""Facets that meet at more than this are not shaded as one surface."""
-LINE = np.radians(18.0)
-"""Edges between two surfaces that meet at more than this are drawn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +76,7 @@ def _split(vertices: Array, faces: Ints, labels: Ints, loose: NDArray[np.bool_])
     corner = faces.astype(np.int64) * np.int64(region.max() + 1 if len(region) else 1) + region[:, None]
     keys, index = np.unique(corner.ravel(), return_inverse=True)
     at = keys // np.int64(region.max() + 1 if len(region) else 1)
-    drawn = (angle > LINE) & (~same | (loose[first] & (angle > CREASE)))
+    drawn = (angle > LINE_ANGLE) & (~same | (loose[first] & (angle > CREASE)))
     # each line at the vertices of its first facet
     owner = first[drawn]
     lines = (

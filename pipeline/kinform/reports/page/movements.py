@@ -19,14 +19,11 @@ from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.names import PartName
 from kinform.model.simulation import Simulation
+from kinform.reports.constants import MOST_FRAMES
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
 
-__all__ = ["MOST_FRAMES", "Mark", "Movement", "movements"]
-
-
-MOST_FRAMES = 600
-"""Poses of a simulated motion that are embedded; of longer ones an even choice."""
+__all__ = ["Mark", "Movement", "movements_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +77,7 @@ class Movement:
         return out
 
 
-def movements(design: Design, size: float) -> list[Movement]:
+def movements_of(design: Design, size: float) -> list[Movement]:
     """The simulated run, where there is one, then the freedoms; `size` is that of the assembly (m)."""
     known: set[str] = set() if design.kinematics is None else {str(body.name) for body in design.kinematics.bodies}
     run = design.simulation

@@ -10,12 +10,10 @@ from manifold3d import Error, Manifold, Mesh64
 from kinform.design import Design
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
+from kinform.reports.constants import MOST_OVERLAPS
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
-__all__ = ["MOST", "overlap_shapes"]
-
-MOST = 200
-"""Overlaps that are cut out; further ones are marked at their place alone."""
+__all__ = ["overlap_shapes"]
 
 
 def overlap_shapes(design: Design) -> list[Shape | None]:
@@ -25,7 +23,7 @@ def overlap_shapes(design: Design) -> list[Shape | None]:
     centre, scale = _scaling(design)
     solids: dict[str, Manifold | None] = {}
     shapes: list[Shape | None] = []
-    for item in found[:MOST]:
+    for item in found[:MOST_OVERLAPS]:
         both = [_solid(parts[name], solids, centre, scale) for name in item.parts]
         shapes.append(_common(both[0], both[1], item, centre, scale))
     return shapes + [None] * (len(found) - len(shapes))

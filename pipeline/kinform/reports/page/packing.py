@@ -15,12 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
+from kinform.reports.constants import STEPS
 
 __all__ = ["STEPS", "Blob", "quantised", "restored"]
-
-
-STEPS = 65535
-"""Steps across a box."""
 
 
 def quantised(values: Array, low: Array, size: Array) -> Ints:

@@ -13,26 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
-from kinform.reports.page.colours import OVERLAP, rgb
+from kinform.reports.constants import (
+    BAND,
+    FAINT,
+    FINDING_MARGIN,
+    FINDING_OVERLAP_WEIGHT,
+    FINDING_SHIFT,
+    FINDING_ZOOM,
+    FINER,
+    GLASS,
+    OUTLINE_COSINE,
+    OUTLINE_SHADE,
+    OUTLINE_STEP,
+    OVERLAP_COLOUR,
+    OVERLAP_WEIGHT,
+    SIGNS_MARGIN,
+    TINT,
+    VIEW_MARGIN,
+)
 from kinform.reports.page.meshes import Shape
-from kinform.reports.page.png import png
-from kinform.reports.page.raster import AXES, Buffers, View, rasterise, view_of
+from kinform.reports.page.raster import AXES, Buffers, View, png, rasterise, view_of
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.strokes import dashed, polyline, ring, strokes_of
+from kinform.reports.page.strokes import dashed, polyline, rgb, ring, strokes_of
 
 __all__ = ["Artist"]
-
-
-FINER = 2
-"""Pixels of the drawing to a pixel of the picture, each way."""
-FAINT = 0.22
-"""Weight of what a finding is not about."""
-GLASS = 0.35
-"""Weight of a part that stands before the place where it meets another."""
-TINT = 0.4
-"""Share of red in parts that meet."""
-BAND = 1 << 15
-"""Pixels of the drawing that are shaded at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +63,16 @@ class Artist:
         """The whole assembly with the axes of its joints, overlaps in red, as PNG."""
         items = self._items([part.name for part in self.scene.design.assembly.parts])
         signs = [
-            stroke @ AXES.T for joint in self.scene.joints for stroke in strokes_of(joint, *self.scene.placed(joint))
+            stroke @ AXES.T for joint in self.scene.joints for stroke in strokes_of(joint, *self.scene.sign_of(joint))
         ]
         if not items and not signs:
             return png(np.zeros((height, width, 4), np.uint8))
         places = np.concatenate([*signs, *(item.vertices for item in items)])
-        view = view_of(places, FINER * width, FINER * height, 1.08 if items else 1.5)
-        image = _drawn(view, items)
+        view = view_of(places, FINER * width, FINER * height, VIEW_MARGIN if items else SIGNS_MARGIN)
+        image = _image(view, items)
         red = self._red(lambda parts: True)
         if red:
-            image = _over(_drawn(view, red), image, 0.75)
+            image = _over(_image(view, red), image, OVERLAP_WEIGHT)
         for stroke in signs:
             polyline(image, view.project(stroke)[:, :2], 2.0 * FINER)
         return png(_reduced(image))
@@ -86,25 +90,29 @@ class Artist:
         items, others = self._items(chosen, moved, focus.meeting), self._items(rest, moved)
         if not items:
             return png(np.zeros((height, width, 4), np.uint8))
-        view = view_of(_cloud(items), FINER * width, FINER * height, margin=1.35)
+        view = view_of(_cloud(items), FINER * width, FINER * height, margin=FINDING_MARGIN)
         place = None if focus.place is None else AXES @ focus.place
         if place is not None:
-            view = replace(view, target=0.6 * view.target + 0.4 * place, scale=1.12 * view.scale)
+            view = replace(
+                view,
+                target=(1.0 - FINDING_SHIFT) * view.target + FINDING_SHIFT * place,
+                scale=FINDING_ZOOM * view.scale,
+            )
         covers = [_covers(view, item, place) for item in items] if focus.meeting and place is not None else []
         before = [item for item, hides in zip(items, covers, strict=False) if hides]
         if before and len(before) < len(items):
             behind = [item for item, hides in zip(items, covers, strict=True) if not hides]
-            image = _over(_drawn(view, before), _drawn(view, behind), GLASS)
+            image = _over(_image(view, before), _image(view, behind), GLASS)
         else:
-            image = _drawn(view, items)
+            image = _image(view, items)
         if others:
-            image = _over(image, _drawn(view, others), 1.0, FAINT)
+            image = _over(image, _image(view, others), 1.0, FAINT)
         red = self._red(lambda both: not moved and set(both) <= set(chosen))
         if red:
-            image = _over(_drawn(view, red), image, 0.8)
+            image = _over(_image(view, red), image, FINDING_OVERLAP_WEIGHT)
         for joint in scene.joints:
             if joint.name in focus.joints and joint.axis is not None and not moved:
-                point, size = scene.placed(joint)
+                point, size = scene.sign_of(joint)
                 ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
                 dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
         if place is not None:
@@ -123,7 +131,9 @@ class Artist:
             body = self.scene.body_index[part.name]
             colour = rgb(self.scene.colours[body])
             if part.name in meeting:
-                colour = tuple((1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP), strict=True))  # type: ignore[assignment]
+                colour = tuple(
+                    (1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP_COLOUR), strict=True)
+                )  # type: ignore[assignment]
             away = (moved or {}).get(self.scene.bodies[body].name)
             known = self.known.get(part.name) if away is None else None
             if known is None:
@@ -139,7 +149,7 @@ class Artist:
     def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
         found = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
         return [
-            _item(shape, np.eye(4), rgb(OVERLAP), False)
+            _item(shape, np.eye(4), rgb(OVERLAP_COLOUR), False)
             for item, shape in zip(found, self.scene.overlaps, strict=True)
             if shape is not None and len(shape.faces) and wanted(item.parts)
         ]
@@ -169,7 +179,7 @@ def _covers(view: View, item: _Item, place: Array) -> bool:
     column, row = int(x), int(y)
     if not (0 <= column < view.width and 0 <= row < view.height) or buffers.facet[row, column] < 0:
         return False
-    return bool(buffers.near[row, column] > near + 6.0 / view.scale)
+    return bool(buffers.near[row, column] > near + OUTLINE_STEP / view.scale)
 
 
 def _within(view: View, projected: Array, faces: Ints) -> Ints:
@@ -184,7 +194,7 @@ def _within(view: View, projected: Array, faces: Ints) -> Ints:
     return faces[keep]
 
 
-def _drawn(view: View, items: list[_Item]) -> Array:
+def _image(view: View, items: list[_Item]) -> Array:
     """(height, width, 4) of 0 … 1, colours not multiplied by their weight; in memory one colour after the other."""
     image = np.zeros((4, view.height * view.width))
     projected = [view.project(item.vertices) for item in items]
@@ -260,7 +270,7 @@ def _light(normal: Array) -> Array:
 
 def _outline(image: Array, buffers: Buffers, owner: NDArray[np.int64], direction: Array, view: View) -> None:
     """Darken where the part, the direction or the depth changes from one pixel to the next."""
-    step = 6.0 / view.scale
+    step = OUTLINE_STEP / view.scale
     line = np.zeros(buffers.facet.shape, bool)
     for band in _bands(view.height, view.width):
         more = slice(band.start, band.stop + 1)  # and the row below
@@ -270,13 +280,13 @@ def _outline(image: Array, buffers: Buffers, owner: NDArray[np.int64], direction
         for axis in (0, 1):
             here = tuple(slice(None, -1) if k == axis else slice(None) for k in (0, 1))
             there = tuple(slice(1, None) if k == axis else slice(None) for k in (0, 1))
-            turned = _dot(turn[:, *here], turn[:, *there]) < 0.86
+            turned = _dot(turn[:, *here], turn[:, *there]) < OUTLINE_COSINE
             apart = np.abs(near[here] - near[there]) > step
             both = seen[here] & seen[there]
             changed = (part[here] != part[there]) | (both & (turned | apart))
             line[more][here] |= changed
             line[more][there] |= changed
-    image[:3, (line & (buffers.facet >= 0)).ravel()] *= 0.52
+    image[:3, (line & (buffers.facet >= 0)).ravel()] *= OUTLINE_SHADE
 
 
 def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array:

@@ -17,20 +17,24 @@ from kinform.foundation.units import metres_per
 from kinform.function import resolve_joint
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
+from kinform.reports.constants import (
+    FLAT,
+    MOST_COLUMNS,
+    MOST_EVENTS,
+    MOST_PLOTS,
+    PLOT_BOTTOM,
+    PLOT_HEIGHT,
+    PLOT_LEFT,
+    PLOT_RIGHT,
+    PLOT_TOP,
+    PLOT_WIDTH,
+    ROUND_STEPS,
+    TICKS,
+)
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
 
-__all__ = ["Plot", "Series", "drawn", "plots"]
-
-
-WIDTH, HEIGHT = 380.0, 168.0
-LEFT, RIGHT, TOP, BOTTOM = 54.0, 366.0, 12.0, 142.0
-MOST_COLUMNS = 300
-"""Columns of a curve; in each the least and the greatest value are kept."""
-MOST = 48
-"""Plots of one group."""
-MOST_EVENTS = 40
-"""Collisions that are marked in a plot."""
+__all__ = ["Plot", "Series", "plot_groups", "plot_svg"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +55,7 @@ class Plot:
     limits: tuple[tuple[str, float], ...] = ()
 
 
-def plots(design: Design) -> list[tuple[str, list[str], str]]:
+def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     """Groups of plots: heading, SVG of each, and a remark where some are left out."""
     run = design.simulation
     if run is None or len(run.time) < 2:
@@ -67,8 +71,8 @@ def plots(design: Design) -> list[tuple[str, list[str], str]]:
     out = []
     for heading, found in groups:
         if found:
-            left = f"{len(found) - MOST} more are in the results file." if len(found) > MOST else ""
-            out.append((heading, [drawn(plot, run.time, events) for plot in found[:MOST]], left))
+            left = f"{len(found) - MOST_PLOTS} more are in the results file." if len(found) > MOST_PLOTS else ""
+            out.append((heading, [plot_svg(plot, run.time, events) for plot in found[:MOST_PLOTS]], left))
     return out
 
 
@@ -87,11 +91,11 @@ def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plo
                 ends += [("required", *wanted)] if wanted is not None else []
                 for word, low, high in ends:
                     limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
-        out.append(_near(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits))))
+        out.append(_without_far_limits(Plot(titles.get(name, name), shown, (Series("", values),), tuple(limits))))
     return out
 
 
-def _near(plot: Plot) -> Plot:
+def _without_far_limits(plot: Plot) -> Plot:
     """The plot without the limits found that are so far from the curve that it would be flat; they are named."""
     every = [
         v for s in plot.series for v in (float(np.nanmin(s.values)), float(np.nanmax(s.values))) if math.isfinite(v)
@@ -124,7 +128,7 @@ def _efforts(run: Simulation, titles: dict[str, str]) -> list[Plot]:
     for name, _, unit, column in coordinates(run):
         values = run.joint_effort[:, column] if run.joint_effort.size else np.zeros(0)
         if len(values) and np.isfinite(values).any() and np.nanmax(np.abs(values)) > 0.0:
-            out.append(_scaled(Plot(titles.get(name, name), "N" if unit == "m" else "N·m", (Series("", values),))))
+            out.append(_with_prefix(Plot(titles.get(name, name), "N" if unit == "m" else "N·m", (Series("", values),))))
     return out
 
 
@@ -137,7 +141,7 @@ def _reactions(run: Simulation, titles: dict[str, str]) -> list[Plot]:
     for k, name in enumerate(run.joint_names):
         for unit, part, what in (("N", slice(3, 6), "force"), ("N·m", slice(0, 3), "torque")):
             size = np.linalg.norm(wrenches[:, k, part], axis=1)
-            out.append(_scaled(Plot(f"{titles.get(name, name)}: {what}", unit, (Series("", size),))))
+            out.append(_with_prefix(Plot(f"{titles.get(name, name)}: {what}", unit, (Series("", size),))))
     return out
 
 
@@ -149,12 +153,12 @@ def _energy(run: Simulation) -> list[Plot]:
     series = tuple(Series(name, run.energy[:, k] - base[k]) for k, name in enumerate(names))
     balance = run.energy[:, 0] + run.energy[:, 1] - run.energy[:, 2]
     return [
-        _scaled(Plot("Energy, potential from its start", "J", series)),
-        _scaled(Plot("Error of the balance", "J", (Series("", balance - balance[0]),))),
+        _with_prefix(Plot("Energy, potential from its start", "J", series)),
+        _with_prefix(Plot("Error of the balance", "J", (Series("", balance - balance[0]),))),
     ]
 
 
-def _scaled(plot: Plot) -> Plot:
+def _with_prefix(plot: Plot) -> Plot:
     """The plot with a prefix before its unit, so that its numbers are short."""
     largest = max((float(np.nanmax(np.abs(s.values), initial=0.0)) for s in plot.series), default=0.0)
     for factor, prefix in ((1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"), (1e-15, "f")):
@@ -171,60 +175,60 @@ def _scale(unit: str, units: str, metres: float) -> tuple[float, str]:
     return (1.0 / metres, units) if unit == "m" else (1.0, "")
 
 
-def drawn(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) -> str:
+def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) -> str:
     """The plot as SVG, with upright lines for events (s, what happens); the viewer moves its cursor."""
     ticks = _ticks(plot)
     low, high = ticks[0], ticks[-1]
     start, end = float(time[0]), float(time[-1])
 
     def x(t: Array) -> Array:
-        return np.asarray(LEFT + (t - start) / ((end - start) or 1.0) * (RIGHT - LEFT))
+        return np.asarray(PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (PLOT_RIGHT - PLOT_LEFT))
 
     def y(value: Array) -> Array:
-        return np.asarray(BOTTOM - (value - low) / ((high - low) or 1.0) * (BOTTOM - TOP))
+        return np.asarray(PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (PLOT_BOTTOM - PLOT_TOP))
 
     parts = [
-        f'<line class="grid" x1="{LEFT}" x2="{RIGHT}" y1="{float(y(np.array(t))):.1f}" y2="{float(y(np.array(t))):.1f}"/>'
-        f'<text class="tick" x="{LEFT - 6}" y="{float(y(np.array(t))) + 3.5:.1f}" text-anchor="end">{_number(t)}</text>'
+        f'<line class="grid" x1="{PLOT_LEFT}" x2="{PLOT_RIGHT}" y1="{float(y(np.array(t))):.1f}" y2="{float(y(np.array(t))):.1f}"/>'
+        f'<text class="tick" x="{PLOT_LEFT - 6}" y="{float(y(np.array(t))) + 3.5:.1f}" text-anchor="end">{_number(t)}</text>'
         for t in ticks
     ]
     for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
-        at = LEFT + share * (RIGHT - LEFT)
+        at = PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT)
         text = _number(start + share * (end - start)) + (" s" if share == 1.0 else "")
-        parts.append(f'<text class="tick" x="{at:.1f}" y="{BOTTOM + 16}" text-anchor="{anchor}">{text}</text>')
+        parts.append(f'<text class="tick" x="{at:.1f}" y="{PLOT_BOTTOM + 16}" text-anchor="{anchor}">{text}</text>')
     for label, value in plot.limits:
         at = float(y(np.array(value)))
-        parts.append(f'<line class="limit" x1="{LEFT}" x2="{RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
-        inside = at + (11.0 if at < (TOP + BOTTOM) / 2 else -4.0)
+        parts.append(f'<line class="limit" x1="{PLOT_LEFT}" x2="{PLOT_RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
+        inside = at + (11.0 if at < (PLOT_TOP + PLOT_BOTTOM) / 2 else -4.0)
         text = escape(f"{label} {_number(value)}{plot.unit}")
-        side, anchor = (LEFT + 4.0, "start") if label.startswith("found") else (RIGHT, "end")
+        side, anchor = (PLOT_LEFT + 4.0, "start") if label.startswith("found") else (PLOT_RIGHT, "end")
         parts.append(f'<text class="tick" x="{side}" y="{inside:.1f}" text-anchor="{anchor}">{text}</text>')
     for moment, text in events[:MOST_EVENTS]:
         at = float(x(np.array(moment)))
         parts.append(
-            f'<line class="event" x1="{at:.1f}" x2="{at:.1f}" y1="{TOP}" y2="{BOTTOM}"/>'
-            f'<text class="tick event-sign" x="{at:.1f}" y="{TOP - 2}" text-anchor="middle">✕'
+            f'<line class="event" x1="{at:.1f}" x2="{at:.1f}" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>'
+            f'<text class="tick event-sign" x="{at:.1f}" y="{PLOT_TOP - 2}" text-anchor="middle">✕'
             f"<title>{escape(text)}</title></text>"
         )
     for k, series in enumerate(plot.series):
         parts.append(f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>')
     if len(plot.series) > 1:
         for k, series in enumerate(plot.series):
-            at = LEFT + 104.0 * k
+            at = PLOT_LEFT + 104.0 * k
             parts.append(
-                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{HEIGHT + 8}" y2="{HEIGHT + 8}"/>'
-                f'<text class="tick" x="{at + 23}" y="{HEIGHT + 12}">{escape(series.label)}</text>'
+                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{PLOT_HEIGHT + 8}" y2="{PLOT_HEIGHT + 8}"/>'
+                f'<text class="tick" x="{at + 23}" y="{PLOT_HEIGHT + 12}">{escape(series.label)}</text>'
             )
-    parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{TOP}" y2="{BOTTOM}"/>')
-    spoken = escape(_spoken(plot, start, end, events), quote=True)
+    parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>')
+    spoken = escape(_spoken_text(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {WIDTH:.0f} {HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
-        f'data-to="{end!r}" data-left="{LEFT}" data-right="{RIGHT}">{"".join(parts)}</svg></figure>'
+        f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
+        f'data-to="{end!r}" data-left="{PLOT_LEFT}" data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
     )
 
 
-def _spoken(plot: Plot, start: float, end: float, events: Sequence[tuple[float, str]]) -> str:
+def _spoken_text(plot: Plot, start: float, end: float, events: Sequence[tuple[float, str]]) -> str:
     texts = []
     for series in plot.series:
         known = series.values[np.isfinite(series.values)]
@@ -241,19 +245,19 @@ def _ticks(plot: Plot) -> list[float]:
     every = np.concatenate([s.values for s in plot.series] + [np.array([v for _, v in plot.limits])])
     every = every[np.isfinite(every)]
     low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
-    if high - low <= 1e-9 * max(abs(low), abs(high), 1e-12):
+    if high - low <= FLAT * max(abs(low), abs(high), 1e-12):
         pad = abs(high) * 0.5 or 1.0
         low, high = low - pad, high + pad
-    raw = (high - low) / 4.0
+    raw = (high - low) / TICKS
     power = 10.0 ** math.floor(math.log10(raw))
-    step = next(m * power for m in (1.0, 2.0, 2.5, 5.0, 10.0) if m * power >= 0.999 * raw)
+    step = next(m * power for m in ROUND_STEPS if m * power >= 0.999 * raw)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return [k * step if k else 0.0 for k in range(first, last + 1)]
 
 
 def _path(x: Array, y: Array) -> str:
     """The curve, with gaps where it is not known."""
-    keep = _thinned(y)
+    keep = _kept_samples(y)
     out, pen = [], "M"
     for k in keep:
         if not math.isfinite(y[k]):
@@ -264,7 +268,7 @@ def _path(x: Array, y: Array) -> str:
     return "".join(out)
 
 
-def _thinned(y: Array) -> Sequence[int]:
+def _kept_samples(y: Array) -> Sequence[int]:
     if len(y) <= 2 * MOST_COLUMNS:
         return range(len(y))
     edges = np.linspace(0, len(y), MOST_COLUMNS + 1).astype(int)

@@ -1,4 +1,4 @@
-"""Triangles to pixels without a graphics card: spans of scan lines, a depth buffer, shading of what is in front.
+"""Triangles to pixels without a graphics card, and pixels to PNG files: spans of scan lines, a depth buffer.
 
 All triangles of a picture are worked on at once: rows of each, then pixels of each row, in portions that fit in
 memory. Shading is done once a pixel at the end, from the number of the facet that is seen there.
@@ -6,29 +6,26 @@ memory. Shading is done once a pixel at the end, from the number of the facet th
 
 from __future__ import annotations
 
+import struct
+import zlib
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
+from kinform.reports.constants import EYE_RISE, EYE_TURN, PORTION, VIEW_MARGIN
 
-__all__ = ["AXES", "Buffers", "View", "rasterise", "view_of"]
+__all__ = ["AXES", "Buffers", "View", "png", "rasterise", "view_of"]
 
 
-PORTION = 1 << 16
-"""Pixels that are worked on at once."""
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
-
-
-TURN, RISE = -0.95, 0.42
-"""Whence everything is seen: angle about z, and above the ground (rad)."""
 
 
 def _axes() -> Array:
     """(3, 3) rows: right, up, towards the eye."""
-    back = np.array([np.cos(RISE) * np.cos(TURN), np.cos(RISE) * np.sin(TURN), np.sin(RISE)])
-    right = np.array([-np.sin(TURN), np.cos(TURN), 0.0])
+    back = np.array([np.cos(EYE_RISE) * np.cos(EYE_TURN), np.cos(EYE_RISE) * np.sin(EYE_TURN), np.sin(EYE_RISE)])
+    right = np.array([-np.sin(EYE_TURN), np.cos(EYE_TURN), 0.0])
     return np.array([right, np.cross(back, right), back])
 
 
@@ -61,7 +58,7 @@ class Buffers:
     near: Array
 
 
-def view_of(seen: Array, width: int, height: int, margin: float = 1.08) -> View:
+def view_of(seen: Array, width: int, height: int, margin: float = VIEW_MARGIN) -> View:
     """The view that holds all places (n, 3), given in the axes of the eye."""
     low, high = seen.min(axis=0), seen.max(axis=0)
     span = np.maximum(high - low, 1e-9 * max(float((high - low).max()), 1e-9))
@@ -119,8 +116,8 @@ def _rows(view: View, corners: Array) -> _Rows:
     facet, row, left, right = facet[seen], row[seen], left[seen], right[seen]
     first = np.clip(np.ceil(left - 0.5), 0, view.width).astype(np.int64)
     last = np.clip(np.floor(right - 0.5), -1, view.width - 1).astype(np.int64)
-    some = last >= first
-    return _Rows(facet[some], row[some], first[some], last[some])
+    wide = last >= first
+    return _Rows(facet[wide], row[wide], first[wide], last[wide])
 
 
 def _least(values: Array) -> Array:
@@ -152,3 +149,18 @@ def _fill(
     far = np.clip((1.0 - (near - low) / reach), 0.0, 1.0)
     key = (far * 0xFFFFFFFE).astype(np.uint64) << np.uint64(32) | np.repeat(facet, count).astype(np.uint64)
     np.minimum.at(depth, np.repeat(rows.row[part] * view.width, count) + column, key)
+
+
+def png(pixels: NDArray[np.uint8]) -> bytes:
+    """The image (height, width, 3 or 4) as a PNG; rows are stored as differences to the pixel at the left (ISO/IEC 15948)."""
+    height, width, depth = pixels.shape
+    rows = pixels.astype(np.int16)
+    rows[:, 1:] -= pixels[:, :-1]
+    flat = np.concatenate([np.full((height, 1), 1, np.uint8), rows.astype(np.uint8).reshape(height, -1)], axis=1)
+    head = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[depth], 0, 0, 0)
+    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(flat.tobytes(), 9)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*chunk) for chunk in chunks)
+
+
+def _chunk(kind: bytes, data: bytes) -> bytes:
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -11,10 +11,10 @@ from kinform.design import Design
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Body, Joint
-from kinform.reports.page.colours import body_colours
-from kinform.reports.page.focus import Focus, focus
+from kinform.reports.constants import BODY_COLOURS, EMPTY_BOX, GROUND_COLOUR, LEAST_SIGN, MOST_SIGN, SIGN_SIZE
+from kinform.reports.page.focus import Focus, focus_of
 from kinform.reports.page.meshes import Shape, shape_of
-from kinform.reports.page.movements import Movement, movements
+from kinform.reports.page.movements import Movement, movements_of
 from kinform.reports.page.overlaps import overlap_shapes
 from kinform.reports.page.subjects import wanted_names
 
@@ -47,7 +47,7 @@ class Scene:
     @cached_property
     def colours(self) -> list[str]:
         """Of each body."""
-        return body_colours([body.ground for body in self.bodies])
+        return _body_colours([body.ground for body in self.bodies])
 
     @cached_property
     def body_index(self) -> dict[str, int]:
@@ -71,7 +71,7 @@ class Scene:
         found = np.concatenate(places) if places else np.zeros((1, 3))
         low, high = found.min(axis=0), found.max(axis=0)
         if float((high - low).max()) <= 0.0:
-            low, high = low - 0.05, high + 0.05
+            low, high = low - EMPTY_BOX, high + EMPTY_BOX
         return low, high
 
     @property
@@ -92,15 +92,15 @@ class Scene:
     @cached_property
     def movements(self) -> list[Movement]:
         """The simulated run and the freedoms."""
-        return movements(self.design, self.size)
+        return movements_of(self.design, self.size)
 
     @cached_property
     def focuses(self) -> list[Focus]:
         """Of each finding, in the order of the report."""
         found = () if self.design.report is None else self.design.report.findings
-        return [focus(self.design, self.movements, finding) for finding in found]
+        return [focus_of(self.design, self.movements, finding) for finding in found]
 
-    def placed(self, joint: Joint) -> tuple[Array, float]:
+    def sign_of(self, joint: Joint) -> tuple[Array, float]:
         """Where the joint's sign stands, and how large it is: about as large as its contact."""
         found = () if self.design.contacts is None else self.design.contacts.patches
         points = [found[k].points for k in joint.patches if k < len(found)]
@@ -114,9 +114,18 @@ class Scene:
             point = centre if centre is not None else 0.5 * (self.box[0] + self.box[1])
         elif centre is not None and joint.axis is not None and joint.type in ("revolute", "cylindrical", "screw"):
             point = point + joint.axis * float(joint.axis @ (centre - point))
-        return point, float(np.clip(1.25 * extent, 0.045 * self.size, 0.16 * self.size))
+        return point, float(np.clip(SIGN_SIZE * extent, LEAST_SIGN * self.size, MOST_SIGN * self.size))
 
 
 def _corners(mesh: Mesh) -> Array:
     low, high = mesh.box
     return np.array([[(low, high)[b >> k & 1][k] for k in range(3)] for b in range(8)])
+
+
+def _body_colours(ground: list[bool]) -> list[str]:
+    """A colour for each body in order; grey where it is the ground."""
+    colours, used = [], 0
+    for held in ground:
+        colours.append(GROUND_COLOUR if held else BODY_COLOURS[used % len(BODY_COLOURS)])
+        used += not held
+    return colours

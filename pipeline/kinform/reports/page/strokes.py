@@ -7,15 +7,18 @@ from numpy.typing import NDArray
 
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
-from kinform.reports.page.colours import SIGNAL, rgb
+from kinform.reports.constants import ARC_PIECES, SIGNAL_COLOUR
 
-__all__ = ["dashed", "polyline", "ring", "strokes_of"]
+__all__ = ["dashed", "polyline", "rgb", "ring", "strokes_of"]
 
 
 TURNING = ("revolute", "cylindrical", "screw", "planar")
 SLIDING = ("prismatic", "cylindrical", "screw")
-STEPS = 28
-"""Pieces of an arc."""
+
+
+def rgb(colour: str) -> tuple[float, float, float]:
+    """ "#rrggbb" as numbers from 0 to 1."""
+    return tuple(int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))  # type: ignore[return-value]
 
 
 def strokes_of(joint: Joint, point: Array, size: float) -> list[Array]:
@@ -45,7 +48,7 @@ def _across(axis: Array) -> tuple[Array, Array]:
 
 def _arc(centre: Array, axis: Array, radius: float, start: float, end: float) -> Array:
     u, v = _across(axis)
-    angle = np.linspace(start, end, STEPS + 1)[:, None]
+    angle = np.linspace(start, end, ARC_PIECES + 1)[:, None]
     return np.asarray(centre + radius * (np.cos(angle) * u + np.sin(angle) * v))
 
 
@@ -106,4 +109,4 @@ def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
 
 
 def _paint(image: Array, box: Pixels, where: NDArray[np.bool_]) -> None:
-    image[box[1][where], box[0][where]] = [*rgb(SIGNAL), 1.0]
+    image[box[1][where], box[0][where]] = [*rgb(SIGNAL_COLOUR), 1.0]

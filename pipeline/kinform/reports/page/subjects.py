@@ -7,15 +7,15 @@ from collections.abc import Iterable
 from kinform.design import Design
 from kinform.model.names import PartName
 
-__all__ = ["subjects", "wanted_names"]
+__all__ = ["subjects_of", "wanted_names"]
 
 
-def subjects(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]]:
+def subjects_of(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]]:
     """The parts and the derived joints that names stand for: parts, groups, bodies, joints, intended joints."""
     parts: dict[str, None] = {}
     joints: dict[str, None] = {}
     assembly, kinematics = design.assembly, design.kinematics
-    known = {part.name for part in assembly.parts}
+    names_of_parts = {part.name for part in assembly.parts}
     groups = {group.name: group.parts for group in assembly.groups}
     bodies: dict[str, tuple[PartName, ...]] = {}
     if kinematics is not None:
@@ -23,7 +23,7 @@ def subjects(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]
     derived = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
     wanted = {joint.name: joint for joint in assembly.function.joints}
     for name in names:
-        if name in known:
+        if name in names_of_parts:
             parts.setdefault(name)
         elif name in groups or name in bodies:
             parts.update(dict.fromkeys(groups.get(name) or bodies[name]))
@@ -42,6 +42,6 @@ def wanted_names(design: Design) -> dict[str, list[str]]:
     """Names that the designer gave to derived joints, by kinform's; those of sub-assemblies last."""
     names: dict[str, list[str]] = {}
     for joint in sorted(design.assembly.function.joints, key=lambda j: (j.name.count("/"), j.name)):
-        for found in subjects(design, [joint.name])[1]:
+        for found in subjects_of(design, [joint.name])[1]:
             names.setdefault(found, []).append(joint.name)
     return names

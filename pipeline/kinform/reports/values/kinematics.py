@@ -8,7 +8,7 @@ from typing import Any
 from kinform.design import Design
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
-from kinform.reports.motions import freedom_text, metres
+from kinform.reports.freedom_phrases import freedom_text, metres
 from kinform.reports.values.plain import fields
 
 __all__ = ["joint_values", "mobility_counts", "mobility_values", "one_joint", "ranged", "release"]

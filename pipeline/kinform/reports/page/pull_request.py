@@ -5,35 +5,39 @@ from __future__ import annotations
 import re
 
 from kinform.design import Design
+from kinform.reports.constants import MOST_PICTURE_FILES
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.verdict import verdict
 
-__all__ = ["MOST", "pictures", "summary"]
-
-MOST = 40
-"""Findings that get a picture, the worst first."""
+__all__ = ["page_pictures", "page_summary"]
 
 
-def pictures(scene: Scene) -> dict[str, bytes]:
+def page_pictures(scene: Scene) -> dict[str, bytes]:
     """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first."""
     artist = Artist(scene)
     out = {"overview.png": artist.overview(1200, 750)}
-    for name, finding in _named(scene.design):
+    for name, finding in _pictured(scene.design):
         out[name] = artist.finding(finding.index, 720, 480)
     return out
 
 
-def _named(design: Design) -> list[tuple[str, facts.FindingFacts]]:
-    return [(f"finding-{n:02d}-{f.code}.png", f) for n, f in enumerate(facts.findings(design)[:MOST], 1)]
+def _pictured(design: Design) -> list[tuple[str, facts.FindingFacts]]:
+    return [(f"finding-{n:02d}-{f.code}.png", f) for n, f in enumerate(facts.findings(design)[:MOST_PICTURE_FILES], 1)]
 
 
-def summary(design: Design) -> str:
+def page_summary(design: Design) -> str:
     """Markdown: verdict, overview, what disagrees, each finding with its picture; pictures are beside it."""
-    told = verdict(design)
+    verdict = facts.verdict_of(design)
     name = _plain(design.assembly.name)
-    lines = [f"# {name}: {told.sign} {_plain(told.line)}", "", _plain(told.counts), "", f"![{name}](overview.png)", ""]
+    lines = [
+        f"# {name}: {verdict.sign} {_plain(verdict.line)}",
+        "",
+        _plain(verdict.counts),
+        "",
+        f"![{name}](overview.png)",
+        "",
+    ]
     rows = agreement.rows(design)
     if rows:
         lines += ["| about | form | behaviour | function | verdict |", "|---|---|---|---|---|"]
@@ -48,8 +52,8 @@ def summary(design: Design) -> str:
             )
             lines.append("| " + " | ".join(map(_plain, cells)) + " |")
         lines.append("")
-    named = _named(design)
-    for file, finding in named:
+    pictured = _pictured(design)
+    for file, finding in pictured:
         lines += [
             f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}: {_plain(finding.subject)}",
             "",
@@ -59,7 +63,7 @@ def summary(design: Design) -> str:
         lines += [f"- {key}: {_plain(value)}" for key, value in finding.facts]
         lines += [f"- remedy: {_plain(finding.remedy)}"] if finding.remedy else []
         lines += ["", f"![{finding.code}]({file})", ""]
-    left = len(design.report.findings) - len(named) if design.report else 0
+    left = len(design.report.findings) - len(pictured) if design.report else 0
     lines += [f"{left} more findings are in the report.", ""] if left > 0 else []
     undecided = [rule for rule in facts.rules(design) if rule.outcome == "inconclusive"]
     if undecided:

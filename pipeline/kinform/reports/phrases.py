@@ -1,26 +1,16 @@
-"""What several renderers say in the same words."""
+"""What several renderers say of findings and verdicts in the same words."""
 
 from __future__ import annotations
 
 from collections import Counter
 
 from kinform.foundation import words
+from kinform.foundation.words import counted, one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
 __all__ = [
-    "accepted", "counted", "details", "one_line", "place", "rule_counts", "severity_counts", "skipped", "verdict_line",
-    "where",
+    "accepted", "details", "place", "rule_counts", "severity_counts", "skipped", "verdict_line", "where",
 ]  # fmt: skip
-
-
-def counted(number: int, noun: str) -> str:
-    """ "1 error", "2 errors"."""
-    return f"{number} {noun}" + ("" if number == 1 else "s")
-
-
-def one_line(text: str) -> str:
-    """The text with control characters escaped, so that it stays on one line."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def where(finding: Finding) -> str:
@@ -36,28 +26,25 @@ def place(finding: Finding, units: str) -> str | None:
 
 
 def details(finding: Finding, units: str) -> dict[str, str]:
-    """Found, intended, place and remedy, as far as they are known, by these names; lengths by the units of the assembly."""
+    """Found, intended, place and remedy, as far as they are known, by these names; lengths in units of the assembly."""
     facts = {
-        "found": finding.found,
-        "intended": finding.intended,
-        "place": place(finding, units),
-        "remedy": finding.remedy,
-    }
+        "found": finding.found, "intended": finding.intended, "place": place(finding, units), "remedy": finding.remedy,
+    }  # fmt: skip
     return {key: value for key, value in facts.items() if value}
 
 
 def accepted(report: CheckReport) -> list[str]:
     """Of every finding that is accepted, and of every rule all of whose doubts are, a line that says by whom and why."""
-    told = [
+    findings = [
         f"{item.finding.code} {item.finding.rule}: {', '.join(map(one_line, item.finding.subject))}: "
         f"{one_line(item.reason) if item.reason else 'adopted'} (by the {item.by})"
         for item in report.ignored
     ]
-    known = {item.finding.code for item in report.ignored}
-    return told + [
+    codes = {item.finding.code for item in report.ignored}
+    return findings + [
         f"{rule.code} {rule.rule}: {one_line(rule.reason)}"
         for rule in report.rules
-        if rule.outcome == "ignored" and rule.code not in known
+        if rule.outcome == "ignored" and rule.code not in codes
     ]
 
 
@@ -72,8 +59,8 @@ def skipped(report: CheckReport) -> list[str]:
 
 def severity_counts(report: CheckReport) -> str:
     """ "1 error, 2 warnings, 0 notes"."""
-    found = Counter(finding.severity for finding in report.findings)
-    return ", ".join(counted(found[severity], severity) for severity in reversed(SEVERITIES))
+    counts = Counter(finding.severity for finding in report.findings)
+    return ", ".join(counted(counts[severity], severity) for severity in reversed(SEVERITIES))
 
 
 def rule_counts(report: CheckReport) -> str:

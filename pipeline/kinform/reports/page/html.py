@@ -17,53 +17,49 @@ from markupsafe import Markup
 
 from kinform.design import Design
 from kinform.exports.graph.drawing import graph_legend, graph_panel
+from kinform.reports.constants import FIT_COLOURS, MOST_PICTURES
 from kinform.reports.page import agreement, facts
-from kinform.reports.page.colours import FITS
-from kinform.reports.page.embedded import packed
+from kinform.reports.page.embedded import embedded_scene
 from kinform.reports.page.pictures import Artist
-from kinform.reports.page.plots import plots
+from kinform.reports.page.plots import plot_groups
 from kinform.reports.page.scene import Scene
-from kinform.reports.page.verdict import verdict
 from kinform.version import __version__
 
-__all__ = ["page"]
-
-MOST_PICTURES = 24
-"""Findings with a picture on the page; the others can be shown in the interactive view."""
+__all__ = ["page_html"]
 
 
-def page(design: Design, scene: Scene | None = None) -> str:
+def page_html(design: Design, scene: Scene | None = None) -> str:
     """The report of a design as HTML; `scene` where it was made already."""
     scene = scene or Scene(design)
-    embedded, blob = packed(scene)
+    embedded, blob = embedded_scene(scene)
     program = _asset_program()
     digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii")
-    found = facts.findings(design)
+    findings = facts.findings(design)
     artist = Artist(scene)
-    pictures = {f.index: _data(artist.finding(f.index)) for f in found[:MOST_PICTURES]}
+    pictures = {f.index: _data(artist.finding(f.index)) for f in findings[:MOST_PICTURES]}
     template = _environment().from_string(_asset("page.html.j2"))
     return template.render(
         version=__version__,
         design=design,
         name=design.assembly.name,
-        verdict=verdict(design),
+        verdict=facts.verdict_of(design),
         agreement=agreement.rows(design),
-        findings=found,
+        findings=findings,
         pictures={k: Markup(url) for k, url in pictures.items()},
         joints=facts.joints(design),
-        assumed=facts.assumed(design),
+        assumed=facts.assumptions(design),
         rules=facts.rules(design),
         bodies=[
             (k, body, colour, [(n, p.name) for n, p in enumerate(design.assembly.parts) if p.name in body.parts])
             for k, (body, colour) in enumerate(zip(scene.bodies, scene.colours, strict=True))
         ],
         facets=sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None),
-        fits=FITS,
+        fits=FIT_COLOURS,
         has_overlaps=bool(embedded["overlaps"]),
         motions=embedded["motions"],
         graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
         legend=[] if design.kinematics is None else graph_legend(design.kinematics),
-        plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plots(design)],
+        plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plot_groups(design)],
         overview=Markup(_data(artist.overview(800, 500))),
         style=Markup(_asset("page.css")),
         program=Markup(program),
