@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinform.contacts import find
-from kinform.contacts.search.broad import candidate_pairs
+from kinform.contacts.search.candidates import candidate_pairs
 
 CUBE = extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
 PIN = extrusion(round_loop(3 * MM, 24, centre=(5 * MM, 5 * MM)), z0=0.0, z1=10 * MM)

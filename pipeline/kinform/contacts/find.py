@@ -10,7 +10,7 @@ from typing import Any
 from kinform.contacts.fastening import suggest
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, pair_contacts
-from kinform.contacts.search.broad import Pair, candidate_pairs
+from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.foundation.meshes.index import MeshStore
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
@@ -30,9 +30,10 @@ class _Work:
         self.store, self.solids = MeshStore(), SolidStore()
 
     def contacts(self, pair: Pair) -> PairContacts:
-        first, second = (self.parts[name] for name in pair)
-        tolerance, tolerances = self.tolerance[pair], self.assembly.tolerances
-        return pair_contacts(first, second, self.surfaces, self.store, self.solids, tolerance, tolerances)
+        """Of two parts."""
+        parts = self.parts[pair[0]], self.parts[pair[1]]
+        tolerances = self.assembly.tolerances
+        return pair_contacts(parts, self.surfaces, self.store, self.solids, self.tolerance[pair], tolerances)
 
 
 _worker: _Work | None = None
@@ -48,7 +49,7 @@ def _in_worker(pair: Pair) -> PairContacts:
     return _worker.contacts(pair)
 
 
-def _computed(work: _Work, pairs: list[Pair], jobs: int) -> Iterator[PairContacts]:
+def _compute(work: _Work, pairs: list[Pair], jobs: int) -> Iterator[PairContacts]:
     """Contacts of the pairs, in their order, whatever the number of jobs."""
     if jobs <= 1 or len(pairs) < 2:
         yield from map(work.contacts, pairs)
@@ -84,32 +85,32 @@ def find(
     depend on `jobs`.
     """
     tolerance = candidate_pairs(assembly)
-    known = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
-    wanted = [pair for pair in tolerance if pair not in known]
+    reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
+    wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance)
     done: dict[Pair, PairContacts] = {}
-    for count, (pair, contacts) in enumerate(zip(wanted, _computed(work, wanted, jobs), strict=True), start=1):
-        done[pair] = contacts
+    for count, (pair, of_pair) in enumerate(zip(wanted, _compute(work, wanted, jobs), strict=True), start=1):
+        done[pair] = of_pair
         if progress is not None:
             progress(count, len(wanted))
     if reuse is not None:
-        done |= _taken(reuse, known)
-    found = Contacts(
+        done |= _earlier_contacts(reuse, reused)
+    contacts = Contacts(
         patches=tuple(patch for pair in tolerance for patch in done[pair].patches),
-        interferences=tuple(found for pair in tolerance if (found := done[pair].interference) is not None),
+        interferences=tuple(overlap for pair in tolerance if (overlap := done[pair].interference) is not None),
         candidates=tuple(tolerance),
         tolerance=tolerance,
     )
-    taken = {} if reuse is None else _suggested(reuse, found, known)
-    return replace(found, suggestions=suggest(assembly, surfaces, found, taken))
+    earlier = {} if reuse is None else _earlier_suggestions(reuse, contacts, reused)
+    return replace(contacts, suggestions=suggest(assembly, surfaces, contacts, earlier))
 
 
-def _suggested(reuse: Contacts, found: Contacts, known: set[Pair]) -> dict[Pair, list[Suggestion]]:
+def _earlier_suggestions(reuse: Contacts, contacts: Contacts, reused: set[Pair]) -> dict[Pair, list[Suggestion]]:
     """What earlier contacts suggest of pairs that are taken over with all pairs near them: of parts that have the
     neighbours that they had, all as they were."""
-    before, after = _neighbours(reuse.candidates), _neighbours(found.candidates)
-    same = {name for name, own in after.items() if own == before.get(name) and own <= known}
-    out: dict[Pair, list[Suggestion]] = {pair: [] for pair in known if same.issuperset(pair)}
+    before, after = _neighbours(reuse.candidates), _neighbours(contacts.candidates)
+    same = {name for name, pairs in after.items() if pairs == before.get(name) and pairs <= reused}
+    out: dict[Pair, list[Suggestion]] = {pair: [] for pair in reused if same.issuperset(pair)}
     for hint in reuse.suggestions:
         if hint.parts in out:
             out[hint.parts].append(hint)
@@ -125,11 +126,11 @@ def _neighbours(pairs: Iterable[Pair]) -> dict[PartName, set[Pair]]:
     return out
 
 
-def _taken(reuse: Contacts, pairs: set[Pair]) -> dict[Pair, PairContacts]:
+def _earlier_contacts(reuse: Contacts, pairs: set[Pair]) -> dict[Pair, PairContacts]:
     """What earlier contacts say of these pairs."""
-    overlaps = {found.parts: found for found in reuse.interferences}
+    overlaps = {overlap.parts: overlap for overlap in reuse.interferences}
     patches: dict[Pair, list[Patch]] = {pair: [] for pair in pairs}
     for patch in reuse.patches:
         if patch.parts in patches:
             patches[patch.parts].append(patch)
-    return {pair: PairContacts(tuple(own), overlaps.get(pair)) for pair, own in patches.items()}
+    return {pair: PairContacts(tuple(of_pair), overlaps.get(pair)) for pair, of_pair in patches.items()}

@@ -1,4 +1,5 @@
-"""Numbers, names and places in an engineer's words; they cost no import, so that a run with nothing to do stays quick."""
+"""Numbers, names and places in an engineer's words; they cost no import, so that a run with nothing to do stays
+quick."""
 
 from __future__ import annotations
 

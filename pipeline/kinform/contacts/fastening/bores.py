@@ -4,27 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.model.arrays import Array, Flags
+from kinform.contacts.constants import AXES_COAXIAL, AXES_PARALLEL, HOLE_SINK, ROUND_SWEEP, SHAFT_COSINE
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Part
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Cylinders", "Holes", "aligned_holes", "cylinders_of", "occupied", "together"]
-
-
-PARALLEL = math.radians(0.5)
-"""Greatest angle between two axes that line up."""
-WHOLE = 0.9 * 2 * math.pi
-"""Least sweep of a hole."""
-SINK = 0.6
-"""Depth of a chamfer or countersink between a plane and the hole behind it, in radii of the hole."""
-COAXIAL = 0.2
-"""Distance of axes that count as one, in contact tolerances."""
+__all__ = ["Cylinders", "Holes", "aligned_holes", "all_cylinders", "aside", "cylinders_of", "occupied"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +27,7 @@ class Cylinders:
     radii: Array
     halves: Array
     """(n,) m: half of the length."""
-    sides: NDArray[np.int64]
+    sides: Ints
     """(n,) -1: holes."""
 
     def chosen(self, keep: Flags) -> Cylinders:
@@ -59,8 +49,9 @@ class Holes:
 def cylinders_of(part: Part, surfaces: Mapping[str, MeshSurfaces]) -> Cylinders:
     """The cylinders of a meshed part that go all round."""
     assert part.mesh is not None
-    found = surfaces.get(part.mesh.digest)
-    round_ = [s for s in found.surfaces if s.kind == "cylinder" and s.sweep >= WHOLE] if found is not None else []
+    recovered = surfaces.get(part.mesh.digest)
+    every = recovered.surfaces if recovered is not None else ()
+    round_ = [s for s in every if s.kind == "cylinder" and s.sweep >= ROUND_SWEEP]
     R_WP, p_WP = part.X_WP[:3, :3], part.X_WP[:3, 3]
     axes = np.array([s.axis for s in round_]).reshape(-1, 3)
     middles = np.array([s.point + 0.5 * sum(s.extent) * s.axis for s in round_]).reshape(-1, 3)
@@ -73,18 +64,12 @@ def cylinders_of(part: Part, surfaces: Mapping[str, MeshSurfaces]) -> Cylinders:
     )
 
 
-def together(some: Iterable[Cylinders]) -> Cylinders:
+def all_cylinders(parts: Iterable[Cylinders]) -> Cylinders:
     """All cylinders of several parts."""
-    every = [c for c in some if len(c.radii)]
+    every = [c for c in parts if len(c.radii)]
     if not every:
         return Cylinders(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0, dtype=np.int64))
-    return Cylinders(
-        np.concatenate([c.axes for c in every]),
-        np.concatenate([c.points for c in every]),
-        np.concatenate([c.radii for c in every]),
-        np.concatenate([c.halves for c in every]),
-        np.concatenate([c.sides for c in every]),
-    )
+    return Cylinders(*(np.concatenate([getattr(c, f.name) for c in every]) for f in fields(Cylinders)))
 
 
 def aligned_holes(a: Cylinders, b: Cylinders, planes: Iterable[Patch], tolerance: float) -> Holes:
@@ -96,7 +81,7 @@ def aligned_holes(a: Cylinders, b: Cylinders, planes: Iterable[Patch], tolerance
     for patch in planes:
         below = first.chosen(_opens(first, patch, tolerance, 1.0))
         above = second.chosen(_opens(second, patch, tolerance, -1.0))
-        for i, j in _coaxial(below, above, COAXIAL * tolerance):
+        for i, j in _coaxial(below, above, AXES_COAXIAL * tolerance):
             axis, point = below.axes[i], below.points[i]
             place = point + float((patch.point - point) @ patch.axis) / float(axis @ patch.axis) * axis
             if all(_apart(axis, place, *other) > tolerance for other in zip(axes, places, strict=True)):
@@ -111,9 +96,9 @@ def _opens(holes: Cylinders, patch: Patch, tolerance: float, sense: float) -> Fl
     circle round the patch."""
     if not len(holes.radii):
         return np.zeros(0, bool)
-    upright = np.abs(holes.axes @ patch.axis) > math.cos(PARALLEL)
+    upright = np.abs(holes.axes @ patch.axis) > math.cos(AXES_PARALLEL)
     depth = -sense * ((holes.points - patch.point) @ patch.axis)
-    starts = np.abs(depth - holes.halves) <= tolerance + SINK * holes.radii
+    starts = np.abs(depth - holes.halves) <= tolerance + HOLE_SINK * holes.radii
     starts |= (np.abs(depth) < holes.halves) & (depth + holes.halves > tolerance)
     low, high = patch.points.min(axis=0), patch.points.max(axis=0)
     beside = holes.points - 0.5 * (low + high)
@@ -128,16 +113,21 @@ def _coaxial(a: Cylinders, b: Cylinders, distance: float) -> list[tuple[int, int
         return []
     gap = b.points[None] - a.points[:, None]
     gap = gap - np.einsum("ijk,ik->ij", gap, a.axes)[:, :, None] * a.axes[:, None]
-    on = (np.abs(a.axes @ b.axes.T) > math.cos(PARALLEL)) & (np.linalg.norm(gap, axis=2) <= distance)
+    on = (np.abs(a.axes @ b.axes.T) > math.cos(AXES_PARALLEL)) & (np.linalg.norm(gap, axis=2) <= distance)
     unlike = np.where(on, np.abs(b.radii[None] - a.radii[:, None]), np.inf)
     return [(int(i), int(np.argmin(unlike[i]))) for i in np.flatnonzero(on.any(axis=1))]
 
 
 def _apart(axis: Array, place: Array, other_axis: Array, other_place: Array) -> float:
     """Distance of two places across their axis: steps of a hole, and a hole through two walls, are one."""
-    if abs(float(axis @ other_axis)) < math.cos(PARALLEL):
+    if abs(float(axis @ other_axis)) < math.cos(AXES_PARALLEL):
         return math.inf
-    offset = other_place - place
+    return aside(place, other_place, axis)
+
+
+def aside(place: Array, other: Array, axis: Array) -> float:
+    """Distance of two places across an axis."""
+    offset = other - place
     return float(np.linalg.norm(offset - float(offset @ axis) * axis))
 
 
@@ -148,7 +138,7 @@ def occupied(holes: Holes, cylinders: Cylinders, tolerance: float) -> Flags:
         return np.zeros(len(holes.radii), bool)
     offset = shafts.points[None] - holes.places[:, None]
     along = np.einsum("ijk,ik->ij", offset, holes.axes)
-    aside = np.linalg.norm(offset - along[:, :, None] * holes.axes[:, None], axis=2)
-    inside = (np.abs(holes.axes @ shafts.axes.T) > 0.99) & (aside <= holes.radii[:, None])
+    off = np.linalg.norm(offset - along[:, :, None] * holes.axes[:, None], axis=2)
+    inside = (np.abs(holes.axes @ shafts.axes.T) > SHAFT_COSINE) & (off <= holes.radii[:, None])
     inside &= shafts.radii[None] <= holes.radii[:, None] + tolerance
     return np.asarray((inside & (np.abs(along) <= shafts.halves[None] + holes.radii[:, None])).any(axis=1))

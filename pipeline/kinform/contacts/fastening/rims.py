@@ -9,22 +9,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinform.contacts.constants import AXES_PARALLEL, RIM_KINDS, RIM_SCATTER, ROUND_SWEEP
 from kinform.foundation.meshes.edges import edge_ends
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 __all__ = ["rims_of"]
-
-
-ROUND = frozenset({"cylinder", "cone", "torus", "revolution"})
-UPRIGHT = math.cos(math.radians(0.5))
-WHOLE = 0.9 * 2 * math.pi
-"""Least angle that the edges of a rim cover."""
-SCATTER = 0.01
-"""Greatest spread of the distances of a rim's vertices from its axis, of their mean."""
 
 
 def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array, float]]:
@@ -33,7 +25,11 @@ def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array,
     out = []
     R_WP, p_WP = part.X_WP[:3, :3], part.X_WP[:3, 3]
     flat = surfaces.surfaces[plane]
-    upright = [s for s in surfaces.surfaces if s.kind in ROUND and abs(float(s.axis @ flat.axis)) >= UPRIGHT]
+    upright = [
+        s
+        for s in surfaces.surfaces
+        if s.kind in RIM_KINDS and abs(float(s.axis @ flat.axis)) >= math.cos(AXES_PARALLEL)
+    ]
     for other, edges in _borders(part.mesh, flat, upright):
         radius = _circle(part.mesh.vertices[edges], other)
         if radius is not None:
@@ -42,7 +38,7 @@ def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array,
     return out
 
 
-def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tuple[Surface, NDArray[np.int64]]]:
+def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tuple[Surface, Ints]]:
     """Those of the other surfaces that share edges with the plane, with the (n, 2) vertices of these edges."""
     if not others:
         return []
@@ -61,7 +57,7 @@ def _borders(mesh: Mesh, plane: Surface, others: Sequence[Surface]) -> list[tupl
     return out
 
 
-def _keys(edges: NDArray[np.int64], mesh: Mesh) -> NDArray[np.int64]:
+def _keys(edges: Ints, mesh: Mesh) -> Ints:
     """One number an edge."""
     return edges[:, 0] * len(mesh.vertices) + edges[:, 1]
 
@@ -72,7 +68,7 @@ def _circle(edges: Array, surface: Surface) -> float | None:
     across = offset - (offset @ surface.axis)[..., None] * surface.axis
     distance = np.linalg.norm(across, axis=2)
     radius = float(distance.mean())
-    if radius <= 0.0 or float(np.ptp(distance)) > SCATTER * radius:
+    if radius <= 0.0 or float(np.ptp(distance)) > RIM_SCATTER * radius:
         return None
     cosine = np.clip(np.einsum("ij,ij->i", across[:, 0], across[:, 1]) / distance.prod(axis=1), -1.0, 1.0)
-    return radius if float(np.arccos(cosine).sum()) >= WHOLE else None
+    return radius if float(np.arccos(cosine).sum()) >= ROUND_SWEEP else None

@@ -10,8 +10,25 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from kinform.contacts.fastening.bores import COAXIAL, Cylinders, Holes, aligned_holes, cylinders_of, occupied, together
+from kinform.contacts.constants import (
+    AXES_COAXIAL,
+    AXIS_AREA,
+    PATTERN_ALIKE,
+    POCKET_GAP,
+    UPRIGHT_COSINE,
+    WALL_COSINE,
+)
+from kinform.contacts.fastening.bores import (
+    Cylinders,
+    Holes,
+    aligned_holes,
+    all_cylinders,
+    aside,
+    cylinders_of,
+    occupied,
+)
 from kinform.contacts.fastening.rims import rims_of
+from kinform.foundation.algebra.vectors import canonical_sign, widest_gap
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Assembly, Part
 from kinform.model.contacts import Contacts, Patch, Suggestion
@@ -21,13 +38,6 @@ from kinform.model.surfaces import MeshSurfaces
 __all__ = ["fastened", "suggest"]
 
 Pair = tuple[PartName, PartName]
-
-LEAST_AREA = 100.0
-"""Least area, in squared contact tolerances, of a contact from which an axis is read."""
-ALIKE = 0.02
-"""Relative difference of radii and distances within which holes are of one pattern."""
-WALL = 0.02
-"""Cosine below which a face is parallel to a direction."""
 
 
 class _Scene:
@@ -51,7 +61,7 @@ class _Scene:
     def beside(self, pair: Pair) -> Cylinders:
         """Cylinders of the other parts that come near one of the pair."""
         names = (self._near[pair[0]] | self._near[pair[1]]) - set(pair)
-        return together(self.cylinders(name) for name in sorted(names))
+        return all_cylinders(self.cylinders(name) for name in sorted(names))
 
     def rims(self, name: PartName, plane: int) -> list[tuple[Array, float]]:
         """Rims of a plane surface of a part."""
@@ -64,9 +74,9 @@ def suggest(
     assembly: Assembly,
     surfaces: Mapping[str, MeshSurfaces],
     contacts: Contacts,
-    known: Mapping[Pair, Sequence[Suggestion]] | None = None,
+    earlier: Mapping[Pair, Sequence[Suggestion]] | None = None,
 ) -> tuple[Suggestion, ...]:
-    """Suggestions for all pairs in contact, sorted by part names, then kind. Those of pairs that are `known` are taken
+    """Suggestions for all pairs in contact, sorted by part names, then kind. Those of pairs in `earlier` are taken
     over: neither they nor any part near one of them changed.
     """
     if not contacts.patches:
@@ -75,16 +85,17 @@ def suggest(
     of_pair: dict[Pair, list[Patch]] = defaultdict(list)
     for patch in contacts.patches:
         of_pair[patch.parts].append(patch)
-    found: list[Suggestion] = []
+    hints: list[Suggestion] = []
     for pair in sorted(of_pair):
-        if known is not None and pair in known:
-            found += known[pair]
+        if earlier is not None and pair in earlier:
+            hints += earlier[pair]
         else:
-            found += _of_pair(pair, of_pair[pair], scene, contacts.tolerance[pair])
-    return tuple(sorted(found, key=lambda hint: (hint.parts, hint.kind)))
+            hints += _of_pair(pair, of_pair[pair], scene, contacts.tolerance[pair])
+    return tuple(sorted(hints, key=lambda hint: (hint.parts, hint.kind)))
 
 
 def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) -> list[Suggestion]:
+    """What the contacts of one pair hint at."""
     firm = [patch for patch in patches if not patch.one_sided]
     planes = sorted((patch for patch in firm if patch.kind == "plane"), key=lambda patch: -patch.area)
     out = _pressed(pair, firm) + _pocket(pair, firm)
@@ -96,16 +107,15 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
         out.append(_hint(pair, "holes", text, holes.axes[0], holes.places.mean(axis=0)))
         return out
     largest = planes[0]
-    flat = all(patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > 0.9999 for patch in patches)
-    if flat and sum(patch.area for patch in planes) >= LEAST_AREA * tolerance**2:
+    flat = all(patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > UPRIGHT_COSINE for patch in patches)
+    if flat and sum(patch.area for patch in planes) >= AXIS_AREA * tolerance**2:
         out += _axis(pair, planes, scene, tolerance)
     return out
 
 
 def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Suggestion:
-    size = np.abs(axis)
-    first = int(np.flatnonzero(size > size.max() - 1e-3)[0])
-    turned = axis if axis[first] >= 0 or kind == "pocket" else -axis
+    """A suggestion with the canonical sign of the axis; that of a pocket points out of it."""
+    turned = axis if kind == "pocket" else canonical_sign(axis) * axis
     return Suggestion(pair, kind, evidence, np.asarray(freeze(turned + 0.0)), np.asarray(freeze(point + 0.0)))
 
 
@@ -122,12 +132,12 @@ def _holes(pair: Pair, planes: list[Patch], patches: list[Patch], scene: _Scene,
 def _pivoted(plane: Patch, patches: list[Patch], tolerance: float) -> bool:
     """Whether the parts share one journal that stands on the plane: they may be meant to turn. Two journals side
     by side are dowels."""
-    upright = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ plane.axis)) > 1 - WALL]
+    upright = [p for p in patches if p.kind == "cylinder" and abs(float(p.axis @ plane.axis)) > 1 - WALL_COSINE]
     if not upright:
         return False
     offset = np.array([p.point for p in upright]) - upright[0].point
-    aside = offset - (offset @ plane.axis)[:, None] * plane.axis
-    return bool(np.linalg.norm(aside, axis=1).max() <= tolerance)
+    across = offset - (offset @ plane.axis)[:, None] * plane.axis
+    return bool(np.linalg.norm(across, axis=1).max() <= tolerance)
 
 
 def _pressed(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
@@ -151,38 +161,28 @@ def _pocket(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
     axes = np.array([patch.axis for patch in round_]).reshape(-1, 3)
     for floor in flat:
         along = normals @ floor.axis
-        walls = normals[np.abs(along) < WALL]
-        if along.min() <= -WALL or (np.abs(axes @ floor.axis) <= 1 - WALL).any():
+        walls = normals[np.abs(along) < WALL_COSINE]
+        if along.min() <= -WALL_COSINE or (np.abs(axes @ floor.axis) <= 1 - WALL_COSINE).any():
             continue
-        if len(walls) and _surrounded(walls, floor.axis):
+        if len(walls) and widest_gap(walls, floor.axis) < POCKET_GAP:
             text = "in a pocket that it can leave one way only"
             return [_hint(pair, "pocket", text, floor.axis, floor.point)]
     return []
 
 
-def _surrounded(normals: Array, out: Array) -> bool:
-    """Whether normals (n, 3) across a direction leave no way aside: no gap of half a turn between them."""
-    helper = np.eye(3)[np.argmin(np.abs(out))]
-    x = np.cross(out, helper)
-    x /= np.linalg.norm(x)
-    angle = np.sort(np.arctan2(normals @ np.cross(out, x), normals @ x))
-    gaps = np.diff(np.r_[angle, angle[:1] + 2 * math.pi])
-    return bool(gaps.max() < math.pi - 0.05)
-
-
 def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> list[Suggestion]:
     """The one axis about which both parts have rims at their contact, or patterns of holes about one centre."""
-    near, normal = COAXIAL * tolerance, planes[0].axis
-    met: list[tuple[Array, float, float]] = []
+    near, normal = AXES_COAXIAL * tolerance, planes[0].axis
+    coaxial: list[tuple[Array, float, float]] = []
     for patch in planes:
         rims = [scene.rims(name, index) for name, index in zip(pair, patch.surfaces, strict=True)]
         for centre, radius in rims[0]:
             for other, size in rims[1]:
-                if _aside(centre, other, normal) <= near:
-                    met.append((centre, radius, size))
-    if met:
-        centre, radius, size = max(met, key=lambda rim: rim[1:])
-        if any(_aside(centre, other, normal) > tolerance for other, _, _ in met):
+                if aside(centre, other, normal) <= near:
+                    coaxial.append((centre, radius, size))
+    if coaxial:
+        centre, radius, size = max(coaxial, key=lambda rim: rim[1:])
+        if any(aside(centre, other, normal) > tolerance for other, _, _ in coaxial):
             return []
         # a shaft that stands there has contacts of its own, which say more
         rim = Holes(normal[None], centre[None], np.array([max(radius, size)]))
@@ -197,30 +197,26 @@ def _axis(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> l
     return [_hint(pair, "bolt circle", text, normal, first[0])]
 
 
-def _aside(place: Array, other: Array, axis: Array) -> float:
-    """Distance of two places across an axis."""
-    offset = other - place
-    return float(np.linalg.norm(offset - float(offset @ axis) * axis))
-
-
 def _bolt_circle(side: Cylinders, plane: Patch, tolerance: float) -> tuple[Array, int] | None:
     """Centre on the plane, and number, of the largest set of equal holes that are evenly spaced on a circle."""
-    upright = (side.sides < 0) & (np.abs(side.axes @ plane.axis) > 0.9999) if len(side.radii) else np.zeros(0, bool)
+    upright = (
+        (side.sides < 0) & (np.abs(side.axes @ plane.axis) > UPRIGHT_COSINE) if len(side.radii) else np.zeros(0, bool)
+    )
     holes = side.chosen(upright)
     height = (holes.points - plane.point) @ plane.axis
     places = holes.points - height[:, None] * plane.axis
     near = np.abs(height) <= holes.halves + tolerance
     best: tuple[Array, int] | None = None
     for radius in np.unique(holes.radii[near]):
-        some = places[near & (np.abs(holes.radii - radius) <= ALIKE * radius)]
-        if len(some) < 3 or (best is not None and len(some) <= best[1]):
+        alike = places[near & (np.abs(holes.radii - radius) <= PATTERN_ALIKE * radius)]
+        if len(alike) < 3 or (best is not None and len(alike) <= best[1]):
             continue
-        centre = some.mean(axis=0)
-        arms = np.linalg.norm(some - centre, axis=1)
-        apart = 2 * arms.mean() * math.sin(math.pi / len(some))
-        steps = np.sort(np.linalg.norm(some[:, None] - some[None], axis=2), axis=1)[:, 1]
-        if np.ptp(arms) <= ALIKE * arms.mean() and np.abs(steps - apart).max() <= ALIKE * apart:
-            best = (centre, len(some))
+        centre = alike.mean(axis=0)
+        arms = np.linalg.norm(alike - centre, axis=1)
+        apart = 2 * arms.mean() * math.sin(math.pi / len(alike))
+        steps = np.sort(np.linalg.norm(alike[:, None] - alike[None], axis=2), axis=1)[:, 1]
+        if np.ptp(arms) <= PATTERN_ALIKE * arms.mean() and np.abs(steps - apart).max() <= PATTERN_ALIKE * apart:
+            best = (centre, len(alike))
     return best
 
 

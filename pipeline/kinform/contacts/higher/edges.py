@@ -11,8 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.contacts.mating.patches import classify_fit
-from kinform.contacts.search.placed import NearSurfaces, PlacedPart, near_facets
+from kinform.contacts.constants import (
+    EDGE_RISE,
+    EDGES_MOST,
+    GIVER_AREA,
+    LINE_SAMPLES,
+    PROBE_SPARE,
+    TOUCH,
+    ZONE,
+)
+from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
+from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -20,20 +29,6 @@ from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["edge_contacts"]
-
-
-_TOUCH = 0.12
-"""Share of the contact tolerance within which a point or a line touches: the band of full weight."""
-_ZONE = 0.01
-"""Share of the contact tolerance that bounds the zone whose area is stated."""
-_ALONG = 9
-"""Samples along an edge."""
-_RISE = math.sin(math.radians(3.0))
-"""Faces beside an edge rise at least this steeply; flatter ones lie on the plane badly."""
-_LEAST = 4.0
-"""A plane counts from this area on, in squared tolerances."""
-_MOST = 64
-"""More edges and corners than these on one plane are a rough surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,29 +40,44 @@ class _Edges:
     bends: Flags
 
 
-def edge_contacts(
-    a: PlacedPart,
-    b: PlacedPart,
-    near: tuple[NearSurfaces, NearSurfaces],
-    tolerance: float,
-    tolerances: Tolerances,
-    known: frozenset[tuple[int, int]] = frozenset(),
-) -> list[Patch]:
-    """Edges and corners of either part on planes of the other, in the frame of the pair; `known`: pairs of surfaces
-    whose contact is known already."""
-    if not len(near[0].ids) or not len(near[1].ids):
+@dataclass(frozen=True, eq=False)
+class _Touch:
+    """Points (n, 3) on one edge or corner of a part, over a plane of the other."""
+
+    surfaces: tuple[int, int]
+    """Of the part that is sharp, and the plane."""
+    row: int
+    """Of the plane among the near surfaces."""
+    points: Array
+    gaps: Array
+    axis: Array | None
+    """(3,) along an edge; None: a corner, or the lowest place of a rim."""
+    area: float
+    """m² that each point stands for."""
+
+
+def edge_contacts(pair: PairView, met: frozenset[tuple[int, int]] = frozenset()) -> list[Patch]:
+    """Edges and corners of either part on planes of the other, in the frame of the pair; `met`: pairs of surfaces
+    that touch otherwise and are left out."""
+    box = pair.common_box()
+    if box is None:
         return []
-    low = np.maximum(near[0].lows.min(axis=0), near[1].lows.min(axis=0)) - tolerance
-    high = np.minimum(near[0].highs.max(axis=0), near[1].highs.max(axis=0)) + tolerance
     out = []
-    for sharp, flat, side, first in ((a, b, near[1], True), (b, a, near[0], False)):
-        edges = _sharp(sharp, near_facets(sharp, low, high)[0], tolerances)
-        for row in np.flatnonzero((side.kinds == KINDS.index("plane")) & (side.areas >= _LEAST * tolerance**2)):
-            out += _standing(sharp, flat, edges, side, int(row), first, tolerance, tolerances, known)
+    for view, first in ((pair, True), (pair.swapped, False)):
+        planes = view.near[1]
+        edges = _sharp_edges(view.a, near_facets(view.a, *box)[0], pair.tolerances)
+        large = planes.areas >= GIVER_AREA * pair.tolerance**2
+        for row in np.flatnonzero((planes.kinds == KINDS.index("plane")) & large):
+            touches = _standing(view, edges, int(row))
+            out += [
+                _patch(pair, touch, first)
+                for touch in touches
+                if (touch.surfaces if first else touch.surfaces[::-1]) not in met
+            ]
     return out
 
 
-def _sharp(part: PlacedPart, facets: Ints, tolerances: Tolerances) -> _Edges:
+def _sharp_edges(part: PartView, facets: Ints, tolerances: Tolerances) -> _Edges:
     """Those among the facets (ascending) between which the part is sharp and convex."""
     edges = shared_edges(part.faces[facets], len(part.vertices), by_corner=True)
     edges = edges.where(edges.opposed)
@@ -90,57 +100,50 @@ def _sharp(part: PlacedPart, facets: Ints, tolerances: Tolerances) -> _Edges:
     return _Edges(ends, beside, bends)
 
 
-def _standing(
-    sharp: PlacedPart,
-    flat: PlacedPart,
-    edges: _Edges,
-    side: NearSurfaces,
-    row: int,
-    first: bool,
-    tolerance: float,
-    tolerances: Tolerances,
-    known: frozenset[tuple[int, int]],
-) -> list[Patch]:
-    """Edges and corners that stand on one plane."""
-    normal, origin = side.axes[row], side.points[row]
-    if not len(edges.ends) or float(side.point_uncertainty[row]) > _TOUCH * tolerance:
+def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
+    """Edges and corners of the first part that stand on one plane of the second."""
+    (sharp, flat), planes, limit = view.parts, view.near[1], TOUCH * view.tolerance
+    normal, origin = planes.axes[row], planes.points[row]
+    if not len(edges.ends) or float(planes.point_uncertainty[row]) > limit:
         return []
     height = (sharp.vertices - origin) @ normal
-    inside = np.abs(height[edges.ends]) <= _TOUCH * tolerance
+    inside = np.abs(height[edges.ends]) <= limit
     if not inside.any():
         return []
+    slope = math.sin(view.tolerances.alignment)
     vectors = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
     length = np.linalg.norm(vectors, axis=1)
-    level = np.abs(np.ptp(height[edges.ends], axis=1)) <= math.sin(tolerances.alignment) * length
-    rise = _rises(sharp, edges, height)
-    lying = inside.all(axis=1) & level & rise
+    level = np.abs(np.ptp(height[edges.ends], axis=1)) <= slope * length
+    lines = np.flatnonzero(inside.all(axis=1) & level & _rises(sharp, edges, height))
     corners = np.setdiff1d(edges.ends[inside], edges.ends[inside.all(axis=1) & level])
-    corners = corners[_lowest(sharp, corners, height, math.sin(tolerances.alignment))]
-    lines = np.flatnonzero(lying)
-    if not 0 < len(lines) + len(corners) <= _MOST:
+    corners = corners[_lowest(sharp, corners, height, slope)]
+    if not 0 < len(lines) + len(corners) <= EDGES_MOST:
         return []
-    out = []
-    spots = [
-        (edges.facets[k, 0], _between(sharp, edges.ends[k], 1 if edges.bends[k] else _ALONG), vectors[k] / length[k])
+    spots: list[tuple[Ints, Array, Array | None]] = [
+        (
+            edges.facets[k, 0],
+            _between(sharp, edges.ends[k], 1 if edges.bends[k] else LINE_SAMPLES),
+            vectors[k] / length[k],
+        )
         for k in lines
     ]
-    beside = {int(v): int(f[0]) for pair, f in zip(edges.ends, edges.facets, strict=True) for v in pair}
-    spots += [(beside[int(v)], sharp.vertices[[v]], np.zeros(3)) for v in corners]
+    beside = {int(v): f[0] for pair, f in zip(edges.ends, edges.facets, strict=True) for v in pair}
+    spots += [(beside[int(v)], sharp.vertices[[v]], None) for v in corners]
+    out = []
     for facet, points, axis in spots:
-        ids = (int(sharp.surfaces.labels[facet]), int(side.ids[row]))
-        if (ids if first else ids[::-1]) in known:
-            continue
+        ids = (int(sharp.surfaces.labels[facet]), int(planes.ids[row]))
         gaps = (points - origin) @ normal
-        holds = _over(flat, points - gaps[:, None] * normal, normal, ids[1], tolerance)
+        holds = _over(flat, points - gaps[:, None] * normal, normal, ids[1], view.tolerance)
         if holds.any():
-            line = len(points) > 1
-            each = 2.0 * _ZONE * tolerance * float(np.linalg.norm(points[1] - points[0])) if line else 0.0
-            spot = (points[holds], gaps[holds], axis if line else np.zeros(3), each)
-            out.append(_patch(sharp, flat, side, row, ids, first, spot, tolerance))
+            area = math.pi * (ZONE * view.tolerance) ** 2
+            if len(points) > 1:
+                area = 2.0 * ZONE * view.tolerance * float(np.linalg.norm(points[1] - points[0]))
+            line = axis if len(points) > 1 else None
+            out.append(_Touch(ids, row, points[holds], gaps[holds], line, area))
     return out
 
 
-def _rises(sharp: PlacedPart, edges: _Edges, height: Array) -> Flags:
+def _rises(sharp: PartView, edges: _Edges, height: Array) -> Flags:
     """Whether both faces beside each edge rise from it, and not as good as flat."""
     out = np.ones(len(edges.ends), dtype=bool)
     base = height[edges.ends].mean(axis=1)
@@ -151,11 +154,11 @@ def _rises(sharp: PlacedPart, edges: _Edges, height: Array) -> Flags:
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
         along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
         away = np.linalg.norm(reach - np.einsum("ij,ij->i", reach, along)[:, None] * along, axis=1)
-        out &= height[third] - base > _RISE * away
+        out &= height[third] - base > EDGE_RISE * away
     return out
 
 
-def _lowest(sharp: PlacedPart, corners: Ints, height: Array, slope: float) -> Flags:
+def _lowest(sharp: PartView, corners: Ints, height: Array, slope: float) -> Flags:
     """Whether everything around each corner rises from it, at least at this slope; rims rise slowly."""
     out = np.zeros(len(corners), dtype=bool)
     for k, vertex in enumerate(corners):
@@ -165,15 +168,16 @@ def _lowest(sharp: PlacedPart, corners: Ints, height: Array, slope: float) -> Fl
     return out
 
 
-def _between(sharp: PlacedPart, ends: Ints, count: int) -> Array:
+def _between(sharp: PartView, ends: Ints, count: int) -> Array:
+    """(count, 3) points evenly along an edge."""
     share = (np.arange(count) + 0.5) / count
     start, stop = sharp.vertices[ends]
     return np.asarray(start + share[:, None] * (stop - start))
 
 
-def _over(flat: PlacedPart, points: Array, normal: Array, surface: int, tolerance: float) -> Flags:
+def _over(flat: PartView, points: Array, normal: Array, surface: int, tolerance: float) -> Flags:
     """Whether points on a plane are on the facets of that surface."""
-    reach = np.full(len(points), 0.05 * tolerance + flat.surfaces.surfaces[surface].chord)
+    reach = np.full(len(points), PROBE_SPARE * tolerance + flat.surfaces.surfaces[surface].chord)
     directions = np.tile(normal, (len(points), 1))
     hits = flat.region.cast(flat.to_part(points), flat.turn_to_part(directions), reach)
     out = np.zeros(len(points), dtype=bool)
@@ -181,39 +185,20 @@ def _over(flat: PlacedPart, points: Array, normal: Array, surface: int, toleranc
     return out
 
 
-def _patch(
-    sharp: PlacedPart,
-    flat: PlacedPart,
-    side: NearSurfaces,
-    row: int,
-    ids: tuple[int, int],
-    first: bool,
-    spot: tuple[Array, Array, Array, float],
-    tolerance: float,
-) -> Patch:
-    points, gaps, axis, each = spot
-    line = bool(np.any(axis))
-    area = each if line else math.pi * (_ZONE * tolerance) ** 2
-    normal = -side.axes[row] if first else side.axes[row]
-    uncertainty = (float(side.axis_uncertainty[row]), float(side.point_uncertainty[row]))
-    names = (sharp.part.name, flat.part.name)
-    return Patch(
-        parts=names if first else names[::-1],
-        surfaces=ids if first else ids[::-1],
-        kind="line" if line else "point",
-        one_sided=False,
-        points=points - 0.5 * gaps[:, None] * side.axes[row],
-        normals=np.tile(normal, (len(points), 1)),
-        gaps=gaps,
-        weights=np.full(len(points), area),
-        area=area * len(points),
-        gap=float(gaps.mean()),
-        axis=axis,
-        point=points.mean(axis=0),
+def _patch(pair: PairView, touch: _Touch, first: bool) -> Patch:
+    """The patch of an edge or corner of the `first` part, or the second, on a plane of the other."""
+    planes, row = pair.near[1 if first else 0], touch.row
+    normal = planes.axes[row]
+    outward = np.tile(-normal if first else normal, (len(touch.points), 1))
+    shift = float(planes.point_uncertainty[row])
+    samples = TouchSamples(
+        touch.points - 0.5 * touch.gaps[:, None] * normal,
+        outward,
+        touch.gaps,
+        touch.area,
+        axis=touch.axis,
         radii=(0.0, 0.0),
-        misalignment=0.0,
-        offset=0.0,
-        uncertainty=uncertainty,
-        chord=float(side.chords[row]),
-        fit=classify_fit(gaps, float(side.chords[row]), uncertainty[1], tolerance),
+        uncertainty=(float(planes.axis_uncertainty[row]), shift),
+        chord=float(planes.chords[row]),
     )
+    return touch_patch(pair, touch.surfaces if first else touch.surfaces[::-1], samples, shift)

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinform.contacts.mating.charts import perpendicular
-from kinform.contacts.search.placed import PlacedPart
+from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
+from kinform.contacts.mating.charts import plane_basis
+from kinform.contacts.search.pair_view import PartView
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
@@ -24,17 +25,7 @@ from kinform.model.arrays import Array, Flags, Ints
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-__all__ = ["Curve", "Segments", "Sheet", "across", "curves", "segments"]
-
-
-_LONG = 3.0
-"""A segment this many times longer than both neighbours is a straight face between curves."""
-_BENT = math.radians(3.0)
-"""A curve that turns less than this in all is a straight face."""
-_STRIP = 0.3
-"""A facet is a strip of a doubly curved surface where its neighbour on along the direction is longer than this share."""
-_CIRCULAR = 0.05
-"""A cylinder is exact when its fit misses the vertices by less than this share of its chord error."""
+__all__ = ["Curve", "Segments", "Sheet", "curves", "segments"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +88,10 @@ class Curve:
         t, p = self.knots[k - 1 : k + 2], self.points[k - 1 : k + 2]
         parabola = np.polynomial.polynomial.polyfit(t - t[1], p, 2)
         slope = parabola[1]
-        own = self.spline(t[1], 1)
-        turn = float(own[0] * slope[1] - own[1] * slope[0]) / float(np.linalg.norm(own) * np.linalg.norm(slope))
+        tangent = self.spline(t[1], 1)
+        length = float(np.linalg.norm(tangent) * np.linalg.norm(slope))
+        turn = float(tangent[0] * slope[1] - tangent[1] * slope[0]) / length
         return abs(math.asin(float(np.clip(turn, -1.0, 1.0))))
-
-
-def across(direction: Array) -> Array:
-    """(2, 3) right-handed axes of the plane across a unit direction."""
-    u = perpendicular(direction)
-    return np.stack([u, np.cross(direction, u)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +125,7 @@ class Sheet:
     flats: Ints
 
     @staticmethod
-    def of(part: PlacedPart, facets: Ints, flat: float, smooth: float) -> Sheet:
+    def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
         """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
         pairs = facets[shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets]
         cosine = np.einsum("ij,ij->i", part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
@@ -147,7 +133,7 @@ class Sheet:
         return Sheet(facets, pairs[bent & (cosine > math.cos(smooth))], pairs[~bent])
 
 
-def segments(part: PlacedPart, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
+def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, grain: float) -> Segments | None:
     """Those of the facets that run along `direction` (3,) within `alignment` (rad), and are no strip of a surface
     that bends along it too; ends nearer to each other than `grain` (m) are one."""
     upright = np.zeros(len(part.faces), dtype=bool)
@@ -159,12 +145,12 @@ def segments(part: PlacedPart, sheet: Sheet, direction: Array, alignment: float,
     inner, outer = np.concatenate([sheet.bends, sheet.bends[:, ::-1]]).T
     leaves = upright[inner] & ~upright[outer]
     inner, outer = inner[leaves], outer[leaves]
-    heights = [np.ptp(part.vertices[part.faces[own]] @ direction, axis=1) for own in (inner, outer)]
-    upright[inner[heights[1] > _STRIP * heights[0]]] = False
+    heights = [np.ptp(part.vertices[part.faces[side]] @ direction, axis=1) for side in (inner, outer)]
+    upright[inner[heights[1] > STRIP_HEIGHT * heights[0]]] = False
     facets = facets[upright[facets]]
     if not len(facets):
         return None
-    plane = across(direction)
+    plane = plane_basis(direction)
     face = _faces(len(part.faces), facets, sheet.flats[upright[sheet.flats].all(axis=1)])
     lead = facets[np.unique(face, return_index=True)[1]]
     normals = part.normals(lead) @ plane.T
@@ -220,11 +206,11 @@ def _merged(points: Array, grain: float) -> tuple[Ints, Array]:
     return ids, points[order][unique]
 
 
-def curves(part: PlacedPart, found: Segments, near: Flags, smooth_edge: float) -> list[Curve]:
+def curves(part: PartView, pieces: Segments, near: Flags, smooth_edge: float) -> list[Curve]:
     """The smooth curves that segments make, of those curves that have a segment flagged in `near` (n,)."""
     out = []
-    for chain in _chains(found.start, found.end, len(found.points), near):
-        out += _cut(part, found, chain, near, smooth_edge)
+    for chain in _chains(pieces.start, pieces.end, len(pieces.points), near):
+        out += _cut(part, pieces, chain, near, smooth_edge)
     return out
 
 
@@ -253,11 +239,11 @@ def _chains(start: Ints, end: Ints, count: int, near: Flags) -> list[Ints]:
     return chains
 
 
-def _cut(part: PlacedPart, found: Segments, chain: Ints, near: Flags, smooth_edge: float) -> list[Curve]:
+def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge: float) -> list[Curve]:
     """One chain as smooth curves; a closed one is turned to begin at a cut, or overlaps itself where it has none."""
-    corners = found.points[np.append(found.start[chain], found.end[chain[-1]])]
-    labels, count = found.labels[chain], len(chain)
-    closed = bool(found.start[chain[0]] == found.end[chain[-1]]) and count > 2
+    corners = pieces.points[np.append(pieces.start[chain], pieces.end[chain[-1]])]
+    labels, count = pieces.labels[chain], len(chain)
+    closed = bool(pieces.start[chain[0]] == pieces.end[chain[-1]]) and count > 2
     steps = np.diff(corners, axis=0)
     length = np.sqrt(np.einsum("ij,ij->i", steps, steps))
     unit = steps / length[:, None]
@@ -266,7 +252,7 @@ def _cut(part: PlacedPart, found: Segments, chain: Ints, near: Flags, smooth_edg
     turn = np.arctan2(
         unit[before, 0] * unit[:, 1] - unit[before, 1] * unit[:, 0], np.einsum("ij,ij->i", unit[before], unit)
     )
-    flat = length > _LONG * np.maximum(length[before], length[after])
+    flat = length > SEGMENT_LONG * np.maximum(length[before], length[after])
     cut = (np.abs(turn) >= smooth_edge) | flat | flat[before]
     cut |= (labels != labels[before]) & (exact | exact[before])
     if not closed:
@@ -281,9 +267,9 @@ def _cut(part: PlacedPart, found: Segments, chain: Ints, near: Flags, smooth_edg
         Curve(
             points=np.concatenate([corners[run], corners[run[-1] + 1][None]]),
             labels=labels[run],
-            lows=found.lows[chain[run]],
-            highs=found.highs[chain[run]],
-            exact=bool(exact[run].all() or np.abs(turn[run[1:]]).sum() < _BENT),
+            lows=pieces.lows[chain[run]],
+            highs=pieces.highs[chain[run]],
+            exact=bool(exact[run].all() or np.abs(turn[run[1:]]).sum() < CURVE_BEND_LEAST),
             near=near[chain[run]],
         )
         for run in runs
@@ -291,8 +277,8 @@ def _cut(part: PlacedPart, found: Segments, chain: Ints, near: Flags, smooth_edg
     ]
 
 
-def _circular(part: PlacedPart, labels: Ints) -> Flags:
+def _circular(part: PartView, labels: Ints) -> Flags:
     """Whether each segment belongs to an exact cylinder."""
     unique, back = np.unique(labels, return_inverse=True)
-    own = [part.surfaces.surfaces[k] for k in unique]
-    return np.array([s.kind == "cylinder" and s.residual < _CIRCULAR * s.chord for s in own])[back]
+    surfaces = [part.surfaces.surfaces[k] for k in unique]
+    return np.array([s.kind == "cylinder" and s.residual < CYLINDER_EXACT * s.chord for s in surfaces])[back]

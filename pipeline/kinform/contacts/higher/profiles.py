@@ -13,10 +13,34 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.higher.outlines import Curve, Sheet, across, curves, segments
-from kinform.contacts.mating.mates import EDGE
-from kinform.contacts.mating.patches import classify_fit
-from kinform.contacts.search.placed import NearSurfaces, PlacedPart, near_facets
+from kinform.contacts.constants import (
+    CAPTIVE,
+    CURVE_END_SPARE,
+    CURVE_SAMPLES,
+    CURVES_OPPOSED,
+    DIRECTION_SINE,
+    DIRECTIONS_TRIED,
+    DISTINCT_COSINE,
+    DISTINCT_DISTANCE,
+    EXACT_GAP,
+    GAP_ROUNDING,
+    GRAIN,
+    LENGTH_SHARED,
+    LINE_SAMPLES,
+    MATING_REACH,
+    NEWTON_STEPS,
+    ROUNDER,
+    SHEET_RINGS,
+    SIGMAS,
+    SLIP_LEAST,
+    TOUCH,
+    ZONE,
+)
+from kinform.contacts.higher.outlines import Curve, Sheet, curves, segments
+from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
+from kinform.contacts.mating.charts import plane_basis
+from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, near_facets
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
@@ -24,29 +48,6 @@ from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["profile_contacts"]
-
-
-_TOUCH = 0.12
-"""Share of the contact tolerance within which curves touch: the band of full weight."""
-_CAPTIVE = 0.42
-"""Share within which a tooth that has as much play on either side counts as held between both."""
-_ZONE = 0.01
-"""Share of the contact tolerance that bounds the zone whose area is stated."""
-_DIRECTIONS = 6
-"""Directions tried, those of the largest faces first."""
-_SAMPLES = 6
-"""Samples a segment, to find where two curves come close."""
-_ALONG = 9
-"""Samples along a line."""
-_OFF_END = math.radians(3.0)
-"""A curve may end this much before it is parallel to the other: it goes on where it was cut."""
-_ROUNDER = 0.2
-"""Curves touch along a line where they part from each other at least at this share of their own curvatures."""
-_SIGMAS = 3.0
-_GRAIN = 1e-3
-"""Share of the contact tolerance within which ends of segments are one point."""
-_RINGS = 6
-"""Rings of facets about the common box of two parts: as many segments settle a spline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,77 +75,68 @@ class _Meeting:
 
 
 def profile_contacts(
-    a: PlacedPart,
-    b: PlacedPart,
-    near: tuple[NearSurfaces, NearSurfaces],
-    tolerance: float,
-    tolerances: Tolerances,
-    along: Array | None = None,
+    pair: PairView, along: Array | None = None
 ) -> tuple[list[Patch], tuple[frozenset[int], frozenset[int]]]:
     """Line contacts between outlines that are no plane and no cylinder, in the frame of the pair, and the surfaces
     of a and b that are pieces of the curves that touch. `along`: the only direction to look along."""
-    nothing: tuple[list[Patch], tuple[frozenset[int], frozenset[int]]] = ([], (frozenset(), frozenset()))
-    if not len(near[0].ids) or not len(near[1].ids):
-        return nothing
-    low = np.maximum(near[0].lows.min(axis=0), near[1].lows.min(axis=0)) - tolerance
-    high = np.minimum(near[0].highs.max(axis=0), near[1].highs.max(axis=0)) + tolerance
-    sheets = [_sheet(part, low, high, tolerances) for part in (a, b)]
-    for direction in [along] if along is not None else _directions(near):
-        found = _meetings(a, b, sheets, direction, tolerance, tolerances)
-        if found:
-            chosen = _one_line(_nearest(found, tolerance))
-            pieces = [frozenset(int(k) for m in found for k in m.curves[side].labels) for side in (0, 1)]
-            return [_patch(a, b, m, direction, tolerance) for m in chosen], (pieces[0], pieces[1])
-    return nothing
+    box = pair.common_box()
+    directions = [] if box is None else [along] if along is not None else _directions(pair.near)
+    sheets = [] if box is None else [_sheet(part, *box, pair.tolerances) for part in pair.parts]
+    for direction in directions:
+        meetings = _meetings(pair, sheets, direction)
+        if meetings:
+            chosen = _one_line(_nearest(meetings, pair.tolerance))
+            a, b = (frozenset(int(k) for m in meetings for k in m.curves[side].labels) for side in (0, 1))
+            return [_patch(pair, meeting, direction) for meeting in chosen], (a, b)
+    return [], (frozenset(), frozenset())
 
 
 def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     """Directions that outlines may run along: normals of planes and axes of both parts, the largest faces first."""
     kinds = [KINDS.index(kind) for kind in ("plane", "cylinder", "extrusion")]
-    found: list[tuple[float, Array]] = []
+    axes: list[tuple[float, Array]] = []
     for side in near:
         for row in np.flatnonzero(np.isin(side.kinds, kinds)):
-            found.append((float(side.areas[row]), side.axes[row]))
-    found.sort(key=lambda item: (-item[0], *item[1].tolist()))
+            axes.append((float(side.areas[row]), side.axes[row]))
+    axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
-    for _, axis in found:
-        if all(float(np.linalg.norm(np.cross(axis, other))) > 1e-3 for other in out):
+    for _, axis in axes:
+        if all(float(np.linalg.norm(cross(axis, other))) > DIRECTION_SINE for other in out):
             out.append(axis)
-        if len(out) == _DIRECTIONS:
+        if len(out) == DIRECTIONS_TRIED:
             break
     return out
 
 
-def _meetings(
-    a: PlacedPart, b: PlacedPart, sheets: list[Sheet], direction: Array, tolerance: float, tolerances: Tolerances
-) -> list[_Meeting]:
+def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
-    grain = _GRAIN * tolerance
+    tolerance, tolerances, limit = pair.tolerance, pair.tolerances, MATING_REACH * pair.tolerance
     cut = [
-        segments(part, own, direction, tolerances.alignment, grain) for part, own in zip((a, b), sheets, strict=True)
+        segments(part, sheet, direction, tolerances.alignment, GRAIN * tolerance)
+        for part, sheet in zip(pair.parts, sheets, strict=True)
     ]
     if cut[0] is None or cut[1] is None:
         return []
-    near = near_boxes(*cut[0].boxes(), *cut[1].boxes(), EDGE * tolerance)
-    first = curves(a, cut[0], near[0], tolerances.smooth_edge)
-    second = curves(b, cut[1], near[1], tolerances.smooth_edge)
+    near = near_boxes(*cut[0].boxes(), *cut[1].boxes(), limit)
+    first = curves(pair.a, cut[0], near[0], tolerances.smooth_edge)
+    second = curves(pair.b, cut[1], near[1], tolerances.smooth_edge)
     if not first or not second:
         return []
-    boxes = [np.array([[c.points.min(axis=0), c.points.max(axis=0)] for c in own]) for own in (first, second)]
+    boxes = [np.array([[c.points.min(axis=0), c.points.max(axis=0)] for c in side]) for side in (first, second)]
     apart = np.maximum(boxes[0][:, None, 0] - boxes[1][None, :, 1], boxes[1][None, :, 0] - boxes[0][:, None, 1])
     exact = np.outer([c.exact for c in first], [c.exact for c in second])
-    found = []
-    for i, j in np.argwhere((apart.max(axis=2) <= EDGE * tolerance) & ~exact):
-        found += _closest(first[i], second[j], tolerance)
-    return _distinct(found, tolerance)
+    meetings = []
+    for i, j in np.argwhere((apart.max(axis=2) <= limit) & ~exact):
+        meetings += _closest(first[i], second[j], tolerance)
+    return _distinct(meetings, tolerance)
 
 
-def _sheet(part: PlacedPart, low: Array, high: Array, tolerances: Tolerances) -> Sheet:
+def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> Sheet:
     """Facets in a box, with those around them, so that curves do not end where the box does."""
     chosen = np.zeros(len(part.faces), dtype=bool)
     chosen[near_facets(part, low, high)[0]] = True
     inside = np.zeros(len(part.vertices), dtype=bool)
-    for _ in range(_RINGS):
+    for _ in range(SHEET_RINGS):
         inside[part.faces[chosen]] = True
         chosen |= inside[part.faces].any(axis=1)
     return Sheet.of(part, np.flatnonzero(chosen), tolerances.coplanar, tolerances.smooth_edge)
@@ -157,7 +149,7 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
     t = _sampled(second)
     q, other, _ = second.at(t)
     apart = p[:, None] - q[None]
-    facing = np.einsum("ik,jk->ij", tangent, other) < -0.9
+    facing = np.einsum("ik,jk->ij", tangent, other) < CURVES_OPPOSED
     distance = np.where(facing, np.einsum("ijk,ijk->ij", apart, apart), np.inf)
     nearest = distance.argmin(axis=1)
     away = np.sqrt(distance[np.arange(len(s)), nearest])
@@ -165,10 +157,10 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
     gap = np.where(np.isfinite(away), np.einsum("ik,ik->i", p - q[nearest], outward), np.inf)
     padded = np.concatenate([[np.inf], gap, [np.inf]])
     lowest = np.flatnonzero((padded[1:-1] <= padded[:-2]) & (padded[1:-1] < padded[2:]) & np.isfinite(gap))
-    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / _SAMPLES
+    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / CURVE_SAMPLES
     out = []
     for k in lowest:
-        if away[k] > EDGE * tolerance + 2.0 * step:
+        if away[k] > MATING_REACH * tolerance + 2.0 * step:
             continue
         met = _refined(first, second, float(s[k]), float(t[nearest[k]]), tolerance)
         if met is not None:
@@ -179,27 +171,51 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
 def _sampled(curve: Curve) -> Array:
     """Parameters along those segments that come near the other part, and their neighbours."""
     near = curve.near | np.append(curve.near[1:], False) | np.append(False, curve.near[:-1])
-    inner = curve.knots[:-1, None] + np.linspace(0.0, 1.0, _SAMPLES + 1) * np.diff(curve.knots)[:, None]
+    inner = curve.knots[:-1, None] + np.linspace(0.0, 1.0, CURVE_SAMPLES + 1) * np.diff(curve.knots)[:, None]
     return np.unique(inner[near])
 
 
-def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) -> _Meeting | None:
-    """Newton's method on: the line between the points is normal to the second curve, and the curves are parallel."""
-    ends = (first.knots[-1], second.knots[-1])
-    for _ in range(20):
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """A place s on one curve and t on another: points p and q (2,), unit tangents u and w, curvatures kappa and lam."""
+
+    s: float
+    t: float
+    p: Array
+    q: Array
+    u: Array
+    w: Array
+    kappa: float
+    lam: float
+
+    @staticmethod
+    def of(first: Curve, second: Curve, s: float, t: float) -> _Place:
+        """The place at these parameters."""
         (p,), (u,), (kappa,) = first.at(np.array([s]))
         (q,), (w,), (lam,) = second.at(np.array([t]))
+        return _Place(s, t, p, q, u, w, kappa, lam)
+
+    @property
+    def turn(self) -> float:
+        """Sine of the angle between the tangents."""
+        return float(self.u[0] * self.w[1] - self.u[1] * self.w[0])
+
+
+def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place | None:
+    """Newton's method on: the line between the points is normal to the second curve, and the curves are parallel.
+
+    From the parameters s and t; None where the Jacobian is singular.
+    """
+    ends = (first.knots[-1], second.knots[-1])
+    for _ in range(NEWTON_STEPS):
+        at = _Place.of(first, second, s, t)
         speeds = [float(np.linalg.norm(c.spline(x, 1))) for c, x in ((first, s), (second, t))]
-        apart = p - q
-        turn = float(u[0] * w[1] - u[1] * w[0])
-        residual = np.array([float(apart @ w), turn])
-        left = np.array([-w[1], w[0]])
+        apart, along = at.p - at.q, float(at.u @ at.w)
+        residual = np.array([float(apart @ at.w), at.turn])
+        left = np.array([-at.w[1], at.w[0]])
         # d/ds and d/dt of (p − q)·w and of u × w
-        jacobian = np.array([
-            [float(u @ w), -1.0 + lam * float(apart @ left)],
-            [-kappa * float(u @ w), lam * float(u @ w)],
-        ])  # fmt: skip
-        if abs(float(np.linalg.det(jacobian))) < 1e-12 * (abs(kappa) + abs(lam) + 1e-300):
+        jacobian = np.array([[along, -1.0 + at.lam * float(apart @ left)], [-at.kappa * along, at.lam * along]])
+        if abs(float(np.linalg.det(jacobian))) < 1e-12 * (abs(at.kappa) + abs(at.lam) + 1e-300):
             return None
         move = np.linalg.solve(jacobian, -residual)
         s_new = float(np.clip(s + move[0] / speeds[0], 0.0, ends[0]))
@@ -208,117 +224,116 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
         s, t = s_new, t_new
         if still:
             break
-    (p,), (u,), (kappa,) = first.at(np.array([s]))
-    (q,), (w,), (lam,) = second.at(np.array([t]))
-    turn = float(u[0] * w[1] - u[1] * w[0])
-    mean = u - w
+    return _Place.of(first, second, s, t)
+
+
+def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) -> _Meeting | None:
+    """The meeting of two curves near the parameters s and t, where they touch there as convex profiles do."""
+    at = _parallel_place(first, second, s, t)
+    if at is None:
+        return None
+    turn, kappa, lam = at.turn, at.kappa, at.lam
+    mean = at.u - at.w
     mean /= np.linalg.norm(mean)
     normal = np.array([mean[1], -mean[0]])
-    gap = float((q - p) @ normal)
-    slip = abs(float((q - p) @ mean))
+    gap = float((at.q - at.p) @ normal)
+    slip = abs(float((at.q - at.p) @ mean))
     relative = float(kappa + lam)
     inner = max(tolerance, float(np.diff(first.knots).min()))
-    if float(u @ w) > -0.9 or abs(turn) > math.sin(_OFF_END) or abs(gap) > EDGE * tolerance or slip > 0.1 * inner:
+    if float(at.u @ at.w) > CURVES_OPPOSED or abs(turn) > math.sin(CURVE_END_SPARE):
         return None
-    if relative <= _ROUNDER * max(abs(kappa), abs(lam)):
+    if abs(gap) > MATING_REACH * tolerance or slip > SLIP_LEAST * inner:
         return None
-    i, j = first.segment(s), second.segment(t)
+    if relative <= ROUNDER * max(abs(kappa), abs(lam)):
+        return None
+    i, j = first.segment(at.s), second.segment(at.t)
     shares = np.array([abs(kappa), abs(lam)]) / (abs(kappa) + abs(lam))
     # the flatter side has most of the say about the normal
-    doubts = (first.doubt(s), second.doubt(t))
+    doubts = (first.doubt(at.s), second.doubt(at.t))
     doubt = shares[1] * doubts[0] + shares[0] * doubts[1] + abs(turn)
     place = (sum(doubts) + abs(turn)) / relative
     chord = float(first.chords[i] + second.chords[j])
-    return _Meeting((first, second), (i, j), 0.5 * (p + q), normal, gap, relative, float(doubt), place, chord)
+    return _Meeting((first, second), (i, j), 0.5 * (at.p + at.q), normal, gap, relative, float(doubt), place, chord)
 
 
-def _distinct(found: list[_Meeting], tolerance: float) -> list[_Meeting]:
+def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     """Without those that two pieces of one curve both found, and those that share no length along the direction."""
     out: list[_Meeting] = []
-    for met in sorted(found, key=lambda m: (m.doubt, m.gap, *m.point.tolist())):
+    for met in sorted(meetings, key=lambda m: (m.doubt, m.gap, *m.point.tolist())):
         low, high = met.reach
-        if high - low <= 0.1 * tolerance:
+        if high - low <= LENGTH_SHARED * tolerance:
             continue
         if all(
-            float(np.linalg.norm(met.point - other.point)) > 0.2 * tolerance or float(met.normal @ other.normal) < 0.9
+            float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
+            or float(met.normal @ other.normal) < DISTINCT_COSINE
             for other in out
         ):
             out.append(met)
     return out
 
 
-def _nearest(found: list[_Meeting], tolerance: float) -> list[_Meeting]:
+def _nearest(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     """Those that touch. Where nothing touches, those that hold a tooth between them with equal play."""
-    least = min(met.gap for met in found)
-    margin = max(2.0 * max(met.chord for met in found), 2e-3 * tolerance)
-    close = [met for met in found if met.gap <= max(least, 0.0) + margin]
-    limit = _TOUCH * tolerance
+    least = min(met.gap for met in meetings)
+    margin = max(2.0 * max(met.chord for met in meetings), GAP_ROUNDING * tolerance)
+    close = [met for met in meetings if met.gap <= max(least, 0.0) + margin]
+    limit = TOUCH * tolerance
     if least > limit:
         opposed = any(float(x.normal @ y.normal) < 0.0 for x in close for y in close)
-        limit = _CAPTIVE * tolerance if opposed else limit
+        limit = CAPTIVE * tolerance if opposed else limit
     return sorted((m for m in close if abs(m.gap) <= limit), key=lambda m: (*m.point.tolist(),))
 
 
-def _one_line(found: list[_Meeting]) -> list[_Meeting]:
+def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
     """The meetings with lines of action that agree within their uncertainty made exactly one."""
-    out = list(found)
-    left = list(range(len(found)))
+    out = list(meetings)
+    left = list(range(len(meetings)))
     while left:
-        lead = min(left, key=lambda k: (found[k].doubt, k))
-        group = [k for k in left if _agree(found[lead], found[k])]
+        lead = min(left, key=lambda k: (meetings[k].doubt, k))
+        group = [k for k in left if _agree(meetings[lead], meetings[k])]
         left = [k for k in left if k not in group]
         if len(group) > 1:
-            weight = np.array([1.0 / max(found[k].doubt, 1e-6) ** 2 for k in group])
-            normal = np.sum([w * found[k].normal for w, k in zip(weight, group, strict=True)], axis=0)
+            weight = np.array([1.0 / max(meetings[k].doubt, 1e-6) ** 2 for k in group])
+            normal = np.sum([w * meetings[k].normal for w, k in zip(weight, group, strict=True)], axis=0)
             normal /= np.linalg.norm(normal)
-            middle = np.average([found[k].point for k in group], axis=0, weights=weight)
+            middle = np.average([meetings[k].point for k in group], axis=0, weights=weight)
             for k in group:
-                on = middle + normal * float(normal @ (found[k].point - middle))
-                out[k] = replace(found[k], point=on, normal=normal)
+                on = middle + normal * float(normal @ (meetings[k].point - middle))
+                out[k] = replace(meetings[k], point=on, normal=normal)
     return out
 
 
 def _agree(one: _Meeting, two: _Meeting) -> bool:
     """Whether both lie on one line of action."""
-    allowed = _SIGMAS * (one.doubt + two.doubt) + 1e-6
+    allowed = SIGMAS * (one.doubt + two.doubt) + 1e-6
     if float(one.normal @ two.normal) < 0.0:
         return False
     angle = abs(float(one.normal[0] * two.normal[1] - one.normal[1] * two.normal[0]))
     apart = two.point - one.point
     off = abs(float(one.normal[0] * apart[1] - one.normal[1] * apart[0]))
-    place = _SIGMAS * (one.place + two.place)
+    place = SIGMAS * (one.place + two.place)
     return angle <= allowed and off <= allowed * float(np.linalg.norm(apart)) + place
 
 
-def _patch(a: PlacedPart, b: PlacedPart, met: _Meeting, direction: Array, tolerance: float) -> Patch:
-    plane = across(direction)
+def _patch(pair: PairView, met: _Meeting, direction: Array) -> Patch:
+    """The line in which two outlines meet, along the direction."""
+    plane = plane_basis(direction)
     low, high = met.reach
-    height = low + (high - low) * (np.arange(_ALONG) + 0.5) / _ALONG
+    height = low + (high - low) * (np.arange(LINE_SAMPLES) + 0.5) / LINE_SAMPLES
     points = met.point @ plane + height[:, None] * direction
-    each = 2.0 * math.sqrt(2.0 * _ZONE * tolerance / met.curvature) * (high - low) / _ALONG
-    gaps = np.full(_ALONG, met.gap)
     labels = [int(curve.labels[k]) for curve, k in zip(met.curves, met.segments, strict=True)]
     bends = [_radius(curve, met) for curve in met.curves]
-    return Patch(
-        parts=(a.part.name, b.part.name),
-        surfaces=(labels[0], labels[1]),
-        kind="line",
-        one_sided=False,
-        points=points,
-        normals=np.tile(met.normal @ plane, (_ALONG, 1)),
-        gaps=gaps,
-        weights=np.full(_ALONG, each),
-        area=each * _ALONG,
-        gap=met.gap,
+    samples = TouchSamples(
+        points,
+        np.tile(met.normal @ plane, (LINE_SAMPLES, 1)),
+        np.full(LINE_SAMPLES, met.gap),
+        2.0 * math.sqrt(2.0 * ZONE * pair.tolerance / met.curvature) * (high - low) / LINE_SAMPLES,
         axis=direction,
-        point=points.mean(axis=0),
         radii=(bends[0], bends[1]),
-        misalignment=0.0,
-        offset=0.0,
         uncertainty=(met.doubt, met.place),
         chord=met.chord,
-        fit=classify_fit(gaps, met.chord, 1e-3 * tolerance, tolerance),
     )
+    return touch_patch(pair, (labels[0], labels[1]), samples, EXACT_GAP * pair.tolerance)
 
 
 def _radius(curve: Curve, met: _Meeting) -> float:

@@ -12,16 +12,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from kinform.contacts.constants import CHART_ARC, CHART_FAR, HINT_LEAST, POLE_SEEN, SEEN_FROM_AXIS
 from kinform.foundation.algebra import vectors
-from kinform.model.arrays import Array
+from kinform.foundation.algebra.vectors import cross
+from kinform.model.arrays import Array, Ints
 
-__all__ = ["Chart", "ConeChart", "CylinderChart", "PlaneChart", "SphereChart", "perpendicular"]
-
-
-_ARC = math.radians(15.0)
-"""Angle that one sample of a curved surface may stand for."""
+__all__ = ["Chart", "ConeChart", "CylinderChart", "PlaneChart", "SphereChart", "perpendicular", "plane_basis"]
 
 
 class Chart(Protocol):
@@ -58,14 +55,21 @@ def perpendicular(axis: Array, hint: Array | None = None) -> Array:
     if hint is not None:
         across = hint - (hint @ axis) * axis
         length = float(np.linalg.norm(across))
-        if length > 1e-6 * max(float(np.linalg.norm(hint)), 1e-300):
+        if length > HINT_LEAST * max(float(np.linalg.norm(hint)), 1e-300):
             return np.asarray(across / length)
     return -vectors.perpendicular(axis)[0]
 
 
-def _unit_rows(vectors: Array) -> Array:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
+def plane_basis(axis: Array) -> Array:
+    """(2, 3) unit vectors that make a right-handed frame with the unit axis (3,)."""
+    first = perpendicular(axis)
+    return np.stack([first, cross(axis, first)])
+
+
+def _unit_rows(rows: Array) -> Array:
+    """Vectors (…, 3) of length one; zero vectors stay."""
+    length = np.linalg.norm(rows, axis=-1, keepdims=True)
+    return np.asarray(rows / np.where(length > 0.0, length, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,18 +80,14 @@ class PlaneChart:
     point: Array
     step: tuple[float, float] = (math.inf, math.inf)
 
-    def _basis(self) -> Array:
-        first = perpendicular(self.axis)
-        return np.stack([first, np.cross(self.axis, first)])
-
     def flatten(self, triangles: Array) -> Array:
-        return np.asarray((triangles - self.point) @ self._basis().T)
+        return np.asarray((triangles - self.point) @ plane_basis(self.axis).T)
 
     def window(self) -> Array | None:
         return None
 
     def lift(self, flat: Array) -> Array:
-        return np.asarray(self.point + flat @ self._basis())
+        return np.asarray(self.point + flat @ plane_basis(self.axis))
 
     def normals(self, points: Array) -> Array:
         return np.tile(self.axis, (len(points), 1))
@@ -109,7 +109,7 @@ class _Axial:
         arm = points - self.point
         along = arm @ self.axis
         across = arm - along[..., None] * self.axis
-        azimuth = np.arctan2(across @ np.cross(self.axis, self.base), across @ self.base)
+        azimuth = np.arctan2(across @ cross(self.axis, self.base), across @ self.base)
         return along, np.linalg.norm(across, axis=-1), azimuth, _unit_rows(across)
 
     def _unrolled(self, triangles: Array) -> tuple[Array, Array, Array]:
@@ -122,11 +122,11 @@ class _Axial:
         return along, radius, middle + turn
 
     def _radial(self, azimuth: Array) -> Array:
-        across = np.cross(self.axis, self.base)
+        across = cross(self.axis, self.base)
         return np.asarray(np.cos(azimuth)[..., None] * self.base + np.sin(azimuth)[..., None] * across)
 
 
-def _repeated(azimuth: Array) -> tuple[NDArray[np.int64], Array]:
+def _repeated(azimuth: Array) -> tuple[Ints, Array]:
     """Rows to use and their azimuths, with rows that cross the seam at ±π repeated on its other side."""
     rows = np.arange(len(azimuth))
     over = np.nonzero((azimuth > math.pi).any(axis=1))[0]
@@ -143,7 +143,7 @@ class CylinderChart(_Axial):
 
     @property
     def step(self) -> tuple[float, float]:
-        return _ARC * self.radius, math.inf
+        return CHART_ARC * self.radius, math.inf
 
     def flatten(self, triangles: Array) -> Array:
         along, _, azimuth = self._unrolled(triangles)
@@ -151,7 +151,7 @@ class CylinderChart(_Axial):
         return np.stack([self.radius * turned, along[rows]], axis=2)
 
     def window(self) -> Array | None:
-        half, far = math.pi * self.radius, 1e3 * self.radius
+        half, far = math.pi * self.radius, CHART_FAR * self.radius
         return np.array([[-half, -far], [half, -far], [half, far], [-half, far]])
 
     def lift(self, flat: Array) -> Array:
@@ -175,7 +175,7 @@ class ConeChart(_Axial):
 
     @property
     def step(self) -> tuple[float, float]:
-        return _ARC * self.middle, _ARC * self.middle
+        return CHART_ARC * self.middle, CHART_ARC * self.middle
 
     def flatten(self, triangles: Array) -> Array:
         along, radius, azimuth = self._unrolled(triangles)
@@ -187,7 +187,7 @@ class ConeChart(_Axial):
     def window(self) -> Array | None:
         half = math.pi * math.sin(self.half_angle)
         angles = np.linspace(-half, half, 9)
-        far = 1e3 * self.middle / math.sin(self.half_angle)
+        far = CHART_FAR * self.middle / math.sin(self.half_angle)
         return np.concatenate([np.zeros((1, 2)), far * np.stack([np.cos(angles), np.sin(angles)], axis=1)])
 
     def lift(self, flat: Array) -> Array:
@@ -215,19 +215,23 @@ class SphereChart:
 
     @property
     def step(self) -> tuple[float, float]:
-        return _ARC * self.radius, _ARC * self.radius
+        return CHART_ARC * self.radius, CHART_ARC * self.radius
 
-    def _basis(self) -> Array:
-        first = perpendicular(self.pole)
-        return np.stack([first, np.cross(self.pole, first)])
+    @staticmethod
+    def seen_from(centre: Array, radius: float, towards: Array) -> SphereChart:
+        """The chart whose pole looks towards a point (3,)."""
+        arm = towards - centre
+        distance = float(np.linalg.norm(arm))
+        seen = distance > SEEN_FROM_AXIS * radius
+        return SphereChart(centre, radius, arm / distance if seen else np.array([0.0, 0.0, 1.0]))
 
     def flatten(self, triangles: Array) -> Array:
         rays = _unit_rows(triangles - self.point)
         rise = rays @ self.pole
-        shown = rays.mean(axis=1) @ self.pole > -0.97
+        shown = rays.mean(axis=1) @ self.pole > POLE_SEEN
         rays, rise = rays[shown], rise[shown]
         stretch = self.radius * np.sqrt(2.0 / np.maximum(1.0 + rise, 1e-9))
-        return np.asarray(stretch[..., None] * (rays @ self._basis().T))
+        return np.asarray(stretch[..., None] * (rays @ plane_basis(self.pole).T))
 
     def window(self) -> Array | None:
         return None
@@ -235,7 +239,7 @@ class SphereChart:
     def lift(self, flat: Array) -> Array:
         distance = np.linalg.norm(flat, axis=1)
         angle = 2.0 * np.arcsin(np.clip(distance / (2.0 * self.radius), 0.0, 1.0))
-        ray = (flat / np.where(distance > 0.0, distance, 1.0)[:, None]) @ self._basis()
+        ray = (flat / np.where(distance > 0.0, distance, 1.0)[:, None]) @ plane_basis(self.pole)
         rise = np.cos(angle)[:, None] * self.pole + np.sin(angle)[:, None] * ray
         return np.asarray(self.point + self.radius * rise)
 

@@ -16,27 +16,23 @@ import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 from numpy.typing import NDArray
 
+from kinform.contacts.constants import (
+    MANY_TRIANGLES,
+    PATCH_BINS,
+    PATCH_RIM_POINTS,
+    POINT_SAME,
+    REGION_SIMPLE,
+    REGION_SMALL,
+    REGION_THIN,
+)
 from kinform.contacts.mating.charts import Chart
 from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["Cells", "overlay"]
 
 
-_BINS = 24
-"""Least number of bins of a patch, so that a blocked part of it can be told."""
-_RIM = 96
-"""Greatest number of points that stand for the rim."""
-_THIN = 0.01
-"""Regions thinner than this share of the tolerance are lines, not patches."""
-_SMALL = 0.02
-"""Regions smaller than this share of the squared tolerance are points, not patches."""
-_MANY = 64
-"""Triangles of which the outline is quicker to unite than all of them."""
-_KEY = 1e-6
-"""Points of a region closer than this share of the tolerance are one."""
-
-
 def _signed(corners: Array) -> Array:
+    """(n,) m² areas of triangles (n, 3, 2), positive where they run left about."""
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     return np.asarray(0.5 * (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
 
@@ -88,7 +84,8 @@ class Cells:
         return Cells(corners, bins.ravel().astype(np.int64), self.rim[touched], self.unit)
 
     def _keys(self, points: Array) -> NDArray[np.complex128]:
-        grid = np.round(points / (_KEY * self.unit))
+        """One number a point (n, 2), the same for points that are one."""
+        grid = np.round(points / (POINT_SAME * self.unit))
         return np.asarray(grid[:, 0] + 1j * grid[:, 1])
 
     def quadrature(self) -> tuple[Array, Array]:
@@ -113,7 +110,7 @@ def _region(flat: Array, unit: float) -> CrossSection:
     signed = _signed(flat)
     flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
     flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
-    return CrossSection(_outline(flat) if len(flat) > _MANY else list(flat), FillRule.Positive)
+    return CrossSection(_outline(flat) if len(flat) > MANY_TRIANGLES else list(flat), FillRule.Positive)
 
 
 def _outline(flat: Array) -> list[Array]:
@@ -121,7 +118,7 @@ def _outline(flat: Array) -> list[Array]:
 
     They wind about every point as often as the triangles do, and there are far fewer of them.
     """
-    cells = np.round(flat.reshape(-1, 2) / _KEY)
+    cells = np.round(flat.reshape(-1, 2) / POINT_SAME)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
     renamed = np.empty(len(order), np.int64)
@@ -153,6 +150,7 @@ def _outline(flat: Array) -> list[Array]:
 
 
 def _perimeter(polygons: list[Array]) -> float:
+    """m of all outlines."""
     return float(sum(np.linalg.norm(p - np.roll(p, 1, axis=0), axis=1).sum() for p in polygons))
 
 
@@ -204,9 +202,9 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
     """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
-        polygons = [np.asarray(p) for p in piece.simplify(_THIN * 0.1).to_polygons()]
+        polygons = [np.asarray(p) for p in piece.simplify(REGION_SIMPLE).to_polygons()]
         area = piece.area()
-        if polygons and area >= _SMALL and 2.0 * area >= thin * _perimeter(polygons):
+        if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
     return pieces
 
@@ -216,7 +214,7 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     corners = np.concatenate(polygons)
     if flat:
         corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
-    every = math.ceil(len(corners) / _RIM)
+    every = math.ceil(len(corners) / PATCH_RIM_POINTS)
     return np.asarray(corners[::every])
 
 
@@ -226,7 +224,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case.
     """
     region = _overlap(chart, first, second, tolerance)
-    pieces = _pieces(region, max(_THIN, thin / tolerance)) if region is not None else []
+    pieces = _pieces(region, max(REGION_THIN, thin / tolerance)) if region is not None else []
     if not pieces:
         return None
     step = np.array(chart.step) / tolerance
@@ -237,7 +235,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
         triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
     corners = np.concatenate(triangles)
     area = float(np.abs(_signed(corners)).sum())
-    size = np.minimum(step, math.sqrt(area / _BINS))
+    size = np.minimum(step, math.sqrt(area / PATCH_BINS))
     corners = _split(corners, size)
     corners = corners[np.abs(_signed(corners)) > 0.0]
     # Bins are counted from the region's own corner, so that they move with it.

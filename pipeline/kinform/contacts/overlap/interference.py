@@ -11,23 +11,24 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.contacts.mating.mates import EDGE
+from kinform.contacts.constants import (
+    BESIDE_DEEPEST,
+    DEPTH_SAMPLES,
+    DEPTH_SAMPLES_LEAST,
+    EXACT_OVERLAP,
+    MATING_REACH,
+    PARTING_LEAST,
+    PARTING_STEPS,
+    PARTING_TRIED,
+    SHELL_INSET,
+)
 from kinform.contacts.overlap.solids import Piece, SolidStore
-from kinform.contacts.search.placed import PlacedPart
-from kinform.model.arrays import Array, Ints, freeze
+from kinform.contacts.search.pair_view import PairView, PartView
+from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
 
 __all__ = ["find_interference"]
-
-
-_SAMPLES = 400
-"""Points at which the depth of one pair's overlap is measured."""
-_BESIDE = 100
-"""Points beside the deepest one that are measured too."""
-_EXACT = 0.02
-"""Share of the contact tolerance below which an overlap is none: rounding of coordinates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,7 @@ class _Allowance:
         i, j = samples.surfaces.T
         return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
 
-    def unexplained(self, samples: _Samples) -> tuple[NDArray[np.bool_], bool]:
+    def unexplained(self, samples: _Samples) -> tuple[Flags, bool]:
         """Samples deeper than what tessellation explains, and whether they all lie at mates."""
         i, j = samples.surfaces.T
         present = (set(i.tolist()), set(j.tolist()))
@@ -67,22 +68,25 @@ class _Allowance:
         at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
         pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
         mated = bool(mates) and bool(
-            ((samples.depth[deep] <= EDGE * self.tolerance) & (at_mate[deep] | (samples.depth[deep] <= pressed))).all()
+            (
+                (samples.depth[deep] <= MATING_REACH * self.tolerance)
+                & (at_mate[deep] | (samples.depth[deep] <= pressed))
+            ).all()
         )
         return deep, mated
 
 
-def find_interference(
-    a: PlacedPart, b: PlacedPart, patches: list[Patch], solids: SolidStore, tolerance: float
-) -> Interference | None:
+def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore) -> Interference | None:
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
-    if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, tolerance):
+    a, b = pair.parts
+    least = EXACT_OVERLAP * pair.tolerance
+    if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, least):
         return None
     allowance = _Allowance(
         chords=(_chords(a), _chords(b)),
         mates={p.surfaces: p for p in patches if not p.one_sided},
-        floor=_EXACT * tolerance,
-        tolerance=tolerance,
+        floor=least,
+        tolerance=pair.tolerance,
     )
     pieces = solids.overlap(a, b, allowance.floor**3)
     if pieces is None:
@@ -90,31 +94,31 @@ def find_interference(
     return _by_volume(a, b, pieces, allowance)
 
 
-def _chords(part: PlacedPart) -> Array:
+def _chords(part: PartView) -> Array:
+    """(s,) m that each surface may be off its facets."""
     return part.table.slacks + part.table.point_uncertainty
 
 
-def _meet(a: PlacedPart, b: PlacedPart, patches: list[Patch], tolerance: float) -> bool:
+def _meet(a: PartView, b: PartView, patches: list[Patch], least: float) -> bool:
     """Whether the two boundaries cross, or one part holds a shell of the other.
 
-    Parts that a move by less than what counts as an overlap sets free of each other do not. Faces that coincide
-    cross or do not as rounding has it, so the question is put once more with the second part moved by as much.
+    Parts that a move by less than `least` (m), what counts as an overlap, sets free of each other do not. Faces that
+    coincide cross or do not as rounding has it, so the question is put once more with the second part moved by as much.
     """
     low, high = np.maximum(a.low, b.low), np.minimum(a.high, b.high)
-    least = _EXACT * tolerance
     if (high - low).min() < least:
         return False
     X_AF = np.linalg.inv(a.X_FP)
 
-    def cross(move: Array) -> bool:
+    def crosses(move: Array) -> bool:
         X_FB = b.X_FP.copy()
         X_FB[:3, 3] += move
         return a.region.crosses(b.region, X_AF @ X_FB)
 
     apart = _parting(patches)
-    if apart is None or cross(0.9 * least * apart):
+    if apart is None or crosses(PARTING_TRIED * least * apart):
         shift = least * np.array([0.61, 0.53, 0.59])
-        if any(cross(move) for move in (np.zeros(3), shift, -shift)):
+        if any(crosses(move) for move in (np.zeros(3), shift, -shift)):
             return True
     return _holds(a, b) or _holds(b, a)
 
@@ -128,17 +132,17 @@ def _parting(patches: list[Patch]) -> Array | None:
     if not len(normals):
         return None
     nearest = normals.mean(axis=0)
-    for _ in range(60):
+    for _ in range(PARTING_STEPS):
         step = normals[np.argmin(normals @ nearest)] - nearest
         gain = -float(step @ nearest)
         if gain <= 1e-9:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))
-    return nearest / length if length > 0.1 else None
+    return nearest / length if length > PARTING_LEAST else None
 
 
-def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
+def _holds(outer: PartView, inner: PartView) -> bool:
     """Whether a whole shell of `inner` lies inside `outer`, given that no facets cross."""
     shells = inner.index.shells
     if len(shells) == 1 and ((inner.low < outer.low) | (inner.high > outer.high)).any():
@@ -148,14 +152,15 @@ def _holds(outer: PlacedPart, inner: PlacedPart) -> bool:
     return bool(len(middles)) and bool(outer.index.contains(outer.to_part(middles)).any())
 
 
-def _measured(owner: PlacedPart, other: PlacedPart, points: Array, facets: Ints, first: bool) -> _Samples:
+def _measured(owner: PartView, other: PartView, points: Array, facets: Ints, first: bool) -> _Samples:
     """Depth of points on the owner's facets below the surface of the other part."""
     depth, nearest = other.depths(points)
-    own, theirs = owner.surfaces.labels[facets], other.surfaces.labels[nearest]
-    return _Samples(points, depth, np.stack([own, theirs] if first else [theirs, own], axis=1))
+    sides = [owner.surfaces.labels[facets], other.surfaces.labels[nearest]]
+    return _Samples(points, depth, np.stack(sides if first else sides[::-1], axis=1))
 
 
 def _joined(samples: list[_Samples]) -> _Samples:
+    """All samples as one set."""
     return _Samples(
         np.concatenate([s.points for s in samples]),
         np.concatenate([s.depth for s in samples]),
@@ -163,19 +168,19 @@ def _joined(samples: list[_Samples]) -> _Samples:
     )
 
 
-def _sampled(a: PlacedPart, b: PlacedPart, piece: Piece, count: int) -> _Samples:
+def _sampled(a: PartView, b: PartView, piece: Piece, count: int) -> _Samples:
     """Depths at about `count` points of a piece: middles of its facets, and just inside their corners."""
     points, part, facet = _points_of(piece)
     chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
     return _measured_on(a, b, points[chosen], part[chosen], facet[chosen])
 
 
-def _deepest(a: PlacedPart, b: PlacedPart, piece: Piece, samples: _Samples, deep: NDArray[np.bool_]) -> float:
+def _deepest(a: PartView, b: PartView, piece: Piece, samples: _Samples, deep: Flags) -> float:
     """Greatest depth (m) of the piece: of the deep samples, and of the points beside the deepest of them."""
     best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
     points, part, facet = _points_of(piece)
     off = np.linalg.norm(points - samples.points[best], axis=1)
-    beside = np.lexsort((np.arange(len(off)), off))[:_BESIDE]
+    beside = np.lexsort((np.arange(len(off)), off))[:BESIDE_DEEPEST]
     more = _measured_on(a, b, points[beside], part[beside], facet[beside])
     return max(float(samples.depth[best]), float(more.depth.max()))
 
@@ -183,12 +188,17 @@ def _deepest(a: PlacedPart, b: PlacedPart, piece: Piece, samples: _Samples, deep
 def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
     """Middles of the facets of a piece, and points just inside their corners; of which part and facet each is."""
     middle = piece.corners.mean(axis=1)
-    points = np.concatenate([middle, (0.98 * piece.corners + 0.02 * middle[:, None]).reshape(-1, 3)])
-    part, facet = (np.concatenate([own, np.repeat(own, 3)]) for own in (piece.part, piece.facet))
-    return points, part, facet
+    part, facet = (np.concatenate([numbers, np.repeat(numbers, 3)]) for numbers in (piece.part, piece.facet))
+    return _within(piece.corners, middle), part, facet
 
 
-def _measured_on(a: PlacedPart, b: PlacedPart, points: Array, part: Ints, facet: Ints) -> _Samples:
+def _within(corners: Array, middle: Array) -> Array:
+    """(4 n, 3) the middles (n, 3) of facets (n, 3, 3), and points just inside their corners."""
+    return np.concatenate([middle, (SHELL_INSET * corners + (1.0 - SHELL_INSET) * middle[:, None]).reshape(-1, 3)])
+
+
+def _measured_on(a: PartView, b: PartView, points: Array, part: Ints, facet: Ints) -> _Samples:
+    """Depths of points on facets of either part (0, 1)."""
     return _joined(
         [
             _measured(a, b, points[part == 0], facet[part == 0], True),
@@ -197,7 +207,7 @@ def _measured_on(a: PlacedPart, b: PlacedPart, points: Array, part: Ints, facet:
     )
 
 
-def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Allowance) -> Interference | None:
+def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowance) -> Interference | None:
     """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
     volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
     facets = sum(len(piece.corners) for piece in pieces)
@@ -205,7 +215,7 @@ def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Al
         # Faces that coincide leave sheets of no thickness: they need no measuring.
         if piece.volume <= allowance.floor**3:
             continue
-        count = max(16, round(_SAMPLES * len(piece.corners) / facets))
+        count = max(DEPTH_SAMPLES_LEAST, round(DEPTH_SAMPLES * len(piece.corners) / facets))
         samples = _sampled(a, b, piece, count)
         deep, at_mates = allowance.unexplained(samples)
         thick = 2.0 * piece.volume / piece.area
@@ -225,7 +235,7 @@ def _by_volume(a: PlacedPart, b: PlacedPart, pieces: list[Piece], allowance: _Al
     return _interference(a, b, volume, depth, moment / volume, mated, "manifold")
 
 
-def _by_facets(a: PlacedPart, b: PlacedPart, allowance: _Allowance) -> Interference | None:
+def _by_facets(a: PartView, b: PartView, allowance: _Allowance) -> Interference | None:
     """Overlap of meshes that bound no volume: points of either inside the other, by counting crossings."""
     samples = []
     for owner, other, first in ((a, b, True), (b, a, False)):
@@ -242,21 +252,20 @@ def _by_facets(a: PlacedPart, b: PlacedPart, allowance: _Allowance) -> Interfere
     return _interference(a, b, math.nan, depth, place, mated, "facets")
 
 
-def _inside(owner: PlacedPart, other: PlacedPart) -> tuple[Array, Ints]:
+def _inside(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     """Points on the owner's facets that are inside the other part, and their facets."""
     corners = owner.vertices[owner.faces]
-    middle = corners.mean(axis=1)
-    points = np.concatenate([middle, (0.98 * corners + 0.02 * middle[:, None]).reshape(-1, 3)])
+    points = _within(corners, corners.mean(axis=1))
     facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
-    chosen = within[:: max(1, math.ceil(len(within) / _SAMPLES))]
+    chosen = within[:: max(1, math.ceil(len(within) / DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]
     inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)
 
 
 def _interference(
-    a: PlacedPart, b: PlacedPart, volume: float, depth: float, place: Array, mated: bool, method: str
+    a: PartView, b: PartView, volume: float, depth: float, place: Array, mated: bool, method: str
 ) -> Interference:
     names = (a.part.name, b.part.name)
     return Interference(names, volume, depth, np.asarray(freeze(place)), mated, method)

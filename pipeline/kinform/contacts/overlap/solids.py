@@ -1,7 +1,7 @@
 """Overlap of two closed meshes by manifold3d: its pieces, and which facets of either part bound them.
 
-Coordinates are centred on the part whose frame is that of the pair, and scaled by a power of two to the order of 1 before the
-boolean, because manifold3d's tolerances are relative to the size of what it is given.
+Coordinates are centred on the part whose frame is that of the pair, and scaled by a power of two to the order of 1
+before the boolean, because manifold3d's tolerances are relative to the size of what it is given.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
-from kinform.contacts.search.placed import PlacedPart
+from kinform.contacts.search.pair_view import PartView
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -49,16 +50,16 @@ class SolidStore:
 
     solids: dict[tuple[str, int], Manifold | None] = field(default_factory=dict)
 
-    def overlap(self, a: PlacedPart, b: PlacedPart, least: float) -> list[Piece] | None:
+    def overlap(self, a: PartView, b: PartView, least: float) -> list[Piece] | None:
         """Pieces of the overlap of more than `least` (m³), largest first; None where a mesh is not a manifold."""
         home, guest, roles = (a, b, (0, 1)) if a.at_home else (b, a, (1, 0))
         first, second = self._solid(home.index.mesh, roles[0]), self._solid(guest.index.mesh, roles[1])
         if first is None or second is None:
             return None
         middle, scale = _scaling(home.index.mesh)
-        own_middle, own_scale = _scaling(guest.index.mesh)
+        guest_middle, guest_scale = _scaling(guest.index.mesh)
         R, p = guest.X_FP[:3, :3], guest.X_FP[:3, 3]
-        place = np.concatenate([R * own_scale, (R @ own_middle + p - middle)[:, None]], axis=1) / scale
+        place = np.concatenate([R * guest_scale, (R @ guest_middle + p - middle)[:, None]], axis=1) / scale
         pieces = [
             _piece(piece, middle, scale)
             for piece in (first ^ second.transform(place)).decompose()
@@ -92,6 +93,7 @@ def _solid(mesh: Mesh, role: int) -> Manifold | None:
 
 
 def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
+    """A connected piece in the frame of the pair, from one that is centred on `middle` (3,) and scaled."""
     mesh = solid.to_mesh64()
     corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts, dtype=np.int64)]
     starts = np.asarray(mesh.run_index, dtype=np.int64) // 3
@@ -103,9 +105,9 @@ def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
     facet = np.asarray(mesh.face_id, dtype=np.int64)[order]
     origin = corners.reshape(-1, 3).mean(axis=0)
     a, b, c = (corners[:, k] - origin for k in range(3))
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    volumes = np.einsum("ij,ij->i", a, cross(b, c)) / 6.0
     volume = float(volumes.sum())
     moment = volumes @ (a + b + c) / 4.0
     centroid = origin + (moment / volume if volume > 0.0 else 0.0)
-    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    area = 0.5 * float(np.linalg.norm(cross(b - a, c - a), axis=1).sum())
     return Piece(volume * scale**3, area * scale**2, centroid * scale + middle, corners * scale + middle, part, facet)

@@ -9,7 +9,17 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["CROSS", "canonical", "canonical_sign", "cross", "cross_matrix", "dot", "normalised", "perpendicular"]
+__all__ = [
+    "CROSS",
+    "canonical",
+    "canonical_sign",
+    "cross",
+    "cross_matrix",
+    "dot",
+    "normalised",
+    "perpendicular",
+    "widest_gap",
+]
 
 _NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 _CROSS = np.zeros((3, 3, 3))
@@ -74,3 +84,10 @@ def canonical_sign(unit: Array) -> float:
     size = np.abs(unit)
     first = int(np.flatnonzero(size >= size.max() - 1e-3)[0])
     return 1.0 if unit[first] >= 0.0 else -1.0
+
+
+def widest_gap(vectors: Array, axis: Array) -> float:
+    """rad: the widest angle about a unit axis (3,) that none of the vectors (n, 3) points into."""
+    u, v = perpendicular(axis)
+    azimuth = np.sort(np.arctan2(vectors @ v, vectors @ u))
+    return float(np.diff(np.append(azimuth, azimuth[:1] + 2.0 * np.pi)).max())

@@ -1,8 +1,8 @@
 """Connected components of large graphs: which facets, vertices or surfaces hang together.
 
-Every node learns of the lowest one that it hangs together with: of two neighbouring trees the one with the higher root is
-hung under the other, and all are made flat again (hooking and shortcutting, as Shiloach and Vishkin, J. Algorithms 3, 1982),
-in a number of rounds that grows with the logarithm of the nodes.
+Every node learns of the lowest one that it hangs together with: of two neighbouring trees the one with the higher root
+is hung under the other, and all are made flat again (hooking and shortcutting, as Shiloach and Vishkin, J. Algorithms
+3, 1982), in a number of rounds that grows with the logarithm of the nodes.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ __all__ = ["components"]
 
 
 def components(a: Ints, b: Ints, count: int) -> Ints:
-    """(count,) number of the connected component of each node under the links a–b, (n,) each; components are numbered by
-    their first node."""
+    """(count,) number of the connected component of each node under the links a–b, (n,) each; components are numbered
+    by their first node."""
     every = np.arange(count)
     root = every.copy()
     while True:

@@ -1,8 +1,9 @@
 """Edges of welded meshes: the one table of which facets meet where.
 
-Half-edge 3·f + k runs from corner k of facet f to its next corner. An edge is the half-edges between the same two vertices:
-one where the mesh is open, two where it is closed, more where bodies touch. Edges are sorted by their lower vertex, then by
-their higher one; the half-edges of one edge by facet, or, `by_corner`, by the corner that they begin at and then by facet.
+Half-edge 3·f + k runs from corner k of facet f to its next corner. An edge is the half-edges between the same two
+vertices: one where the mesh is open, two where it is closed, more where bodies touch. Edges are sorted by their lower
+vertex, then by their higher one; the half-edges of one edge by facet, or, `by_corner`, by the corner that they begin
+at and then by facet.
 """
 
 from __future__ import annotations

@@ -27,7 +27,8 @@ __all__ = ["MeshIndex", "MeshStore", "inner_weights"]
 
 
 _BALL, _PARTS = 0.012, 6
-"""Share of a mesh's diagonal that balls about its facets are as small as, and divisions of a facet's side for it at most."""
+"""Share of a mesh's diagonal that balls about its facets are as small as, and divisions of a facet's side for it at
+most."""
 _RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
 """Directions along which no designer lays an edge."""
 
@@ -136,7 +137,8 @@ class MeshIndex:
         return rims
 
     def away(self, points: Array) -> Array:
-        """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and quickly."""
+        """(n,) m that points (n, 3) of the part frame keep from the mesh at least: less than their distance, and
+        quickly."""
         if self._near is None:
             self._near = _balls(self.mesh)
         out = np.full(len(points), np.inf)
@@ -196,7 +198,8 @@ def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
 
 
 def inner_weights(number: int) -> Array:
-    """(number², 3) weights of a triangle's corners for the middles of those that it is divided into, `number` a side."""
+    """(number², 3) weights of a triangle's corners for the middles of those that it is divided into, `number` a
+    side."""
     up = [(3 * a + 1, 3 * b + 1) for a in range(number) for b in range(number - a)]
     down = [(3 * a + 2, 3 * b + 2) for a in range(number - 1) for b in range(number - 1 - a)]
     two = np.array(up + down, dtype=float) / (3.0 * number)

@@ -36,8 +36,8 @@ class Near:
         return np.asarray(found[np.lexsort((found[:, 1], found[:, 0]))])
 
     def about(self, some: Ints) -> Array:
-        """How many points lie near each of some of them, itself among them; had before all pairs are, which are many where
-        these are."""
+        """How many points lie near each of some of them, itself among them; had before all pairs are, which are many
+        where these are."""
         if self._in_line is None:
             return np.asarray(self._tree.query_ball_point(self._points[some], self._distance, return_length=True))
         return np.asarray(1.0 + np.bincount(self._in_line.ravel(), minlength=len(self._points))[some])

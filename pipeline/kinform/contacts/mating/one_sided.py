@@ -10,59 +10,33 @@ pairs with rows of their own: they are not made into patches here.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.contacts.constants import ANALYTIC_KINDS, FACING_OPPOSED, GIVER_AREA, MATING_REACH, PLANES_TILTED
 from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
-from kinform.contacts.mating.mates import EDGE, Mate, box_centre
-from kinform.contacts.search.placed import NearSurfaces, PlacedPart
+from kinform.contacts.mating.mate import Mate
+from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
-from kinform.model.tolerances import Tolerances
 
 __all__ = ["one_sided_mates", "without_continuations"]
 
 
-_ANALYTIC = ("plane", "cylinder", "cone", "sphere")
-_OPPOSED = -0.93
-"""Greatest cosine between the surface's normal and a facet that rests on it."""
-_TILTED = math.radians(3.0)
-"""Planes that oppose each other within this lie on each other badly; beyond, they meet at an edge."""
-_LEAST = 4.0
-"""An analytic surface gives normals to others from this area on, in squared tolerances."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Side:
-    """The part that gives the normals, or the one that rests on it."""
-
-    placed: PlacedPart
-    near: NearSurfaces
-
-
-def one_sided_mates(
-    a: PlacedPart,
-    b: PlacedPart,
-    near: tuple[NearSurfaces, NearSurfaces],
-    overlap: Flags,
-    tolerance: float,
-    tolerances: Tolerances,
-) -> list[Mate]:
+def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     """One-sided mates among the pairs of surfaces flagged in `overlap` (s, t)."""
-    sides = (_Side(a, near[0]), _Side(b, near[1]))
     mates: list[Mate] = []
-    for first, flags in ((0, overlap), (1, overlap.T)):
-        giver, taker = sides[first], sides[1 - first]
-        for row, column in _pairs(giver.near, taker.near, flags, tolerance, tolerances, first == 0):
-            mate = _mate(giver, taker, row, column, tolerance, first == 0)
+    # a gives the normals, then b
+    for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
+        for row, column in _givers_and_takers(view, flags, first):
+            mate = _mate(view, view.surfaces(row, column), first)
             if mate is not None:
                 mates.append(mate)
     return mates
 
 
-def without_continuations(patches: list[Patch], a: PlacedPart, b: PlacedPart) -> list[Patch]:
+def without_continuations(pair: PairView, patches: list[Patch]) -> list[Patch]:
     """The patches without those one-sided ones that only continue a two-sided one.
 
     A fillet beside a face that lies on a plane says nothing that the face does not say: a one-sided patch
@@ -70,6 +44,7 @@ def without_continuations(patches: list[Patch], a: PlacedPart, b: PlacedPart) ->
     """
     if not any(patch.one_sided for patch in patches):
         return patches
+    a, b = pair.parts
     firm = {patch.surfaces for patch in patches if not patch.one_sided}
     kept = []
     for patch in patches:
@@ -83,18 +58,13 @@ def without_continuations(patches: list[Patch], a: PlacedPart, b: PlacedPart) ->
     return kept
 
 
-def _pairs(
-    giver: NearSurfaces,
-    taker: NearSurfaces,
-    overlap: Flags,
-    tolerance: float,
-    tolerances: Tolerances,
-    first: bool,
-) -> list[tuple[int, int]]:
-    """Analytic surfaces with freeform ones, and planes with larger planes that they lie on askew."""
-    analytic = np.isin(giver.kinds, [KINDS.index(kind) for kind in _ANALYTIC])
-    large = giver.areas >= _LEAST * tolerance**2
-    loose = ~np.isin(taker.kinds, [KINDS.index(kind) for kind in _ANALYTIC])
+def _givers_and_takers(view: PairView, overlap: Flags, first: bool) -> list[tuple[int, int]]:
+    """Analytic surfaces of the part that gives the normals with freeform ones of the other that rests on it, and planes
+    with larger planes that they lie on askew; of planes of one size that of the `first` part gives."""
+    giver, taker = view.near
+    analytic = np.isin(giver.kinds, [KINDS.index(kind) for kind in ANALYTIC_KINDS])
+    large = giver.areas >= GIVER_AREA * view.tolerance**2
+    loose = ~np.isin(taker.kinds, [KINDS.index(kind) for kind in ANALYTIC_KINDS])
     flags = (analytic & large)[:, None] & loose[None]
     # a ball touches the groove of a ring along a circle or at a point, as `rounds` knows, and does not rest in it
     flags &= ~((giver.kinds == KINDS.index("sphere"))[:, None] & (taker.kinds == KINDS.index("torus"))[None])
@@ -105,81 +75,68 @@ def _pairs(
     larger = giver.areas[:, None] > taker.areas[None]
     if first:
         larger |= giver.areas[:, None] == taker.areas[None]
-    askew = planes & (angle > tolerances.alignment + spread) & (angle < _TILTED) & larger
+    askew = planes & (angle > view.tolerances.alignment + spread) & (angle < PLANES_TILTED) & larger
     return [(int(i), int(j)) for i, j in np.argwhere(overlap & (flags | (askew & large[:, None])))]
 
 
-def _chart(near: NearSurfaces, row: int, towards: Array) -> Chart:
-    """The chart of one analytic surface, looking towards a point."""
-    kind, axis, point = KINDS[near.kinds[row]], near.axes[row], near.points[row]
+def _chart(surfaces: SurfacePair) -> Chart:
+    """The chart of the first surface, looking towards the second."""
+    kind, axis, point = surfaces.kinds[0], surfaces.axes[0], surfaces.points[0]
     if kind == "plane":
         return PlaneChart(axis, point)
-    arm = towards - point
+    towards, _ = surfaces.box()
     if kind == "sphere":
-        distance = float(np.linalg.norm(arm))
-        far = distance > 1e-3 * near.radii[row]
-        return SphereChart(point, float(near.radii[row]), arm / distance if far else np.array([0.0, 0.0, 1.0]))
+        return SphereChart.seen_from(point, surfaces.radii[0], towards)
+    arm = towards - point
     base = perpendicular(axis, arm)
     if kind == "cylinder":
-        return CylinderChart(axis, point, base, float(near.radii[row]))
-    half = float(near.half_angles[row])
-    middle = max(float(arm @ axis), 0.5 * float(near.extents[row].sum())) * math.tan(half)
+        return CylinderChart(axis, point, base, surfaces.radii[0])
+    half = surfaces.both("half_angles")[0]
+    middle = max(float(arm @ axis), 0.5 * float(surfaces.extents[0].sum())) * math.tan(half)
     return ConeChart(axis, point, base, half, middle)
 
 
-def _mate(giver: _Side, taker: _Side, row: int, column: int, tolerance: float, first: bool) -> Mate | None:
-    near = giver.near
-    towards, _ = box_centre(near, taker.near, row, column)
-    chart = _chart(near, row, towards)
-    side = float(near.sides[row])
-    resting = _resting(chart, side, taker, near, (row, column), tolerance)
+def _mate(view: PairView, surfaces: SurfacePair, first: bool) -> Mate | None:
+    """The mate of a surface of the giver, which is the `first` part of the pair or not, with what rests on it."""
+    chart, side = _chart(surfaces), surfaces.sides[0]
+    resting = _resting(view, surfaces, chart)
     if not len(resting):
         return None
-    own = giver.placed.vertices[giver.placed.faces[near.facets[row]]]
-    other = KINDS[taker.near.kinds[column]]
-    axis, uncertainty = (
-        near.axes[row],
-        (float(near.axis_uncertainty[row]), float(near.point_uncertainty[row])),
-    )
-    radius = float(near.half_angles[row] if KINDS[near.kinds[row]] == "cone" else near.radii[row])
+    giver = view.a.vertices[view.a.faces[surfaces.facets[0]]]
+    kind, other = surfaces.kinds
+    axis = surfaces.axes[0]
+    radius = surfaces.both("half_angles")[0] if kind == "cone" else surfaces.radii[0]
     sign = side if first else -side
+    limit = MATING_REACH * view.tolerance
     return Mate(
-        rows=(row, column) if first else (column, row),
-        kind="other" if other in _ANALYTIC else KINDS[near.kinds[row]],
+        surfaces if first else surfaces.swapped,
+        kind="other" if other in ANALYTIC_KINDS else kind,
         chart=chart,
         sign=sign,
-        axis=sign * axis if KINDS[near.kinds[row]] == "plane" else axis,
-        point=near.points[row],
+        axis=sign * axis if kind == "plane" else axis,
+        point=surfaces.points[0],
         radii=(radius, 0.0) if first else (0.0, radius),
-        gap=0.0,
-        gradient=np.zeros(3),
-        limit=EDGE * tolerance,
-        slack=EDGE * tolerance + float(near.slacks[row]),
-        misalignment=0.0,
-        offset=0.0,
-        uncertainty=uncertainty,
-        chord=float(near.chords[row] + taker.near.chords[column]),
-        corners=(own, resting) if first else (resting, own),
+        limit=limit,
+        slack=limit + surfaces.both("slacks")[0],
+        uncertainty=(surfaces.turns[0], surfaces.shifts[0]),
+        corners=(giver, resting) if first else (resting, giver),
     )
 
 
-def _resting(
-    chart: Chart, side: float, taker: _Side, near: NearSurfaces, rows: tuple[int, int], tolerance: float
-) -> Array:
+def _resting(view: PairView, surfaces: SurfacePair, chart: Chart) -> Array:
     """Facets (n, 3, 3) of the taker's surface that face the giver's, cut to what is within the tolerance."""
-    facets = taker.near.facets[rows[1]]
-    corners = taker.placed.vertices[taker.placed.faces[facets]]
-    low, high = near.lows[rows[0]] - tolerance, near.highs[rows[0]] + tolerance
+    giver, taker, facets = surfaces.a, view.b, surfaces.facets[1]
+    corners = taker.vertices[taker.faces[facets]]
+    low, high = giver.lows[surfaces.row] - view.tolerance, giver.highs[surfaces.row] + view.tolerance
     within = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
     facets, corners = facets[within], corners[within]
-    normals = side * chart.normals(corners.mean(axis=1))
-    facing = np.einsum("ij,ij->i", normals, taker.placed.normals(facets)) < _OPPOSED
-    corners = corners[facing]
+    normals = surfaces.sides[0] * chart.normals(corners.mean(axis=1))
+    corners = corners[np.einsum("ij,ij->i", normals, taker.normals(facets)) < FACING_OPPOSED]
     if not len(corners):
         return np.zeros((0, 3, 3))
     heights = chart.heights(corners.reshape(-1, 3)).reshape(-1, 3)
-    corners, heights = _below(corners, heights, EDGE * tolerance)
-    return _below(corners, -heights, EDGE * tolerance)[0]
+    corners, heights = _below(corners, heights, MATING_REACH * view.tolerance)
+    return _below(corners, -heights, MATING_REACH * view.tolerance)[0]
 
 
 def _below(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:

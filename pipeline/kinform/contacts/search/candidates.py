@@ -5,7 +5,7 @@ from __future__ import annotations
 import fcl
 import numpy as np
 
-from kinform.contacts.mating.mates import EDGE
+from kinform.contacts.constants import MATING_REACH
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
@@ -50,7 +50,7 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
         assert part.mesh is not None
         low, high = part.mesh.placed_box(part.X_WP)
         size = part.mesh.diagonal
-        grow = 2.0 * EDGE * tolerances.contact_of(size, size)
+        grow = 2.0 * MATING_REACH * tolerances.contact_of(size, size)
         box = fcl.Box(*(high - low + grow))
         boxes.append(box)
         objects.append(fcl.CollisionObject(box, fcl.Transform(0.5 * (low + high))))
@@ -64,12 +64,12 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
     met: list[tuple[int, int]] = []
     manager.collide(met, _collect)
     excluded = excluded_pairs(assembly)
-    found: dict[Pair, float] = {}
-    for one, two in met:
-        i, j = sorted((owner[one], owner[two]), key=lambda number: parts[number].name)
+    pairs: dict[Pair, float] = {}
+    for first, second in met:
+        i, j = sorted((owner[first], owner[second]), key=lambda number: parts[number].name)
         pair = (parts[i].name, parts[j].name)
         tolerance = tolerances.contact_of(sizes[i], sizes[j])
         apart = np.maximum(lows[i] - highs[j], lows[j] - highs[i]).max()
-        if pair not in excluded and apart <= EDGE * tolerance:
-            found[pair] = tolerance
-    return dict(sorted(found.items()))
+        if pair not in excluded and apart <= MATING_REACH * tolerance:
+            pairs[pair] = tolerance
+    return dict(sorted(pairs.items()))

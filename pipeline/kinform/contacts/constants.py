@@ -1,0 +1,242 @@
+"""The numbers that decide about contacts, by the module that uses them first.
+
+Lengths are shares of the contact tolerance, which scales with the parts, unless a unit is stated. Where neither a
+reason nor a measurement is named the number is a choice.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+# search: which parts and surfaces come near each other
+
+MATING_REACH = 1.02
+"""Limits reach this much beyond the contact tolerance: designers put clearances of exactly 0.5 mm, and
+rounding must not decide whether those are contacts."""
+CLEARANCE_SHARE = 0.03
+"""Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance."""
+HALF_RADIUS_SHARE = 3.0
+"""A radial gap of the radius divided by this is no fit."""
+MOST_SURFACES = 3000
+"""Surfaces of one part that a pair looks at: a bound of memory for crumpled meshes."""
+FACING_LEAST = 0.5
+"""Least cosine between a probe and the facet that it has to meet."""
+BETWEEN_MARGIN = 0.01
+"""What lies this close to one of the two facets that a probe meets is not between them."""
+BETWEEN_SHARE = 0.05
+"""The same as a share of the distance of the two facets."""
+PROBE_SPARE = 0.05
+"""By so much further than a facet is expected at most it is looked for."""
+
+# mating/charts, overlay: surfaces drawn in a plane, and what both parts cover of them
+
+CHART_ARC = math.radians(15.0)
+"""rad: angle that one sample of a curved surface may stand for."""
+CHART_FAR = 1e3
+"""Radii to which charts of cylinders and cones reach."""
+HINT_LEAST = 1e-6
+"""Share of a hint across an axis below which it says nothing."""
+POLE_SEEN = -0.97
+"""Least cosine from the pole of what Lambert's projection shows: beyond, facets would be torn apart."""
+SEEN_FROM_AXIS = 1e-3
+"""Share of the radius nearer than which to the axis or centre a point gives no direction to look in."""
+PATCH_BINS = 24
+"""Least number of bins of a patch, so that a blocked part of it can be told."""
+PATCH_RIM_POINTS = 96
+"""Greatest number of points that stand for the rim."""
+REGION_THIN = 0.01
+"""Regions thinner than this are lines, not patches."""
+REGION_SIMPLE = REGION_THIN * 0.1
+"""Corners of a region that are off by less than this are left out."""
+REGION_SMALL = 0.02
+"""Regions smaller than this share of the squared tolerance are points, not patches."""
+MANY_TRIANGLES = 64
+"""Triangles of which the outline is quicker to unite than all of them."""
+POINT_SAME = 1e-6
+"""Points of a region closer than this are one."""
+
+# mating/mate, analytic: two analytic surfaces of one kind
+
+MATING_TILT = math.radians(5.0)
+"""rad: no clearance excuses a greater angle between two mating axes."""
+TILT_LIKELY = 1.5
+"""Angles of axes up to this many times that are looked at."""
+MATING_OFFSET = 0.5
+"""By so much axes or centres of surfaces that mate may miss each other beyond the clearance."""
+LENS_WIDTH = 0.7
+"""Mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with
+different corners on one circle overlap in such lenses."""
+
+# mating/patches: what a patch is
+
+EXACT_GAP = 1e-3
+"""A gap below this is none."""
+GAP_SCATTER = 0.1
+"""Scatter of the measured gap of a face that rests on a plane, and of profiles that lie along each other."""
+SCATTER_CHORDS = 0.3
+"""The same on curved surfaces, as a share of the chord error, where that is more."""
+PATCH_AREA = 4.0
+"""Least area, in squared tolerances, of patches that are measured by facets: less is a stray touch of two rounded
+edges."""
+
+# mating/one_sided: an analytic surface against facets
+
+ANALYTIC_KINDS = ("plane", "cylinder", "cone", "sphere")
+"""Kinds of surfaces that give normals to others."""
+GIVER_AREA = 4.0
+"""An analytic surface gives normals to others, and a plane to edges, from this area on, in squared tolerances."""
+FACING_OPPOSED = -0.93
+"""Greatest cosine between the surface's normal and a facet that rests on it."""
+PLANES_TILTED = math.radians(3.0)
+"""rad: planes that oppose each other within this lie on each other badly; beyond, they meet at an edge."""
+
+# mating/freeform: facets against facets
+
+FREEFORM_KINDS = ("freeform", "torus", "revolution", "extrusion", "helicoid")
+"""Kinds whose contacts are found facet by facet."""
+TURNING_KINDS = ("torus", "revolution")
+"""Of these, those that turn on themselves about an axis."""
+FREEFORM_PROBES = 400
+"""Greatest number of probes from either side of a pair of surfaces."""
+FACETS_FACING = 0.93
+"""Facets rest on each other when their normals oppose within about 20°."""
+FREEFORM_ANGLE = math.radians(1.0)
+"""rad: the direction of a freeform patch is known no better than this."""
+ENCLOSING_GAP = 0.95 * math.pi
+"""rad: normals about an axis with no wider gap point to all sides."""
+
+# mating/threads
+
+PITCH_SAME = 2e-3
+"""Relative difference of two pitches that are meant as one; less where the engagement is long."""
+THREAD_AXIS_VAGUE = 0.02
+"""rad: what is known no better than this about its axis is no thread that mates."""
+THREAD_FACETS = 400
+"""Greatest number of facets of either side that give samples."""
+PROFILE_SHARES = np.array([1.0, 3.0, 5.0]) / 6.0
+"""Where samples lie on the profile of a facet: the middles of its thirds."""
+FLANK_NEIGHBOURS = 24
+"""Samples of the other side that are held against each."""
+FLANK_HELIX_WEIGHT = 0.1
+"""Weight of the distance along the helix in looking for these."""
+FLANKS_FACING = -0.7
+"""Greatest cosine between the normals of two flanks that lie on each other."""
+FLANK_GAP = 0.15
+"""Greatest gap of two flanks, in pitches: beyond, neither is the other's."""
+
+# higher: points and lines
+
+TOUCH = 0.12
+"""Within this a point or a line touches: the band of full weight."""
+CAPTIVE = 0.42
+"""Within this a pin in a slot, a ball in a groove or a tooth between two that has as much play on either side counts
+as held by both."""
+ZONE = 0.01
+"""Bounds the zone of a point or a line whose area is stated."""
+OPPOSITE_COSINE = -0.999
+"""Two sides of a slot hold a pin where their normals have at most this cosine."""
+ACROSS_SINE = 1e-3
+"""Directions with at most this sine between them are parallel: planes across a line leave it free."""
+STRIP_AREA = 0.02
+"""Share of the area of a part below which a plane may be a facet of a curve."""
+BALL_BORE_SAMPLES = 16
+"""Samples around a ball in a bore."""
+ROLLER_SAMPLES = 17
+"""Samples along a roller on a plane or between two rollers."""
+LINE_SAMPLES = 9
+"""Samples along an edge, and along the line in which outlines meet."""
+EDGE_RISE = math.sin(math.radians(3.0))
+"""Faces beside an edge rise at least this steeply; flatter ones lie on the plane badly."""
+EDGES_MOST = 64
+"""More edges and corners than these on one plane are a rough surface."""
+
+# higher/outlines, profiles: cams, teeth and racks by their smooth outlines
+
+SEGMENT_LONG = 3.0
+"""A segment this many times longer than both neighbours is a straight face between curves."""
+CURVE_BEND_LEAST = math.radians(3.0)
+"""rad: a curve that turns less than this in all is a straight face."""
+STRIP_HEIGHT = 0.3
+"""A facet is a strip of a doubly curved surface where its neighbour on along the direction is longer than this
+share."""
+CYLINDER_EXACT = 0.05
+"""A cylinder is exact when its fit misses the vertices by less than this share of its chord error."""
+DIRECTIONS_TRIED = 6
+"""Directions tried, those of the largest faces first."""
+DIRECTION_SINE = 1e-3
+"""Directions with at most this sine between them are tried once."""
+GRAIN = 1e-3
+"""Ends of segments within this are one point."""
+SHEET_RINGS = 6
+"""Rings of facets about the common box of two parts: as many segments settle a spline."""
+CURVE_SAMPLES = 6
+"""Samples a segment, to find where two curves come close."""
+CURVES_OPPOSED = -0.9
+"""Greatest cosine between the tangents of two curves that touch."""
+NEWTON_STEPS = 20
+"""Steps of Newton's method to where two curves are parallel."""
+CURVE_END_SPARE = math.radians(3.0)
+"""rad: a curve may end this much before it is parallel to the other: it goes on where it was cut."""
+SLIP_LEAST = 0.1
+"""Share of the shortest segment, or of the contact tolerance, by which points that touch may be off each other's
+normal."""
+ROUNDER = 0.2
+"""Curves touch along a line where they part from each other at least at this share of their own curvatures."""
+LENGTH_SHARED = 0.1
+"""Outlines touch along more than this."""
+DISTINCT_DISTANCE = 0.2
+"""Lines of contact nearer to each other than this, ..."""
+DISTINCT_COSINE = 0.9
+"""... with normals of at least this cosine, are one."""
+GAP_ROUNDING = 2e-3
+"""Lines of contact whose gaps differ by no more than this, or by two chord errors, touch alike."""
+SIGMAS = 3.0
+"""Standard uncertainties within which lines of action are one."""
+
+# overlap
+
+DEPTH_SAMPLES = 400
+"""Points at which the depth of one pair's overlap is measured."""
+DEPTH_SAMPLES_LEAST = 16
+"""The same of one piece of it, at least."""
+BESIDE_DEEPEST = 100
+"""Points beside the deepest one that are measured too."""
+EXACT_OVERLAP = 0.02
+"""An overlap below this is none: rounding of coordinates."""
+SHELL_INSET = 0.98
+"""Points just inside the corners of a facet are at this share of the way to them from its middle."""
+PARTING_STEPS = 60
+"""Steps of Frank and Wolfe's method."""
+PARTING_LEAST = 0.1
+"""Least speed at which parts leave all their plane contacts that counts as leaving them, of 1."""
+PARTING_TRIED = 0.9
+"""Share of what counts as an overlap by which parts are moved to see whether they are then free."""
+
+# fastening: hints that parts are one body
+
+AXES_PARALLEL = math.radians(0.5)
+"""rad: greatest angle between two axes that line up."""
+AXES_COAXIAL = 0.2
+"""Distance of axes that count as one."""
+ROUND_SWEEP = 0.9 * 2 * math.pi
+"""rad: least sweep of a hole, and of the edges of a rim."""
+HOLE_SINK = 0.6
+"""Depth of a chamfer or countersink between a plane and the hole behind it, in radii of the hole."""
+SHAFT_COSINE = 0.99
+"""Least cosine between a hole and a shaft that stands in it."""
+RIM_KINDS = frozenset({"cylinder", "cone", "torus", "revolution"})
+"""Surfaces at which a rim ends."""
+RIM_SCATTER = 0.01
+"""Greatest spread of the distances of a rim's vertices from its axis, of their mean."""
+AXIS_AREA = 100.0
+"""Least area, in squared contact tolerances, of a contact from which an axis is read."""
+PATTERN_ALIKE = 0.02
+"""Relative difference of radii and distances within which holes are of one pattern."""
+UPRIGHT_COSINE = 0.9999
+"""Least cosine of planes that are parallel, and of holes that stand on one."""
+WALL_COSINE = 0.02
+"""Cosine below which a face is parallel to a direction."""
+POCKET_GAP = math.pi - 0.05
+"""rad: walls with no wider gap between them leave no way aside."""

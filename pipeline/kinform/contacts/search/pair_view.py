@@ -1,0 +1,339 @@
+"""Two parts as their pair sees them: the facets and surfaces of each that come near the other, in the frame of the
+pair.
+
+The frame of a pair is the part frame of the one that has more facets, so that moving a whole assembly changes
+nothing, and a large part is never placed anew for each of its neighbours. `PairView` is what all questions about a pair
+take; `SurfacePair` one surface of either part that may touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.contacts.constants import CLEARANCE_SHARE, MATING_REACH, MOST_SURFACES
+from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.index import MeshIndex, MeshStore
+from kinform.foundation.meshes.probes import Region
+from kinform.foundation.meshes.proximity import near_boxes
+from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.assembly import Part
+from kinform.model.names import PartName
+from kinform.model.surfaces import KINDS, MeshSurfaces
+from kinform.model.tolerances import Tolerances
+
+__all__ = ["NearSurfaces", "PairView", "PartView", "SurfacePair", "near_facets", "pair_view"]
+
+
+@dataclass(frozen=True, eq=False)
+class PartView:
+    """A part with all its facets in the frame of the pair (m)."""
+
+    part: Part
+    index: MeshIndex
+    surfaces: MeshSurfaces
+    table: SurfaceTable
+    X_FP: Array
+    """(4, 4) pose of the part frame in the frame of the pair."""
+    at_home: bool
+    """Whether the frame of the pair is the part's own."""
+    vertices: Array
+    """(V, 3)."""
+    low: Array
+    high: Array
+    """(3,) bounding box."""
+    region: Region
+    """The facets that probes of the pair can meet."""
+    clear: float
+    """m: no other facet is nearer than this to a facet of the other part."""
+
+    @property
+    def faces(self) -> Ints:
+        """(F, 3)."""
+        return self.index.mesh.faces
+
+    def normals(self, facets: Ints) -> Array:
+        """(n, 3) unit, outward, of facets (n,), in the frame of the pair."""
+        return np.asarray(self.index.normals(facets) @ self.X_FP[:3, :3].T)
+
+    def depths(self, points: Array) -> tuple[Array, Ints]:
+        """Distance (n,) m to the mesh of points (n, 3) on the other part, and the nearest facets (n,).
+
+        Points are in the frame of the pair. Facets outside the region are asked only about points that they may be
+        nearest to.
+        """
+        if self.region.bvh is None:
+            return self.index.whole().depths(self.to_part(points))
+        distance, facet = self.region.depths(self.to_part(points))
+        if self.region.facets is not None:
+            far = distance > self.clear
+            if far.any():
+                distance[far], facet[far] = self.index.whole().depths(self.to_part(points[far]))
+        return distance, facet
+
+    def to_part(self, points: Array) -> Array:
+        """Points (n, 3) of the frame of the pair in the part frame."""
+        return np.asarray((points - self.X_FP[:3, 3]) @ self.X_FP[:3, :3])
+
+    def turn_to_part(self, directions: Array) -> Array:
+        """Directions (n, 3) of the frame of the pair in the part frame."""
+        return np.asarray(directions @ self.X_FP[:3, :3])
+
+
+def _part_view(part: Part, index: MeshIndex, surfaces: MeshSurfaces, X_FP: Array | None) -> PartView:
+    """The part at pose `X_FP` (4, 4) in the frame of the pair; None: that frame is the part's own."""
+    table = index.table(surfaces)
+    region = Region(index, None, np.zeros(0, np.int64))
+    if X_FP is None:
+        vertices, low, high = index.mesh.vertices, index.low, index.high
+    else:
+        R_FP = X_FP[:3, :3]
+        vertices = index.mesh.vertices @ R_FP.T + X_FP[:3, 3]
+        columns = np.ascontiguousarray(vertices.T)
+        low, high = columns.min(axis=1), columns.max(axis=1)
+    pose = np.eye(4) if X_FP is None else X_FP
+    return PartView(part, index, surfaces, table, pose, X_FP is None, vertices, low, high, region, 0.0)
+
+
+def _facing(a: PartView, b: PartView, low: Array, high: Array, margin: float) -> tuple[PartView, PartView]:
+    """Both parts, with the facets in the box from `low` to `high` (3,) that come within `margin` (m) of the other
+    as those that probes can meet."""
+    (facets_a, low_a, high_a), (facets_b, low_b, high_b) = near_facets(a, low, high), near_facets(b, low, high)
+    keep_a, keep_b = near_boxes(low_a, high_a, low_b, high_b, margin)
+    return (
+        replace(a, region=a.index.region(facets_a[keep_a]), clear=margin),
+        replace(b, region=b.index.region(facets_b[keep_b]), clear=margin),
+    )
+
+
+def near_facets(placed: PartView, low: Array, high: Array) -> tuple[Ints, Array, Array]:
+    """Facets whose boxes meet the box from `low` to `high` (3,), ascending, and their boxes (n, 3)."""
+    if placed.at_home:
+        boxes = placed.index.boxes
+        facets = boxes.meeting(low, high)
+        return facets, boxes.low[facets], boxes.high[facets]
+    vertices, faces = placed.vertices, placed.faces
+    beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
+    a, b, c = faces.T
+    facets = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
+    low_f, high_f = facet_boxes((vertices[a[facets]], vertices[b[facets]], vertices[c[facets]]))
+    return facets, low_f, high_f
+
+
+_BITS = np.array([1, 2, 4, 8, 16, 32], dtype=np.int64)
+"""One for each side of a box that a vertex can lie beyond."""
+
+
+@dataclass(frozen=True, eq=False)
+class NearSurfaces(SurfaceTable):
+    """Surfaces of one part with facets near the other part, in the frame of the pair."""
+
+    ids: Ints
+    """(s,) index of each surface in the part's MeshSurfaces."""
+    lows: Array
+    """(s, 3) box of the near facets."""
+    highs: Array
+    facets: tuple[Ints, ...]
+    """Near facets of each surface."""
+
+    def of_kind(self, *kinds: str) -> Ints:
+        """Positions of the surfaces of these kinds."""
+        wanted = np.zeros(len(self.kinds), dtype=bool)
+        for kind in kinds:
+            wanted |= self.kinds == KINDS.index(kind)
+        return np.flatnonzero(wanted)
+
+
+def _near_surfaces(placed: PartView, low: Array, high: Array) -> NearSurfaces:
+    """Surfaces of the part that have facets whose boxes meet the box from `low` to `high` (3,)."""
+    near, low_f, high_f = near_facets(placed, low, high)
+    labels = placed.surfaces.labels[near]
+    order = np.argsort(labels, kind="stable")
+    near, labels, low_f, high_f = near[order], labels[order], low_f[order], high_f[order]
+    ids, starts = np.unique(labels, return_index=True)
+    if len(ids) > MOST_SURFACES:
+        # a crumpled mesh, every facet a surface of its own: the largest decide, and memory stays bounded
+        largest = np.sort(np.lexsort((ids, -placed.table.areas[ids]))[:MOST_SURFACES])
+        keep = np.isin(labels, ids[largest])
+        near, labels, low_f, high_f = near[keep], labels[keep], low_f[keep], high_f[keep]
+        ids, starts = np.unique(labels, return_index=True)
+    empty = np.zeros((0, 3))
+    return NearSurfaces(
+        **placed.table.placed(ids, placed.X_FP),  # type: ignore[arg-type]
+        ids=ids.astype(np.int64),
+        lows=np.minimum.reduceat(low_f, starts) if len(ids) else empty,
+        highs=np.maximum.reduceat(high_f, starts) if len(ids) else empty,
+        facets=tuple(np.split(near, starts[1:])) if len(ids) else (),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePair:
+    """The surface of a at position `row` of its near surfaces, and that of b at position `column` of its own."""
+
+    a: NearSurfaces
+    b: NearSurfaces
+    row: int
+    column: int
+
+    def both(self, name: str) -> tuple[float, float]:
+        """A column of the table of surfaces by its name, for either surface."""
+        return float(getattr(self.a, name)[self.row]), float(getattr(self.b, name)[self.column])
+
+    @property
+    def ids(self) -> tuple[int, int]:
+        """Indices in the parts' MeshSurfaces."""
+        return int(self.a.ids[self.row]), int(self.b.ids[self.column])
+
+    @property
+    def kinds(self) -> tuple[str, str]:
+        """Of KINDS."""
+        return KINDS[self.a.kinds[self.row]], KINDS[self.b.kinds[self.column]]
+
+    @property
+    def axes(self) -> tuple[Array, Array]:
+        """(3,) unit."""
+        return self.a.axes[self.row], self.b.axes[self.column]
+
+    @property
+    def points(self) -> tuple[Array, Array]:
+        """(3,) m."""
+        return self.a.points[self.row], self.b.points[self.column]
+
+    @property
+    def extents(self) -> tuple[Array, Array]:
+        """(2,) m along the axis from the point."""
+        return self.a.extents[self.row], self.b.extents[self.column]
+
+    @property
+    def facets(self) -> tuple[Ints, Ints]:
+        """Near facets."""
+        return self.a.facets[self.row], self.b.facets[self.column]
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """m."""
+        return self.both("radii")
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """1 convex, −1 concave."""
+        return self.both("sides")
+
+    @property
+    def turns(self) -> tuple[float, float]:
+        """Standard uncertainty of the axes (rad)."""
+        return self.both("axis_uncertainty")
+
+    @property
+    def shifts(self) -> tuple[float, float]:
+        """Standard uncertainty of the points (m)."""
+        return self.both("point_uncertainty")
+
+    @property
+    def chord(self) -> float:
+        """m: greatest distances of facets from their surfaces, added."""
+        return sum(self.both("chords"))
+
+    @property
+    def slack(self) -> float:
+        """m by which facets of either side may stand off their surfaces, added."""
+        return sum(self.both("slacks"))
+
+    @property
+    def swapped(self) -> SurfacePair:
+        """As the other part sees it."""
+        return SurfacePair(self.b, self.a, self.column, self.row)
+
+    def box(self) -> tuple[Array, Array]:
+        """Middle and size (3,) of the common box of the near facets."""
+        low = np.maximum(self.a.lows[self.row], self.b.lows[self.column])
+        high = np.minimum(self.a.highs[self.row], self.b.highs[self.column])
+        return 0.5 * (low + high), np.maximum(high - low, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class PairView:
+    """Two parts in the frame of their pair, what of each lies near the other, and how near they touch."""
+
+    a: PartView
+    b: PartView
+    near: tuple[NearSurfaces, NearSurfaces]
+    """Surfaces of a and of b with facets near the other part."""
+    tolerance: float
+    """m: surfaces further apart than this do not touch."""
+    tolerances: Tolerances
+
+    @property
+    def parts(self) -> tuple[PartView, PartView]:
+        """a and b."""
+        return self.a, self.b
+
+    @property
+    def names(self) -> tuple[PartName, PartName]:
+        """Of a and b."""
+        return self.a.part.name, self.b.part.name
+
+    @property
+    def swapped(self) -> PairView:
+        """With b first."""
+        return replace(self, a=self.b, b=self.a, near=self.near[::-1])
+
+    def surfaces(self, row: int, column: int) -> SurfacePair:
+        """One near surface of either part, by their positions."""
+        return SurfacePair(*self.near, int(row), int(column))
+
+    def overlap(self, margin: float) -> Flags:
+        """(s, t): the boxes of near surface s of a and t of b come within `margin` (m)."""
+        a, b = self.near
+        apart = np.maximum(a.lows[:, None] - b.highs[None], b.lows[None] - a.highs[:, None])
+        return np.asarray((apart <= margin).all(axis=2))
+
+    def of_kinds(self, overlap: Flags, *kinds: str) -> tuple[Ints, Ints, Flags]:
+        """Positions of the near surfaces of these kinds of a (s,) and of b (t,), and the flags `overlap` of these (s,
+        t)."""
+        rows, columns = (side.of_kind(*kinds) for side in self.near)
+        return rows, columns, overlap[np.ix_(rows, columns)]
+
+    def common_box(self) -> tuple[Array, Array] | None:
+        """Lowest and highest corner (3,) of where near facets of both come within the tolerance; None without
+        facets."""
+        a, b = self.near
+        if not len(a.ids) or not len(b.ids):
+            return None
+        low = np.maximum(a.lows.min(axis=0), b.lows.min(axis=0)) - self.tolerance
+        return low, np.minimum(a.highs.max(axis=0), b.highs.max(axis=0)) + self.tolerance
+
+
+def pair_view(
+    parts: tuple[Part, Part],
+    surfaces: dict[str, MeshSurfaces],
+    store: MeshStore,
+    tolerance: float,
+    tolerances: Tolerances,
+) -> tuple[PairView, Array, float] | None:
+    """Two meshed parts, the pose (4, 4) of the frame of the pair in the world, and how far apart surfaces of theirs
+    that mate may be (m): clearances grow with the radius. None where no facets are that near. `surfaces` by mesh
+    digest."""
+    meshes = [part.mesh for part in parts]
+    first, second = meshes
+    assert first is not None
+    assert second is not None
+    home = parts[0] if len(first.faces) >= len(second.faces) else parts[1]
+    a, b = (
+        _part_view(
+            part, store.index(mesh), surfaces[mesh.digest], None if part is home else inverse(home.X_WP) @ part.X_WP
+        )
+        for part, mesh in zip(parts, (first, second), strict=True)
+    )
+    reach = MATING_REACH * max(tolerance, CLEARANCE_SHARE * min(a.table.radius, b.table.radius))
+    low, high = np.maximum(a.low, b.low) - reach, np.minimum(a.high, b.high) + reach
+    if (low > high).any():
+        return None
+    margin = max(a.table.slack, b.table.slack)
+    a, b = _facing(a, b, low - margin, high + margin, reach + margin)
+    near = (_near_surfaces(a, low, high), _near_surfaces(b, low, high))
+    return PairView(a, b, near, tolerance, tolerances), home.X_WP, reach

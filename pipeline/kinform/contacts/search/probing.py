@@ -1,0 +1,101 @@
+"""The narrow phase: do both parts really have facets here, facing each other, with nothing between?
+
+A probe stands on the common surface along its normal and is cast against both meshes as an FCL sliver.
+It holds if it meets the wanted surface of each part, turned towards the other, and if no other facet of
+either part lies between the two: a thin wall, or a step, in between means that these surfaces do not
+touch there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
+from kinform.contacts.search.pair_view import PairView, SurfacePair
+from kinform.foundation.meshes.probes import Hits
+from kinform.model.arrays import Array, Flags, Ints
+
+__all__ = ["Probes", "Verdict", "verify"]
+
+
+@dataclass(frozen=True, eq=False)
+class Probes:
+    """n probes in the frame of the pair: normals out of a, surfaces wanted on a and b, expected gaps."""
+
+    points: Array
+    normals: Array
+    gaps: Array
+    """(n,) m; facets are expected half of it to either side."""
+    reach: Array
+    """(n,) m to either side."""
+    surfaces: Ints
+    """(n, 2) index in the part's MeshSurfaces."""
+
+    @staticmethod
+    def of(points: Array, normals: Array, gaps: Array, reach: Array, surfaces: SurfacePair) -> Probes:
+        """Probes of one surface of either part."""
+        return Probes(points, normals, gaps, reach, np.tile(np.array(surfaces.ids), (len(points), 1)))
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """Set by set of probes: which of them hold, and where their facets are along the normal (m from the point)."""
+
+    holds: list[Flags]
+    along_a: list[Array]
+    along_b: list[Array]
+    cosine: list[Array]
+    """(n,) of the angle between the outward normals of the two facets."""
+
+    @property
+    def gaps(self) -> list[Array]:
+        """(n,) m from facet to facet."""
+        return [b - a for a, b in zip(self.along_a, self.along_b, strict=True)]
+
+
+def _nearest(hits: Hits, wanted: Flags, expected: Array, count: int) -> Ints:
+    """For each probe the wanted hit nearest to where it is expected, or −1."""
+    rows = np.nonzero(wanted)[0]
+    off = np.abs(hits.along[rows] - expected[hits.probe[rows]])
+    rows = rows[np.lexsort((rows, off, hits.probe[rows]))]
+    probe, first = np.unique(hits.probe[rows], return_index=True)
+    chosen = np.full(count, -1, dtype=np.int64)
+    chosen[probe] = rows[first]
+    return chosen
+
+
+def _blocked(hits: Hits, wanted: Flags, low: Array, high: Array) -> Flags:
+    """Probes between whose two facets another facet lies."""
+    between = ~wanted & (hits.along > low[hits.probe]) & (hits.along < high[hits.probe])
+    blocked = np.zeros(len(low), dtype=bool)
+    blocked[hits.probe[between]] = True
+    return blocked
+
+
+def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> Verdict:
+    """Cast sets of probes (one at least) against both parts, all together; `facing` is the least cosine between a facet
+    and the probe."""
+    probes = Probes(*(np.concatenate([getattr(p, f.name) for p in sets]) for f in fields(Probes)))
+    count = len(probes.points)
+    chosen, on_surface, all_hits = [], [], []
+    for part, side, sense in ((pair.a, 0, 1.0), (pair.b, 1, -1.0)):
+        hits = part.region.cast(part.to_part(probes.points), part.turn_to_part(probes.normals), probes.reach)
+        wanted = part.surfaces.labels[hits.facet] == probes.surfaces[hits.probe, side]
+        chosen.append(_nearest(hits, wanted & (sense * hits.facing > facing), -0.5 * sense * probes.gaps, count))
+        on_surface.append(wanted)
+        all_hits.append(hits)
+    holds = (chosen[0] >= 0) & (chosen[1] >= 0)
+    along, cosine = [np.zeros(count), np.zeros(count)], np.ones(count)
+    if holds.any():
+        along = [np.where(holds, h.along[c], 0.0) for h, c in zip(all_hits, chosen, strict=True)]
+        facets = [h.facet[c] for h, c in zip(all_hits, chosen, strict=True)]
+        cosine = np.einsum("ij,ij->i", pair.a.normals(facets[0]), pair.b.normals(facets[1]))
+        holds &= cosine < pair.tolerances.opposed
+        inset = BETWEEN_MARGIN * pair.tolerance + BETWEEN_SHARE * np.abs(along[1] - along[0])
+        low, high = np.minimum(*along) + inset, np.maximum(*along) - inset
+        for hits, wanted in zip(all_hits, on_surface, strict=True):
+            holds &= ~_blocked(hits, wanted, low, high)
+    ends = np.cumsum([len(p.points) for p in sets])[:-1]
+    return Verdict(np.split(holds, ends), np.split(along[0], ends), np.split(along[1], ends), np.split(cosine, ends))
