@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
@@ -10,41 +9,39 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.problems import Problems, did_you_mean
 from kinform.foundation.units import metres_per
-from kinform.model.assembly import Assembly, Mesh
+from kinform.model.assembly import Assembly, Mesh, Part
 
-__all__ = ["MESHES", "Sources", "content", "earlier_meshes", "read_raw"]
+__all__ = ["DesignFiles", "MeshUse", "earlier_meshes", "is_mesh", "mesh_use", "read_raw"]
 
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files."""
 
 
-def content(data: bytes) -> str:
-    """SHA-256 (hex) of the content of a file."""
-    return hashlib.sha256(data).hexdigest()
+def is_mesh(path: Path) -> bool:
+    """Whether the name is that of a mesh file."""
+    return path.suffix.lower() in MESHES
 
 
-def _content_of(path: Path) -> str:
-    with open(path, "rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
-def _content_or_none(path: Path) -> str | None:
+def _digest(path: Path) -> str | None:
+    """SHA-256 (hex) of a file; None where it cannot be read."""
     try:
-        return _content_of(path)
+        with open(path, "rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError:
         return None
 
 
 def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
-    return _parsed(path, b"" if path.suffix.lower() not in MESHES else path.read_bytes())
+    return _parsed(path, path.read_bytes() if is_mesh(path) else b"")
 
 
 def _parsed(path: Path, data: bytes) -> RawMesh:
-    if path.suffix.lower() not in MESHES:
+    if not is_mesh(path):
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
         from kinform.form.meshes.stl import read_stl
@@ -56,32 +53,38 @@ def _parsed(path: Path, data: bytes) -> RawMesh:
 
 
 @dataclass(frozen=True)
-class _Request:
-    """Everything that decides what a mesh comes out as: equal requests, equal meshes."""
+class MeshUse:
+    """What a part takes of a mesh file: with the content of the file, everything that decides what comes out."""
 
-    path: str
-    """As results show it."""
-    content: str
-    """SHA-256 (hex) of the file."""
     body: str | None
+    """One of several bodies, or the whole file."""
     metres: float
+    """In one unit of the file."""
     weld: float | None
+    """Welding distance (m), if one is stated."""
     solid: bool
+
+
+def mesh_use(part: Part, weld: float | None) -> MeshUse:
+    """What a part with a mesh took of its file."""
+    assert part.mesh is not None
+    return MeshUse(part.mesh.body, metres_per(part.units), weld, part.solid)
+
+
+_Request = tuple[str, str, MeshUse]
+"""Path as results show it, SHA-256 (hex) of the file, use: equal requests, equal meshes."""
 
 
 def earlier_meshes(assembly: Assembly, files: Mapping[str, str]) -> dict[_Request, Mesh]:
     """The meshes of an assembly that the present code read, by what was asked for; `files` are the contents it read."""
-    weld = assembly.tolerances.weld
     return {
-        _Request(
-            part.mesh.path, files[part.mesh.path], part.mesh.body, metres_per(part.units), weld, part.solid
-        ): part.mesh
+        (part.mesh.path, files[part.mesh.path], mesh_use(part, assembly.tolerances.weld)): part.mesh
         for part in assembly.parts
         if part.mesh is not None and part.mesh.path in files
     }
 
 
-class Sources:
+class DesignFiles:
     """Files below the folder of the top manifest; meshes with the same content are one object."""
 
     def __init__(
@@ -89,15 +92,14 @@ class Sources:
     ):
         self.top = top
         self.problems = problems
-        self.files: set[str] = set()
+        self.names: set[str] = set()
         self._outside = allow_outside
         self._earlier = earlier or {}
-        self._texts: dict[Path, str] = {}
         self._data: dict[Path, bytes] = {}
         self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
         self._real: dict[Path, str] = {}
-        self._built: dict[tuple[Path, str | None, float, float | None, bool], Mesh | None] = {}
+        self._meshes: dict[tuple[Path, MeshUse], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
 
     def shown(self, path: Path) -> str:
@@ -119,7 +121,7 @@ class Sources:
             message = f"{what} {stated} " + ("is a folder" if path.is_dir() else "does not exist")
             self.problems.add(message, file, line, remedy)
             return None
-        self.text(path)
+        self.note(path)
         return path
 
     def _inside(self, path: Path, root: Path) -> bool:
@@ -128,82 +130,70 @@ class Sources:
             self._real[root] = os.path.join(os.path.realpath(root), "")
         return os.path.realpath(path).startswith(self._real[root])
 
-    def text(self, path: Path) -> None:
-        """Note a file that is read, with its content before it is read."""
-        self.files.add(self.shown(path))
-        if path.suffix.lower() not in MESHES and path not in self._texts:
-            with contextlib.suppress(OSError):
-                self._texts[path] = content(path.read_bytes())
+    def note(self, path: Path) -> None:
+        """Note a file that is read; unless it is a mesh, with its content before it is read."""
+        self.names.add(self.shown(path))
+        if not is_mesh(path) and path not in self._digests:
+            self._keep(path, _digest(path))
+
+    def hash_meshes(self, paths: Sequence[Path]) -> None:
+        """Hash mesh files, several at a time; what cannot be read is told when it is asked for."""
+        with ThreadPoolExecutor(min(HASHED_AT_ONCE, os.cpu_count() or 1)) as pool:
+            for path, digest in zip(paths, pool.map(_digest, paths), strict=True):
+                self._keep(path, digest)
+
+    def _keep(self, path: Path, digest: str | None) -> None:
+        if digest is not None:
+            self._digests[path] = digest
+
+    def content(self, path: Path) -> str | None:
+        """SHA-256 (hex) of a file, if it was read so far."""
+        return self._digests.get(path)
 
     def contents(self) -> dict[str, str]:
         """SHA-256 (hex) of every file that was read; {} where one changed meanwhile, or was not read."""
-        found = {self.shown(path): digest for path, digest in self._digests.items()}
-        for path, digest in self._texts.items():
-            try:
-                if content(path.read_bytes()) != digest:
-                    return {}
-            except OSError:
-                return {}
-            found[self.shown(path)] = digest
-        return found if set(found) == self.files else {}
+        if any(not is_mesh(path) and _digest(path) != digest for path, digest in self._digests.items()):
+            return {}
+        contents = {self.shown(path): digest for path, digest in self._digests.items()}
+        return contents if set(contents) == self.names else {}
 
-    def mesh(
-        self,
-        path: Path,
-        body: str | None,
-        metres: float,
-        weld: float | None,
-        solid: bool,
-        file: str,
-        line: int,
-    ) -> Mesh | None:
-        """The mesh of a file that `find` found; None after noting its faults at the manifest's line."""
-        key = (path, body, metres, weld, solid)
-        if key not in self._built:
+    def mesh(self, path: Path, use: MeshUse, file: str, line: int) -> Mesh | None:
+        """The mesh of a file that `find` gave; None after noting its faults at the manifest's line."""
+        key = (path, use)
+        if key not in self._meshes:
             try:
-                request = _Request(self.shown(path), self._content(path), body, metres, weld, solid)
-                built = self._earlier.get(request) or self._build(path, body, metres, weld, solid)
-                self._built[key] = self._same.setdefault((built.digest, built.path, body), built)
+                mesh = self._earlier.get((self.shown(path), self._mesh_content(path), use)) or self._build(path, use)
+                self._meshes[key] = self._same.setdefault((mesh.digest, mesh.path, use.body), mesh)
             except MeshError as error:
-                self._note(error, path, file, line)
-                self._built[key] = None
-        return self._built[key]
+                self._complain(error, path, file, line)
+                self._meshes[key] = None
+        return self._meshes[key]
 
-    def _build(self, path: Path, body: str | None, metres: float, weld: float | None, solid: bool) -> Mesh:
+    def _build(self, path: Path, use: MeshUse) -> Mesh:
         from kinform.form.meshes.bodies import select_body
         from kinform.form.meshes.health import build_mesh
 
         raw = self._read(path)
-        chosen = raw if body is None else select_body(raw, body)
-        return build_mesh(chosen, metres, weld, path=self.shown(path), body=body, solid=solid)
+        chosen = raw if use.body is None else select_body(raw, use.body)
+        return build_mesh(chosen, use.metres, use.weld, path=self.shown(path), body=use.body, solid=use.solid)
 
-    def look_at(self, paths: Sequence[Path]) -> None:
-        """Hash mesh files, several at a time; what cannot be read is told when it is asked for."""
-        with ThreadPoolExecutor(min(8, os.cpu_count() or 1)) as pool:
-            for path, found in zip(paths, pool.map(_content_or_none, paths), strict=True):
-                if found is not None:
-                    self._digests[path] = found
-
-    def content(self, path: Path) -> str | None:
-        """SHA-256 (hex) of a file that `find` found and that is no mesh; None where it cannot be read."""
-        return self._texts.get(path)
-
-    def _content(self, path: Path) -> str:
-        """SHA-256 (hex) of the file. Where its mesh may be known already the bytes are not kept."""
+    def _mesh_content(self, path: Path) -> str:
+        """SHA-256 (hex) of the file. Where its mesh may be there already the bytes are not kept."""
         if path not in self._digests:
             try:
                 if self._earlier:
-                    self._digests[path] = _content_of(path)
+                    with open(path, "rb") as stream:
+                        self._digests[path] = hashlib.file_digest(stream, "sha256").hexdigest()
                 else:
-                    self._digests[path] = content(self._bytes(path))
+                    self._digests[path] = hashlib.sha256(self._bytes(path)).hexdigest()
             except OSError as error:
-                raise MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")]) from None
+                raise _unreadable(error) from None
         return self._digests[path]
 
     def _bytes(self, path: Path) -> bytes:
         if path not in self._data:
             self._data[path] = path.read_bytes()
-            if self._digests.get(path, "") not in ("", content(self._data[path])):
+            if self._digests.get(path, "") not in ("", hashlib.sha256(self._data[path]).hexdigest()):
                 raise MeshError([Fault("changed while it was read", "run again when it is saved")])
         return self._data[path]
 
@@ -214,15 +204,19 @@ class Sources:
             except MeshError as error:
                 self._raw[path] = error
             except OSError as error:
-                self._raw[path] = MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])
-        found = self._raw[path]
-        if isinstance(found, MeshError):
-            raise found
-        return found
+                self._raw[path] = _unreadable(error)
+        raw = self._raw[path]
+        if isinstance(raw, MeshError):
+            raise raw
+        return raw
 
-    def _note(self, error: MeshError, path: Path, file: str, line: int) -> None:
+    def _complain(self, error: MeshError, path: Path, file: str, line: int) -> None:
         for fault in error.faults:
             if fault.line is not None:
                 self.problems.add(f"the mesh {fault.message}", self.shown(path), fault.line, fault.remedy)
             else:
                 self.problems.add(f"mesh {self.shown(path)} {fault.message}", file, line, fault.remedy)
+
+
+def _unreadable(error: OSError) -> MeshError:
+    return MeshError([Fault(f"cannot be read: {error.strerror}", "check its permissions")])

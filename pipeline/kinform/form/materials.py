@@ -38,6 +38,6 @@ BUILT_IN: dict[str, float] = {
 """kg/m³."""
 
 
-def density_of(name: str, own: dict[str, float]) -> float | None:
+def density_of(name: str, stated: dict[str, float]) -> float | None:
     """Density (kg/m³) of a material: the manifest's own table first, then the built-in; None if unknown."""
-    return own.get(name, BUILT_IN.get(name))
+    return stated.get(name, BUILT_IN.get(name))

@@ -6,33 +6,34 @@ import difflib
 from collections.abc import Iterable
 
 from kinform.errors import InputError, Problem
+from kinform.form.constants import CLOSE_NAMES, LISTED_NAMES, MEANT_NAMES
 
-__all__ = ["Problems", "did_you_mean", "listed", "quoted"]
+__all__ = ["Problems", "did_you_mean", "first_names", "in_quotes"]
 
 
-def quoted(name: object) -> str:
+def in_quotes(name: object) -> str:
     """A name as messages show it: in double quotes, control characters escaped."""
     text = str(name).encode("unicode_escape").decode("ascii") if not str(name).isprintable() else str(name)
     return f'"{text}"'
 
 
-def listed(names: Iterable[str], limit: int = 12) -> str:
+def first_names(names: Iterable[str], limit: int = LISTED_NAMES) -> str:
     """Names in order, comma separated; beyond the limit only their number."""
     names = list(names)
     text = ", ".join(names[:limit])
     return f"{text} and {len(names) - limit} more" if len(names) > limit else text
 
 
-def did_you_mean(name: str, known: Iterable[str], what: str) -> str:
-    """A remedy for a name that is not known: the closest known names, else all of them."""
-    known = sorted(set(known))
-    close = difflib.get_close_matches(name, known, n=2, cutoff=0.6)
-    folded = [k for k in known if k.casefold() == name.casefold()]
-    tails = [k for k in known if k.rpartition("/")[2] == name]
+def did_you_mean(name: str, names: Iterable[str], what: str) -> str:
+    """A remedy for a name that is none of the `names`: the closest of them, else all."""
+    choices = sorted(set(names))
+    close = difflib.get_close_matches(name, choices, n=MEANT_NAMES, cutoff=CLOSE_NAMES)
+    folded = [k for k in choices if k.casefold() == name.casefold()]
+    tails = [k for k in choices if k.rpartition("/")[2] == name]
     best = folded or close or tails
     if best:
-        return f"did you mean {' or '.join(quoted(b) for b in best[:2])}?"
-    return f"{what}: {listed(known)}" if known else f"there are no {what.removeprefix('the ')}"
+        return f"did you mean {' or '.join(in_quotes(b) for b in best[:MEANT_NAMES])}?"
+    return f"{what}: {first_names(choices)}" if choices else f"there are no {what.removeprefix('the ')}"
 
 
 class Problems:

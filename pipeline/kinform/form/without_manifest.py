@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
+from kinform.form.constants import LARGEST_ASSEMBLY, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY
 from kinform.form.files import read_raw
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
-from kinform.form.problems import Problems, did_you_mean, quoted
+from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function
@@ -22,9 +23,6 @@ from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 __all__ = ["doubts", "init_manifest", "load_meshes"]
-
-SMALLEST, LARGEST = 1e-3, 100.0
-"""Diagonals (m) outside of which a unit is doubted."""
 
 
 def load_meshes(
@@ -44,10 +42,10 @@ def load_meshes(
             mesh = build_mesh(raw, metres, None, path=path.name, body=body, solid=True)
         except MeshError as error:
             for fault in error.faults:
-                problems.add(f"{quoted(label)} {fault.message}", str(path), fault.line, fault.remedy)
+                problems.add(f"{in_quotes(label)} {fault.message}", str(path), fault.line, fault.remedy)
             continue
         if label in parts:
-            problems.add(f"two bodies are named {quoted(label)}", str(path), None, "rename a file or a body")
+            problems.add(f"two bodies are named {in_quotes(label)}", str(path), None, "rename a file or a body")
         parts[label] = Part(PartName(label), mesh, np.eye(4), True, None, density, None, units, Source(path.name))
     problems.raise_if_any()
     first = Path(paths[0])
@@ -79,7 +77,8 @@ def init_manifest(
     """Text of a manifest for these meshes, whose paths are written relative to the folder `relative_to`.
 
     `fastened` names parts that are probably one body, with the evidence; they are written as comments, ready to
-    be taken over. Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every problem.
+    be taken over. Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every
+    problem.
     """
     assembly = load_meshes(paths, units=units, name=name)
     where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
@@ -98,24 +97,21 @@ def init_manifest(
     for parts, evidence in hints:
         label = _free(f"{parts[0]}_body", taken)
         lines += [f"## {_text(sentence)[1:-1]}" for sentence in evidence.split("; ") if sentence]
-        lines += [
-            "# [[group]]", f"# name = {_text(label)}", f"# parts = [{', '.join(_text(part) for part in parts)}]",
-        ]  # fmt: skip
+        members = ", ".join(_text(part) for part in parts)
+        lines += ["# [[group]]", f"# name = {_text(label)}", f"# parts = [{members}]"]
     if not hints:
         lines += ["# [[group]]", '# name = "…"', '# parts = ["…", "…"]']
-    lines += [
-        "", "# What the device is for:", "# [function]", "# mobility = 1", "",
-    ]  # fmt: skip
+    lines += ["", "# What the device is for:", "# [function]", "# mobility = 1", ""]
     return "\n".join(lines)
 
 
 def _free(name: str, taken: set[str]) -> str:
     """The name, numbered if it is taken; taken from now on."""
-    found, number = name, 2
-    while found in taken:
-        found, number = f"{name}{number}", number + 1
-    taken.add(found)
-    return found
+    free, number = name, 2
+    while free in taken:
+        free, number = f"{name}{number}", number + 1
+    taken.add(free)
+    return free
 
 
 def doubts(assembly: Assembly) -> list[str]:
@@ -123,9 +119,10 @@ def doubts(assembly: Assembly) -> list[str]:
     units = assembly.units
     corners = np.concatenate([p.mesh.vertices for p in assembly.parts if p.mesh is not None])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
-    if SMALLEST <= size <= LARGEST:
+    if SMALLEST_ASSEMBLY <= size <= LARGEST_ASSEMBLY:
         return []
-    better = [u for u in UNITS if 0.01 <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= 10.0]
+    least, most = USUAL_ASSEMBLY
+    better = [u for u in UNITS if least <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= most]
     advice = f"; units = {' or '.join(_text(u) for u in better)} would be more usual" if better else ""
     return [f"doubtful: in {units} the assembly is {size:.3g} m across{advice}"]
 
@@ -137,7 +134,7 @@ def _text(value: str) -> str:
 def _metres(units: str, problems: Problems) -> float:
     if units in UNITS:
         return metres_per(units)
-    problems.add(f"unknown unit {quoted(units)}", None, None, did_you_mean(units, UNITS, "units"))
+    problems.add(f"unknown unit {in_quotes(units)}", None, None, did_you_mean(units, UNITS, "units"))
     return 1.0
 
 

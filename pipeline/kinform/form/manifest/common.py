@@ -1,6 +1,6 @@
 """Types that several tables of the manifest share.
 
-Pydantic checks shapes and types here; what one key says about another is checked in `checks`, where
+Pydantic checks shapes and types here; what one key says about another is checked in `form.readers`, where
 every problem can be given the line of its own key.
 """
 
@@ -43,10 +43,10 @@ JointType = Literal["fixed", "revolute", "prismatic", "cylindrical", "spherical"
 class Quantity:
     """What the value of a requirement's key is, so that it can be brought to SI, the world and full names.
 
-    length, angle: a number or list of numbers. point, direction, vector: three numbers, or a list of such.
+    length, angle: a number or list of numbers. point, direction: three numbers, or a list of such.
     joint_value: degrees or lengths by the type of the joint that `joint` names. joint_values: a list of
-    tables of them by joint. place, part, joint: a name or list of names. frame: lengths that stay in the
-    manifest's frame, whose pose is then added to the table as `X_WF`.
+    tables of them by joint. place, joint: a name or list of names. path: a CSV file, whose rows are added to the
+    table as `rows`. frame: lengths that stay in the manifest's frame, whose pose is then added as `X_WF`.
     """
 
     kind: str

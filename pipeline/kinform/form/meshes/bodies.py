@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import INSIDE, WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
-from kinform.form.problems import did_you_mean, quoted
+from kinform.form.problems import did_you_mean, in_quotes
 from kinform.foundation.meshes.edges import edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
@@ -27,7 +28,7 @@ def shell_bodies(raw: RawMesh) -> dict[str, RawMesh]:
     """Connected shells as "shell 1", "shell 2", …; a cavity belongs to the shell around it."""
     first, place = merge_exact(raw.vertices)
     vertices = raw.vertices[first].astype(np.float64)
-    leaders, close = merge_close(vertices, 1e-6 * float(np.linalg.norm(np.ptp(vertices, axis=0))))
+    leaders, close = merge_close(vertices, WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0))))
     vertices, faces = vertices[leaders], close[place[raw.faces]]
     a, b, c = faces.T
     whole = (a != b) & (b != c) & (c != a)
@@ -40,16 +41,16 @@ def shell_bodies(raw: RawMesh) -> dict[str, RawMesh]:
 
 def select_body(raw: RawMesh, name: str) -> RawMesh:
     """The body of that name; raises MeshError with the names there are."""
-    known = {
+    bodies = {
         n or "unnamed": (labelling.labels == k) for labelling in raw.labellings for k, n in enumerate(labelling.names)
     }
-    if name in known:
-        return _part(raw, known[name])
+    if name in bodies:
+        return _part(raw, bodies[name])
     shells = shell_bodies(raw)
     if name in shells:
         return shells[name]
-    remedy = did_you_mean(name, [*known, *shells], "the bodies of the file")
-    raise MeshError([Fault(f"has no body {quoted(name)}", remedy)])
+    remedy = did_you_mean(name, [*bodies, *shells], "the bodies of the file")
+    raise MeshError([Fault(f"has no body {in_quotes(name)}", remedy)])
 
 
 def _part(raw: RawMesh, chosen: NDArray[np.bool_]) -> RawMesh:
@@ -67,7 +68,7 @@ def _with_cavities(vertices: Array, faces: Ints, label: Ints) -> Ints:
             continue
         probe = vertices[faces[label == k][0]].mean(axis=0)
         around = [
-            j for j in shells if volume[j] > abs(volume[k]) and _winding(vertices, faces[label == j], probe) > 0.5
+            j for j in shells if volume[j] > abs(volume[k]) and _winding(vertices, faces[label == j], probe) > INSIDE
         ]
         if around:
             out[label == k] = min(around, key=lambda j: volume[j])

@@ -7,6 +7,7 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import FLAT, SLIVER, WELD_SHARE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
@@ -15,10 +16,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, MeshHealth
 
 __all__ = ["build_mesh"]
-
-
-FLAT = 1e-9
-"""A solid thinner than this share of its size has no volume."""
 
 
 def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool) -> Mesh:
@@ -53,7 +50,7 @@ def _welded(raw: RawMesh, metres: float, weld: float | None) -> tuple[Array, Int
     first, place = merge_exact(raw.vertices)
     vertices = np.ascontiguousarray(raw.vertices[first].astype(np.float64) * metres)
     faces = place[raw.faces]
-    distance = 1e-6 * float(np.linalg.norm(np.ptp(vertices, axis=0))) if weld is None else weld
+    distance = WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0))) if weld is None else weld
     leaders, close = merge_close(vertices, distance)
     welded: Array = vertices[leaders]
     return welded, close[faces], distance
@@ -78,7 +75,7 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
     sides = [corners[:, k] - corners[:, k - 1] for k in range(3)]
     doubled = np.cross(sides[1], sides[2])
     longest = np.max([np.einsum("ij,ij->i", side, side) for side in sides], axis=0)
-    slivers = int(np.count_nonzero(np.einsum("ij,ij->i", doubled, doubled) <= 1e-24 * longest**2))
+    slivers = int(np.count_nonzero(np.einsum("ij,ij->i", doubled, doubled) <= SLIVER * longest**2))
     duplicates = _duplicates(faces, len(vertices))
     watertight = edges.open == 0 and edges.overused == 0
     return MeshHealth(
@@ -107,8 +104,8 @@ def _duplicates(faces: Ints, count: int) -> int:
     alike = np.flatnonzero(np.diff(pair[order]) == 0)
     if not len(alike):
         return 0
-    some = np.unique(np.r_[order[alike], order[alike + 1]])
-    return len(some) - len(np.unique(np.stack([pair[some], middle[some]], axis=1), axis=0))
+    facets = np.unique(np.r_[order[alike], order[alike + 1]])
+    return len(facets) - len(np.unique(np.stack([pair[facets], middle[facets]], axis=1), axis=0))
 
 
 def _manifold_status(vertices: Array, faces: Ints) -> str:

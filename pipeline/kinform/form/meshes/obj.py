@@ -15,8 +15,10 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import FAULTS_SHOWN
 from kinform.form.meshes.polygons import triangulate
-from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, plural
+from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh
+from kinform.foundation.words import counted
 
 __all__ = ["parse_obj", "read_obj"]
 
@@ -27,7 +29,6 @@ _FREEFORM = frozenset(
     "cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bzp cdc cdp res".split()
 )
 _AFTER_SLASH = re.compile(r"/\S*")
-_FAULTS_SHOWN = 10
 
 
 class _Lines:
@@ -58,10 +59,10 @@ def parse_obj(text: str) -> RawMesh:
     vertices = _vertices(lines)
     corners, sizes = _corners(lines, len(vertices))
     if lines.faults:
-        hidden = len(lines.faults) - _FAULTS_SHOWN
-        faults = sorted(lines.faults, key=lambda f: f.line or 0)[:_FAULTS_SHOWN]
+        hidden = len(lines.faults) - FAULTS_SHOWN
+        faults = sorted(lines.faults, key=lambda f: f.line or 0)[:FAULTS_SHOWN]
         if hidden > 0:
-            faults.append(Fault(f"has {plural(hidden, 'more fault')} of this sort", REEXPORT))
+            faults.append(Fault(f"has {counted(hidden, 'more fault')} of this sort", REEXPORT))
         raise MeshError(faults)
     if not len(sizes):
         raise MeshError([Fault("is empty: it has no face", REEXPORT)])
@@ -69,10 +70,10 @@ def parse_obj(text: str) -> RawMesh:
     if len(crossed):
         raise MeshError([
             Fault(
-                f"has a polygon of {plural(int(sizes[p]), 'corner')} that crosses itself, at line "
+                f"has a polygon of {counted(int(sizes[p]), 'corner')} that crosses itself, at line "
                 f"{lines.face_lines[p]}", "export triangles", lines.face_lines[p],
             )
-            for p in crossed[:_FAULTS_SHOWN]
+            for p in crossed[:FAULTS_SHOWN]
         ])  # fmt: skip
     labellings = (
         _labelling("object", lines.objects, np.array(lines.face_object)[owner]),
@@ -150,7 +151,7 @@ def _vertices(lines: _Lines) -> NDArray[np.float64]:
         except ValueError:
             numbers = []
         if len(row) not in (3, 4, 6, 7):
-            message = f"has a vertex of {plural(len(row), 'value')} at line {number}; it needs 3"
+            message = f"has a vertex of {counted(len(row), 'value')} at line {number}; it needs 3"
             lines.faults.append(Fault(message, f"write v x y z, or {REEXPORT}", number))
         elif not numbers or not all(map(math.isfinite, numbers[:3])):
             message = f"has a vertex that is not three finite numbers at line {number}"
@@ -167,7 +168,7 @@ def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.i
     for short in np.flatnonzero(sizes < 3):
         face = int(short)
         number = lines.face_lines[face]
-        message = f"has a face of {plural(int(sizes[face]), 'corner')} at line {number}; it needs 3"
+        message = f"has a face of {counted(int(sizes[face]), 'corner')} at line {number}; it needs 3"
         lines.faults.append(Fault(message, REEXPORT, number))
     try:
         stated = np.array(list(map(int, chain.from_iterable(tokens))), dtype=np.int64)
@@ -191,5 +192,7 @@ def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.i
 def _index_fault(stated: int, line: int, before: int, count: int) -> Fault:
     if stated == 0:
         return Fault(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
-    known = f"{plural(before, 'vertex')} precede it" if stated < 0 else f"the file has {plural(count, 'vertex')}"
-    return Fault(f"has index {stated} out of range at line {line}: {known}", f"correct it, or {REEXPORT}", line)
+    count_there = (
+        f"{counted(before, 'vertex')} precede it" if stated < 0 else f"the file has {counted(count, 'vertex')}"
+    )
+    return Fault(f"has index {stated} out of range at line {line}: {count_there}", f"correct it, or {REEXPORT}", line)

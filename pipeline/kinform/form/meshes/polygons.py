@@ -9,13 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import CUT_AREA, NO_TRIANGLE
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["triangulate"]
-
-
-_SLACK = 1e-9
-"""Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""
 
 
 def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:
@@ -67,7 +65,7 @@ def _fan(vertices: Array, polygons: Ints) -> tuple[Ints, NDArray[np.bool_]]:
     length = np.linalg.norm(normal, axis=1)
     along = np.einsum("pti,pi->pt", doubled, normal)
     flat = np.linalg.norm(doubled, axis=2).max(axis=1) == 0
-    return fan, flat | (along > _SLACK * (length**2)[:, None]).all(axis=1)
+    return fan, flat | (along > NO_TRIANGLE * (length**2)[:, None]).all(axis=1)
 
 
 def _cut(vertices: Array, polygon: Ints) -> Ints | None:
@@ -78,20 +76,18 @@ def _cut(vertices: Array, polygon: Ints) -> Ints | None:
     normal = np.cross(p, np.roll(p, -1, axis=0)).sum(axis=0)
     area = float(np.linalg.norm(normal))
     spread = float(np.abs(p).max())
-    if area <= _SLACK * spread**2:
+    if area <= NO_TRIANGLE * spread**2:
         fan = np.stack([np.full(len(p) - 2, polygon[0]), polygon[1:-1], polygon[2:]], axis=1)
         a, b, c = (vertices[fan[:, i]] for i in range(3))
-        collinear = np.abs(np.cross(b - a, c - a)).max() <= _SLACK * spread**2
+        collinear = np.abs(np.cross(b - a, c - a)).max() <= NO_TRIANGLE * spread**2
         return fan if collinear else None
     normal /= area
-    u = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    u /= np.linalg.norm(u)
-    flat = np.stack([p @ u, p @ np.cross(normal, u)], axis=1)
+    flat = np.stack([-(p @ across) for across in perpendicular(normal)], axis=1)
     triangles = np.asarray(cut([flat]), dtype=np.int64)
     if len(triangles) != len(p) - 2:
         return None
     a, b, c = (flat[triangles[:, i]] for i in range(3))
     doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    if doubled.min() < -_SLACK * area or abs(doubled.sum() - area) > 1e-6 * area:
+    if doubled.min() < -NO_TRIANGLE * area or abs(doubled.sum() - area) > CUT_AREA * area:
         return None
     return polygon[triangles]

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Fault", "Labelling", "MeshError", "RawMesh"]
+__all__ = ["REEXPORT", "Fault", "Labelling", "MeshError", "RawMesh", "soup"]
 
 REEXPORT = "export the mesh again"
+"""The remedy where nothing else helps."""
 
 
 @dataclass(frozen=True)
@@ -55,10 +56,3 @@ def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = ()) 
     """A raw mesh of (F, 3, 3) facet corners, none of them shared."""
     faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
     return RawMesh(corners.reshape(-1, 3), faces, labellings)
-
-
-def plural(count: int, noun: str) -> str:
-    """ "1 facet", "3 facets"."""
-    if noun.endswith("x"):
-        return f"{count} {noun}" if count == 1 else f"{count} {noun[:-2]}ices"
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

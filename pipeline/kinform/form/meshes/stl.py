@@ -13,7 +13,8 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, plural, soup
+from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, soup
+from kinform.foundation.words import counted
 
 __all__ = ["parse_ascii", "parse_binary", "read_stl"]
 
@@ -53,7 +54,7 @@ def _wrong_size(size: int, count: int | None) -> Fault:
     need = _HEADER + _RECORD.itemsize * count
     return Fault(
         f"is truncated: its header claims {count} facets, which take {need} bytes, and it has {size}",
-        f"{REEXPORT}; the file holds at most {plural(max(0, size - _HEADER) // _RECORD.itemsize, 'facet')}",
+        f"{REEXPORT}; the file holds at most {counted(max(0, size - _HEADER) // _RECORD.itemsize, 'facet')}",
     )
 
 
@@ -72,7 +73,7 @@ def parse_binary(data: bytes) -> RawMesh:
     if not finite.all():
         bad = np.flatnonzero(~finite)
         raise MeshError([Fault(
-            f"has a vertex that is not a finite number in {plural(len(bad), 'facet')}, "
+            f"has a vertex that is not a finite number in {counted(len(bad), 'facet')}, "
             f"the first is facet {bad[0] + 1} of {count}", REEXPORT,
         )])  # fmt: skip
     return soup(corners)

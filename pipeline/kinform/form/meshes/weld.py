@@ -10,15 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import CROWD, SAMPLED_CROWDS
 from kinform.form.meshes.raw import Fault, MeshError
 from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["merge_close", "merge_exact", "used_only"]
-
-
-_SAMPLE, _CROWD = 500, 50
-"""Vertices whose surroundings are counted, and the mean count above which a mesh would collapse."""
 
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]
@@ -98,8 +95,8 @@ def _close_pairs(vertices: Array, distance: float) -> Ints:
     if len(some) < 2:
         return np.zeros((0, 2), np.int64)
     near = Near(vertices[some], distance)
-    crowd = near.about(np.arange(0, len(some), max(1, len(some) // _SAMPLE))).mean()
-    if crowd > _CROWD:
+    crowd = near.about(np.arange(0, len(some), max(1, len(some) // SAMPLED_CROWDS))).mean()
+    if crowd > CROWD:
         raise MeshError([Fault(
             f"would collapse: within the welding distance ({distance:.3g} m) of a vertex lie {crowd:.0f} "
             "others on average",

@@ -11,10 +11,10 @@ import numpy as np
 
 from kinform.form.readers.scope import Scope
 
-__all__ = ["columns", "path_rows"]
+__all__ = ["law_rows", "path_rows"]
 
 
-def columns(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Times (strictly ascending) and values of a file; a header line and further columns are allowed.
 
     What is wrong with it becomes a problem of the scope, under the name that is `shown`.
@@ -35,7 +35,7 @@ def columns(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tu
 
 
 def path_rows(scope: Scope, path: Path, shown: str) -> list[list[float]]:
-    """Rows of time, point (m) and perhaps quaternion wxyz, in the world; problems as in `columns`."""
+    """Rows of time, point (m) and perhaps quaternion wxyz, in the world; problems as in `law_rows`."""
     from scipy.spatial.transform import Rotation
 
     out: list[list[float]] = []

@@ -12,10 +12,6 @@ from kinform.model.arrays import Array
 __all__ = ["pose", "quaternion_rotation", "rpy_rotation", "unit_error"]
 
 
-UNIT = 1e-6
-"""A quaternion whose length is off by more than this was not meant as a rotation."""
-
-
 def quaternion_rotation(wxyz: Sequence[float]) -> Array:
     """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""
     w, x, y, z = np.asarray(wxyz, dtype=float) / np.linalg.norm(wxyz)

@@ -7,8 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from kinform.form.constants import VALUE_LENGTH
 from kinform.form.manifest import json_schema
-from kinform.form.problems import Problems, did_you_mean, listed, quoted
+from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
 from kinform.form.readers.toml_lines import LineTable, Path
 
 __all__ = ["names_of", "report", "without_errors"]
@@ -41,7 +42,7 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
         return f"{where}: {key} is missing", remedy
     if kind == "extra_forbidden":
         known = sorted(owner.get("properties", {}))
-        return f"{where}: unknown key {quoted(key)}", did_you_mean(key, known, "the keys here")
+        return f"{where}: unknown key {in_quotes(key)}", did_you_mean(key, known, "the keys here")
     name = _shown_key(path)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = context["discriminator"].strip("'")
@@ -49,7 +50,7 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
             return f"{where}: {tag} is missing", f"add {tag}: {_choices(node)}"
         choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
         remedy = did_you_mean(str(context["tag"]), choices, f"the values of {tag}")
-        return f"{where}: {tag} cannot be {quoted(context['tag'])}", remedy
+        return f"{where}: {tag} cannot be {in_quotes(context['tag'])}", remedy
     if kind == "literal_error":
         choices = node.get("enum") or [node.get("const", "")]
         remedy = did_you_mean(str(item["input"]), [str(c) for c in choices], "the choices")
@@ -149,7 +150,7 @@ def _label(path: Path, raw: Any) -> str:
     if not keys:
         return "the manifest"
     label = f"[[{'.'.join(keys)}]]" if listed_table else f"[{'.'.join(keys)}]"
-    return f"{label} {quoted(name)}" if name and keys[0] != "assembly" else label
+    return f"{label} {in_quotes(name)}" if name and keys[0] != "assembly" else label
 
 
 def _entry(value: Any, step: str | int) -> Any:
@@ -175,14 +176,14 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return quoted(value)
+        return in_quotes(value)
     if isinstance(value, dict):
         return "a table"
-    return str(value) if len(str(value)) <= 60 else f"{str(value)[:57]}…"
+    return str(value) if len(str(value)) <= VALUE_LENGTH else f"{str(value)[: VALUE_LENGTH - 3]}…"
 
 
 def _choices(node: dict[str, Any]) -> str:
-    return listed(_tags(node))
+    return first_names(_tags(node))
 
 
 def _tags(node: dict[str, Any]) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,9 +53,25 @@ class Scope:
         key: KeyPath = path
         return self.lines.line(key)
 
-    def source(self, *path: str | int) -> Source:
+    def where(self, *path: str | int) -> tuple[str, int]:
         """File and line of a key."""
-        return Source(self.file, self.line(*path))
+        return self.file, self.line(*path)
+
+    def tables(self, *keys: str) -> Iterator[tuple[tuple[Any, ...], Any]]:
+        """The tables of an array such as "function", "joint", each with its path."""
+        value: Any = self.manifest
+        for key in keys:
+            value = () if value is None else getattr(value, key)
+        for k, table in enumerate(value or ()):
+            yield (*keys, k), table
+
+    def local_names(self, names: Iterable[str]) -> list[str]:
+        """Those of the full names that this manifest can say, as it says them."""
+        return [name.removeprefix(self.prefix) for name in names if name.startswith(self.prefix)]
+
+    def source(self, *path: str | int) -> Source:
+        """File and line of a key, as the model keeps them."""
+        return Source(*self.where(*path))
 
     def complain(self, message: str, remedy: str, *path: str | int) -> None:
         """Note a problem at a key."""
@@ -72,14 +89,14 @@ class Scope:
 
     def direction(self, stated: list[float] | None, *path: str | int) -> Array | None:
         """A unit vector in the world; a zero one is a problem."""
-        found = self.vector(stated)
-        if found is None:
+        vector = self.vector(stated)
+        if vector is None:
             return None
-        size = float(np.linalg.norm(found))
+        size = float(np.linalg.norm(vector))
         if size == 0.0:
             self.complain("an axis or direction is zero", "give a direction such as [0, 0, 1]", *path)
             return np.array([0.0, 0.0, 1.0])
-        return found / size
+        return vector / size
 
 
 def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTable, frozenset[str]] | None:
@@ -96,10 +113,10 @@ def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTabl
     try:
         raw: dict[str, Any] = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        told = str(error)
-        place = _PLACE.search(told)
+        text_of_error = str(error)
+        place = _PLACE.search(text_of_error)
         line = int(place[1]) if place else text.count("\n") + 1
-        message = "not valid TOML: " + _PLACE.sub("", told).replace("(at end of document)", "").strip()
+        message = "not valid TOML: " + _PLACE.sub("", text_of_error).replace("(at end of document)", "").strip()
         problems.add(message, file, line, "correct the syntax: see toml.io")
         return None
     lines = LineTable(text)

@@ -40,9 +40,8 @@ class LineTable:
     def line(self, path: Path) -> int:
         """Line of the path, or of the closest table or key around it (1 for an empty path)."""
         for length in range(len(path), 0, -1):
-            found = self._lines.get(path[:length])
-            if found is not None:
-                return found
+            if path[:length] in self._lines:
+                return self._lines[path[:length]]
         return 1
 
     def without(self, dropped: Collection[Path]) -> LineTable:
@@ -115,10 +114,9 @@ class LineTable:
 
     def _key(self) -> str:
         for pattern in (_BASIC, _LITERAL):
-            found = pattern.match(self._text, self._position)
-            if found:
-                self._position = found.end()
-                return str(tomllib.loads("k = " + found[0])["k"])
+            text = self._skip(pattern)
+            if text:
+                return str(tomllib.loads("k = " + text)["k"])
         return self._skip(_BARE)
 
     def _value(self, path: Path) -> None:
@@ -163,11 +161,11 @@ class LineTable:
         return self._text.startswith(character, self._position)
 
     def _skip(self, pattern: re.Pattern[str]) -> str:
-        found = pattern.match(self._text, self._position)
-        if not found:
+        match = pattern.match(self._text, self._position)
+        if not match:
             return ""
-        self._position = found.end()
-        return found[0]
+        self._position = match.end()
+        return match[0]
 
     def _here(self) -> int:
         self._line += self._text.count("\n", self._counted_to, self._position)

@@ -1,0 +1,81 @@
+"""The numbers that decide how manifests and meshes are read, by the module that uses them.
+
+What users may set is in `Tolerances`. Where no measurement is named, a number is a choice.
+"""
+
+from __future__ import annotations
+
+# ---- problems
+
+CLOSE_NAMES = 0.6
+"""Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
+
+MEANT_NAMES = 2
+"""Names that are proposed, at most."""
+
+LISTED_NAMES = 12
+"""Known names that are listed where none is close."""
+
+# ---- readers
+
+UNIT_QUATERNION = 1e-6
+"""A quaternion whose length is off by more than this was not meant as a rotation."""
+
+PARALLEL_AXES = 1e-6
+"""Sine of the angle between the two axes of a universal joint below which they are one."""
+
+SYMMETRIC = 1e-9
+"""Relative difference up to which the two halves of an inertia are alike: what twelve printed digits lose."""
+
+OUTPUTS = 1_000_000
+"""Output times of a run: more would fill the memory before anything is solved."""
+
+VALUE_LENGTH = 60
+"""Characters of a wrong value that a message shows."""
+
+# ---- files
+
+HASHED_AT_ONCE = 8
+"""Mesh files that are hashed at the same time: more gain nothing on one disk."""
+
+# ---- without_manifest
+
+SMALLEST_ASSEMBLY = 1e-3
+"""Diagonal (m) below which a unit is doubted."""
+
+LARGEST_ASSEMBLY = 100.0
+"""Diagonal (m) above which a unit is doubted."""
+
+USUAL_ASSEMBLY = (0.01, 10.0)
+"""Diagonals (m) between which another unit is proposed."""
+
+# ---- meshes.weld, meshes.health, meshes.bodies
+
+WELD_SHARE = 1e-6
+"""Welding distance in diagonals of the mesh, where none is stated: ten roundings of single precision."""
+
+SAMPLED_CROWDS = 500
+"""Vertices whose surroundings are counted before they are welded."""
+
+CROWD = 50
+"""Mean number of others within the welding distance of a vertex, above which a mesh would collapse."""
+
+FLAT = 1e-9
+"""A solid thinner than this share of its size has no volume."""
+
+SLIVER = 1e-24
+"""Squared altitude of a degenerate facet, in squares of its longest side."""
+
+INSIDE = 0.5
+"""Winding number above which a point lies in a shell: it is 1 inside and 0 outside."""
+
+# ---- meshes.polygons, meshes.obj
+
+NO_TRIANGLE = 1e-9
+"""Share of a polygon's area below which a triangle is no triangle: a fan with such ones is not taken."""
+
+CUT_AREA = 1e-6
+"""Share of a polygon's area that its triangles may miss or have twice."""
+
+FAULTS_SHOWN = 10
+"""Faults of one mesh file that are listed, at most."""
