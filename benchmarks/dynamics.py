@@ -18,7 +18,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "pipeline"), str(ROOT / "tests")]
 
-from portmodels import DOWN, Model, bricard, four_bars  # noqa: E402
+from support.port_models import DOWN, Model, bricard, four_bars  # noqa: E402
 
 from kinform.behaviour import RigidBody  # noqa: E402
 from kinform.foundation.algebra.spatial import to_matrix  # noqa: E402

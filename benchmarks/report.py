@@ -13,12 +13,12 @@ from pathlib import Path
 from kinform import results
 from kinform.reports.page import page_html
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "page"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 
 def opened(text: str) -> float:
     """Seconds from asking for the page until its first picture is drawn; nan without a browser."""
-    from browser import Browser, program
+    from support.browser import Browser, program
 
     if program() is None:
         return float("nan")

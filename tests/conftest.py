@@ -9,8 +9,8 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
-from known import FIXTURES
-from once import common, once
+from support.once import common, once
+from support.places import FIXTURES
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 import kinform
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from designs import difference
-from known import FIXTURES, ROOT
+from support.designs import difference
+from support.places import FIXTURES, ROOT
 
 from kinform import results
 from kinform.behaviour import Behaviour, Constant, Controller, Model, Sine, System, flat

@@ -7,9 +7,9 @@ import pickle
 
 import numpy as np
 import pytest
-from designs import difference
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.designs import difference
 
 from kinform.behaviour import Component, Constant, Model, Sine, System, count, counts, flat, nest, placed
 from kinform.behaviour.homes import homes

@@ -6,8 +6,8 @@ import dataclasses
 import json
 
 import pytest
-from fixtures.generators.solids import box, join
-from written import manifest
+from generators.solids import box, join
+from support.manifests import manifest
 
 from kinform import stages
 from kinform.changes import compare, read_lock, snapshot, with_lock, write_lock

@@ -7,7 +7,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform.changes import Tolerance, compare, read_lock, snapshot, with_lock, write_lock
 from kinform.consistency import verdict

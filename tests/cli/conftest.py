@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from commands import Ran, environment, ran_here
+from support.command_line import Ran, environment, ran_here
 
 
 @pytest.fixture

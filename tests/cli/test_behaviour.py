@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from written import stated_joint, stated_part
+from support.manifests import stated_joint, stated_part
 
 from kinform_cli.main import main
 

@@ -8,7 +8,7 @@ import shutil
 import sqlite3
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import results
 from kinform.catalog import many

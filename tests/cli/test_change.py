@@ -11,8 +11,8 @@ import subprocess
 import sys
 
 import pytest
-from commands import environment, listening
-from known import FIXTURES
+from support.command_line import environment, listening
+from support.places import FIXTURES
 
 from kinform_cli.main import main
 

@@ -9,7 +9,7 @@ from importlib.metadata import entry_points
 
 import pytest
 import typer
-from commands import Ran, environment
+from support.command_line import Ran, environment
 
 from kinform import __version__
 from kinform_cli.app import COMMANDS as REGISTERED

@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform_cli.main import main
 

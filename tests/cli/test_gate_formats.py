@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from commands import environment
-from known import FIXTURES
+from support.command_line import environment
+from support.places import FIXTURES
 
 from kinform import results
 from kinform.model.findings import CheckReport, Finding, RuleOutcome

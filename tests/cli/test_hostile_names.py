@@ -7,7 +7,7 @@ import shutil
 from xml.etree import ElementTree
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform_cli.main import main
 from kinform_cli.options import FindingsFormat

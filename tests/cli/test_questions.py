@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform_cli.main import main
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from slots import lever_between_pegs
+from support.slots import lever_between_pegs
 
 from kinform.results import read
 from kinform_cli.main import main

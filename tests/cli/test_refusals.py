@@ -11,8 +11,8 @@ import time
 
 import h5py
 import pytest
-from commands import environment, listening
-from known import FIXTURES
+from support.command_line import environment, listening
+from support.places import FIXTURES
 
 PAIR = FIXTURES / "pairs" / "revolute_collars"
 NAME = "revolute_collars.toml"

@@ -16,9 +16,9 @@ from termios import TIOCSWINSZ
 
 import numpy as np
 import pytest
-from commands import environment
-from known import FIXTURES
 from rich.console import Console
+from support.command_line import environment
+from support.places import FIXTURES
 
 from kinform import results, stages
 from kinform_cli.tables import stacked

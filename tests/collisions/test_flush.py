@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from slots import SLOT, block_in_slot, derived, moved
-from solids import box, random_pose, rod
+from support.slots import SLOT, block_in_slot, derived, moved
+from support.solids import box, random_pose, rod
 
 from kinform import collisions
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from slots import derived
-from solids import box
+from support.slots import derived
+from support.solids import box
 
 from kinform.function.clearances import apart
 

@@ -8,9 +8,9 @@ from re import search
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from slots import lever_between_pegs
-from solids import assembly, box, part, random_pose, rod
+from support.places import FIXTURES
+from support.slots import lever_between_pegs
+from support.solids import assembly, box, part, random_pose, rod
 
 from kinform import collisions, contacts, kinematics, stages, surfaces
 from kinform.consistency import check

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from slots import block_in_slot, derived, moved
-from solids import box, rod
+from support.slots import block_in_slot, derived, moved
+from support.solids import box, rod
 
 from kinform import collisions
 from kinform.function.clearances import apart

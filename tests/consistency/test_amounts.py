@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
-from devices import body, rod
-from known import FIXTURES
-from requiring import ORIGIN, X, Y, Z, arm, design, state, wheel
+from support.devices import body, rod
+from support.places import FIXTURES
+from support.requirements import ORIGIN, X, Y, Z, arm, design, state, wheel
 
 
 def test_masses_are_compared_with_their_bounds():

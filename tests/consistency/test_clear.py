@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import intended, sine
-from known import FIXTURES
-from requiring import ORIGIN, THIN, WALL, bar, state
+from support.devices import intended, sine
+from support.places import FIXTURES
+from support.requirements import ORIGIN, THIN, WALL, bar, state
 
 from kinform.model.assembly import Group
 from kinform.model.function import Function

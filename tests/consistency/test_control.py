@@ -8,12 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known import FIXTURES
+from support.mistakes import ignore
+from support.places import FIXTURES
 
 from kinform import form, results, stages
 from kinform.consistency import adopt, check, read_baseline, verdict, with_baseline
 from kinform.errors import InputError
-from kinform.model.checks import CheckSettings, Ignore
+from kinform.model.checks import CheckSettings
 from kinform.model.contacts import Interference
 from kinform.model.function import Requirement
 from kinform.reports import FORMATS, render
@@ -42,10 +43,6 @@ def doubtful(design):
 def controlled(design, **settings):
     given = CheckSettings(file="m.toml", line=30, **settings)
     return replace(design, assembly=replace(design.assembly, check=given))
-
-
-def ignore(code, subject=None, reason="it is meant"):
-    return Ignore(code, subject, reason, "m.toml", 33)
 
 
 def outcome(report, code):

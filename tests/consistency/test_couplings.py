@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gearing import cam_and_follower, gear_pair
-from known import FIXTURES
-from solids import assembly, part
+from support.gear_trains import cam_and_follower, gear_pair
+from support.places import FIXTURES
+from support.solids import assembly, part
 
 from kinform import contacts, kinematics, stages, surfaces
 from kinform.consistency import check, verdict

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fixtures.generators.solids import bore, box, cut, join, rod
-from written import manifest, stated_joint
+from generators.solids import bore, box, cut, join, rod
+from support.manifests import manifest, stated_joint
 
 from kinform import stages
 from kinform.consistency import check

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fixtures.generators.solids import box, join
-from known import FIXTURES
-from requiring import WALL, bar, requiring, state
-from written import manifest
+from generators.solids import box, join
+from support.manifests import manifest
+from support.places import FIXTURES
+from support.requirements import WALL, bar, requiring, state
 
 from kinform import stages
 from kinform.consistency import check

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform.consistency import verdict
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import drive
-from requiring import G, arm, parallelogram, state
+from support.devices import drive
+from support.requirements import G, arm, parallelogram, state
 
 from kinform.mass import compile_mass
 from kinform.model.function import Load

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from requiring import CODES
+from support.requirements import CODES
 
 from kinform.consistency import RULES
 from kinform.consistency.requirements import RequirementRule

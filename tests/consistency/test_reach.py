@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from requiring import arm, gimbal, parallelogram, state
+from support.requirements import arm, gimbal, parallelogram, state
 
 
 def places(*points):

@@ -8,14 +8,19 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from known import FIXTURES
-from linkages import KNOWN, manifest
+from support.linkages import KNOWN, manifest
+from support.mistakes import (
+    UNDECIDED,
+    WRONG,
+    changed_function,
+    changed_mesh,
+    with_function,
+)
+from support.places import FIXTURES
 
 from kinform.consistency import RULES, UnknownRuleError, check, explain, verdict
-from kinform.model.contacts import Interference
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
-from kinform.model.function import Coupling, Drive, Function, IntendedJoint, Law, Load, Requirement, SimulationRequest
-from kinform.model.kinematics import Blocker
+from kinform.model.function import Function, IntendedJoint, SimulationRequest
 
 HINGE = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 
@@ -27,84 +32,6 @@ def hinge(derive_design):
     joint = design.kinematics.joints[0]
     stated = IntendedJoint("swing", joint.bodies, "revolute", joint.axis, None, joint.point, None, None, "m.toml", 20)
     return with_function(design, Function(mobility=1, mobility_line=19, joints=(stated,)))
-
-
-def with_function(design, function):
-    return replace(design, assembly=replace(design.assembly, function=function))
-
-
-def changed_function(design, **changes):
-    return with_function(design, replace(design.assembly.function, **changes))
-
-
-def changed_joint(design, **changes):
-    kinematics = design.kinematics
-    return replace(design, kinematics=replace(kinematics, joints=(replace(kinematics.joints[0], **changes),)))
-
-
-def changed_intent(design, **changes):
-    stated = replace(design.assembly.function.joints[0], **changes)
-    return changed_function(design, joints=(stated,))
-
-
-def changed_mesh(design, **health):
-    first, *rest = design.assembly.parts
-    mesh = replace(first.mesh, health=replace(first.mesh.health, **health))
-    return replace(design, assembly=replace(design.assembly, parts=(replace(first, mesh=mesh), *rest)))
-
-
-def overlapping(design, mated):
-    overlap = Interference(("block", "shaft"), 1e-9, 1e-4, np.zeros(3), mated, "manifold")
-    return replace(design, contacts=replace(design.contacts, interferences=(overlap,)))
-
-
-def tilted(axis, degrees):
-    across = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
-    across /= np.linalg.norm(across)
-    return np.cos(np.radians(degrees)) * axis + np.sin(np.radians(degrees)) * across
-
-
-def drive(joint, kind="motion"):
-    return Drive(joint, kind, Law("constant"), {}, 1e-3, "m.toml", 30)
-
-
-def blocked(design):
-    blocker = Blocker(("block", "shaft"), 0, 1e-6, 0.05, np.zeros(3), 0.0, "rotation about (0, 0, 1)")
-    return changed_joint(design, status="blocked", blockers=(blocker,), reason="1 of 4 patches left out")
-
-
-WRONG = {
-    "KF101": lambda d: changed_mesh(d, watertight=False, open_edges=3),
-    "KF102": lambda d: changed_mesh(d, volume=-1e-6),
-    "KF103": lambda d: changed_mesh(d, consistent_winding=False),
-    "KF104": lambda d: changed_mesh(d, manifold_status="NotManifold"),
-    "KF105": lambda d: changed_mesh(d, degenerate_facets=2),
-    "KF106": lambda d: changed_mesh(d, duplicate_facets=2),
-    "KF107": lambda d: changed_mesh(d, shells=2),
-    "KF201": lambda d: overlapping(d, mated=False),
-    "KF202": lambda d: overlapping(d, mated=True),
-    "KF204": blocked,
-    "KF205": lambda d: changed_joint(d, status="inferred", evidence=("rim",)),
-    "KF206": lambda d: replace(
-        d, kinematics=replace(d.kinematics, misaligned=((d.kinematics.joints[0].name, 0.01, 0.0),))
-    ),
-    "KF301": lambda d: changed_function(d, mobility=2),
-    "KF402": lambda d: changed_intent(d, type="prismatic", point=None),
-    "KF403": lambda d: changed_intent(d, axis=tilted(d.assembly.function.joints[0].axis, 0.5)),
-    "KF404": lambda d: changed_intent(d, point=d.assembly.function.joints[0].point + np.array([0.002, 0.001, -0.003])),
-    "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),
-}
-UNDECIDED = {
-    "KF901": lambda d: changed_joint(d, status="ambiguous", reason="singular value 0.001"),
-    "KF902": lambda d: changed_function(
-        d, requirements=(Requirement("weak", "torque", {"joint": "swing", "limit": 1.0}, "m.toml", 40),)
-    ),
-    "KF903": lambda d: changed_function(d, couplings=(Coupling(("swing", "swing"), 2.0, "m.toml", 40),)),
-    "KF904": lambda d: replace(changed_intent(d, range=(-1.0, 1.0)), simulation=replace(d.simulation, ranges=None)),
-    "KF905": lambda d: changed_function(
-        d, loads=(Load("shaft", np.array([0.0, 0.0, 1.0]), None, None, "world", "m.toml", 40),)
-    ),
-}
 
 
 def codes(design):

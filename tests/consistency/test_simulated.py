@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import Z, intended, joint, rod, sine
-from requiring import ORIGIN, G, Y, circle, design, state, wheel
+from support.devices import Z, intended, joint, rod, sine
+from support.requirements import ORIGIN, G, Y, circle, design, state, wheel
 
 from kinform.consistency import check
 from kinform.model.function import InitialValue, Law

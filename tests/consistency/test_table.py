@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import body, intended, joint, sine
-from known import FIXTURES
-from requiring import (
+from support.devices import body, intended, joint, sine
+from support.mistakes import UNDECIDED, WRONG, changed_function, changed_joint, ignore, with_function
+from support.places import FIXTURES
+from support.requirements import (
     CODES,
     ORIGIN,
     THIN,
@@ -24,8 +25,6 @@ from requiring import (
     requiring,
     wheel,
 )
-from test_control import ignore
-from test_rules import UNDECIDED, WRONG, changed_function, changed_joint, with_function
 
 from kinform.consistency import RULES, check
 from kinform.mass import compile_mass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from solids import box, derived, extrusion, random_pose, rod
+from support.solids import box, derived, extrusion, random_pose, rod
 
 TABLE = box(-30, 30, -30, 30, -5, 0)
 

@@ -6,9 +6,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from contact_shapes import MM, assembly, box_loop, extrusion, pose, round_loop
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, round_loop
 
 from kinform.contacts import find
 from kinform.contacts.search.candidates import candidate_pairs

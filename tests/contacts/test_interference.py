@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from contact_shapes import MM, assembly, box_loop, extrusion, pose, round_loop, turned
+from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, round_loop, turned
 
 from kinform.contacts import find
 

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from contact_shapes import MM, assembly, box_loop, extrusion, pose, revolution, round_loop, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, revolution, round_loop, turned
 
 from kinform.contacts import find
 from kinform.model.tolerances import Tolerances

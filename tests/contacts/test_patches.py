@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from contact_shapes import (
+from support.analytic_solids import (
     MM,
     assembly,
     box_loop,

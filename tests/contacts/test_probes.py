@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from contact_shapes import MM, box_loop, extrusion, revolution, round_loop
+from support.analytic_solids import MM, box_loop, extrusion, revolution, round_loop
 
 from kinform.foundation.meshes.index import MeshIndex
 

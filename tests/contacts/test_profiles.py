@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from solids import derived, extrusion, random_pose, rod
+from support.solids import derived, extrusion, random_pose, rod
 
 
 def ellipse(a, b, segments, phase=0.0):

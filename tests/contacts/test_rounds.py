@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
-from solids import ball, box, derived, random_pose, rod
+from support.solids import ball, box, derived, random_pose, rod
 
 BLOCK = box(-20, 20, -20, 20, -5, 0)
 

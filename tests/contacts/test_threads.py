@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-import sys
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from manifold3d import CrossSection, Manifold
-from solids import box, derived, random_pose
-
-sys.path.insert(0, str(FIXTURES))
-
 from generators.threads import Thread, threaded
+from manifold3d import CrossSection, Manifold
+from support.solids import box, derived, random_pose
 
 
 def screw(lead=4.0, segments=24):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
-from solids import box, derived, random_pose
+from support.solids import box, derived, random_pose
 
 
 def ring(major, minor, segments=60, around=48):

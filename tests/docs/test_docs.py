@@ -8,8 +8,8 @@ import shutil
 
 import numpy as np
 import pytest
-from known import ROOT
-from pictures import pixels
+from support.places import ROOT
+from support.png import pixels
 
 from kinform.consistency import rules_markdown
 from kinform.reports.page.raster import png

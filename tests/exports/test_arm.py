@@ -8,12 +8,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from known import shared
-from models import model_of, written
-from test_glb import judged
-from test_urdf import forward, numbers, posed
-from test_vhdl_ams import analysed
-from validators import package
+from support.export_models import model_of, written
+from support.other_programs import analysed, forward, judged, numbers, posed
+from support.places import shared
+from support.validators import package
 
 from kinform import stages
 from kinform.exports import export

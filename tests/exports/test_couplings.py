@@ -7,12 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import HERE, Z, device, drive, intended, sine
-from models import X, block, design, written
-from test_modelica import solved
-from test_urdf import forward, numbers
-from test_vhdl_ams import analysed, opened
-from validators import package
+from support.devices import HERE, Z, device, drive, intended, sine
+from support.export_models import X, block, design, written
+from support.other_programs import analysed, forward, numbers, opened, solved
+from support.validators import package
 
 from kinform.exports import export
 from kinform.model.assembly import Subassembly

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import results
 from kinform.exports import FORMATS

@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from test_modelica import solved
-from test_vhdl_ams import analysed
+from support.other_programs import analysed, solved
+from support.places import FIXTURES
 
 from kinform import stages
 from kinform.exports import export

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
 import struct
-import subprocess
 
 import numpy as np
 import pytest
-from known import FIXTURES, manifests
-from models import known
 from scipy.spatial.transform import Rotation
-from validators import npm, program
+from support.export_models import known
+from support.other_programs import judged
+from support.places import FIXTURES, manifests
 
 from kinform.exports import export
-
-VALIDATE = (
-    "const v=require('gltf-validator'),fs=require('fs');"
-    "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])))"
-    ".then(r=>{console.log(JSON.stringify(r.issues))},e=>{console.error(e);process.exit(3)});"
-)
 
 
 def opened(data):
@@ -118,17 +110,6 @@ def test_sticks_move_without_meshes():
     (data,) = export(known("gimbal"), "glb").files.values()
     document, _ = opened(data)
     assert len(document["animations"][0]["channels"]) >= 5
-
-
-def judged(data, folder):
-    """Issues by the Khronos validator; skips without it."""
-    node, place = program("node"), npm("gltf-validator").parent
-    (folder / "x.glb").write_bytes(data)
-    ran = subprocess.run(
-        [node, "-e", VALIDATE, str(folder / "x.glb")], capture_output=True, text=True, check=True,
-        env={**os.environ, "NODE_PATH": str(place)},
-    )  # fmt: skip
-    return json.loads(ran.stdout)
 
 
 @pytest.mark.parametrize(

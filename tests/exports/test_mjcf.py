@@ -6,46 +6,13 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from models import CHAINS, LOOPS, known, model_of, swinging, written
-from validators import package
+from support.export_models import CHAINS, LOOPS, known, model_of, swinging
+from support.other_programs import gap, loaded, origin
+from support.places import FIXTURES
 
 from kinform.behaviour import RigidBody
 from kinform.exports import export
 from kinform.foundation.algebra.spatial import to_matrix
-
-
-def loaded(found, folder):
-    """MuJoCo's model and data at the start."""
-    mujoco = package("mujoco")
-    path, _ = written(found, "mjcf", folder)
-    model = mujoco.MjModel.from_xml_path(str(path))
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    mujoco.mj_forward(model, data)
-    return mujoco, model, data
-
-
-def origin(found, name):
-    """Where the body's frame in the file is at the pose of the meshes: on its joint."""
-    from kinform.exports.mjcf import CLOSABLE
-    from kinform.exports.tree import grow
-
-    links = grow(found.system, CLOSABLE).links
-    return next(link.origin for link in links if link.body.subject == name)
-
-
-def gap(found, model, data, mujoco, k):
-    """Greatest distance of a body's place and orientation from those of our output k."""
-    run, exported, worst = found.simulation, model_of(found), 0.0
-    for b, name in enumerate(run.body_names):
-        if name == exported.system.ground.subject:
-            continue
-        body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
-        R = to_matrix(run.q_WB[k, b])
-        place = R @ origin(exported, name) + run.p_WB[k, b]
-        worst = max(worst, np.abs(data.xpos[body] - place).max(), np.abs(data.xmat[body].reshape(3, 3) - R).max())
-    return worst
 
 
 def followed(found, folder):
@@ -72,8 +39,8 @@ def test_open_chains_move_alike(name, tmp_path):
 
 def test_servos_and_motors_act_alike(tmp_path):
     """A servo without integral that reaches its limit, and a motor without a coil."""
-    from devices import Z, device, drive, joint
-    from models import Y, block, design
+    from support.devices import Z, device, drive, joint
+    from support.export_models import Y, block, design
 
     from kinform.model.function import Law
 
@@ -172,8 +139,8 @@ def test_axes_stand_where_ours_do(name, tmp_path):
 
 def test_a_loop_that_only_a_slider_can_close_cuts_a_body_in_halves(tmp_path):
     """Driven hinges stay in the tree of no format; here every joint of the loop is a slider or a cylinder."""
-    from devices import Z, device, drive, joint
-    from models import SLANT, X, block, design
+    from support.devices import Z, device, drive, joint
+    from support.export_models import SLANT, X, block, design
 
     parts = [block("one", (0.1, 0, 0)), block("two", (0.1, 0.1, 0), 0.5)]
     joints = [

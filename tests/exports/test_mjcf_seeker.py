@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import sine
-from known import FIXTURES
-from models import swinging
-from test_mjcf import gap, loaded
+from support.devices import sine
+from support.export_models import swinging
+from support.other_programs import gap, loaded
+from support.places import FIXTURES
 
 from kinform import stages
 from kinform.model.function import Drive, InitialValue, SimulationRequest

@@ -7,39 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from models import ALL, LOOPS, design, driven_four_bar, known, model_of, swinging, written
-from validators import package
+from support.export_models import ALL, LOOPS, design, driven_four_bar, known, swinging
+from support.other_programs import controlled_by_voltage, solved
+from support.places import FIXTURES
+from support.validators import package
 
-from kinform.behaviour import Constant, Node, System, VoltageController, VoltageSource
-from kinform.behaviour.shafts import Controller
 from kinform.exports import export, modelica, write
 from kinform.exports.equations import equations_of
 from kinform.exports.model import export_model
 from kinform.simulation import Course, simulate_system
-
-
-def solved(found, folder):
-    """(T, B, 3) places and (T, B, 4) orientations of the bodies at our output times, by rumoca."""
-    rumoca = package("rumoca")
-    path, _ = written(found, "modelica", folder)
-    run = found.simulation
-    model = rumoca.Session().load(str(path), model=f"{path.stem}.System")
-    config = rumoca.SimConfig(solver="rk-like", rtol=1e-10, atol=1e-11)
-    result = model.simulate((0, float(run.time[-1])), dt=float(run.time[1]), config=config)
-    values = result.to_dict()
-    values = values.get("data", values)
-    labels = [re.sub(r"\W+", "_", f"body_{name}") for name in run.body_names]
-    # At the knots of a table there are several outputs: the last is the one after it.
-    times = np.asarray(result.time)
-    picked = [np.flatnonzero(np.isclose(times, t, rtol=0.0, atol=1e-9))[-1] for t in run.time]
-
-    def vectors(what, size):
-        return np.array(
-            [[np.asarray(values[f"{b}.frame.{what}[{k}]"])[picked] for k in range(1, size + 1)] for b in labels]
-        ).transpose(2, 0, 1)
-
-    return vectors("at.p", 3), vectors("on.q", 4)
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -92,18 +68,6 @@ def test_a_start_in_a_singular_pose_is_named(format, name, told, derive_design):
     (manifest,) = FIXTURES.glob(f"mechanisms/{name}/{name}.toml")
     lost = export(swinging(derive_design(manifest)), format).lost
     assert any("starts in a singular pose" in text for text in lost) == told
-
-
-def controlled_by_voltage():
-    """The port model of `motorised` with a controller of the motor's voltage instead of a source."""
-    model = model_of(known("motorised"))
-    (source,) = (c for c in model.system.components if isinstance(c, VoltageSource))
-    ((motor, _),) = model.system.at(source.name, "terminals")
-    pid = VoltageController(source.name, source.subject, Constant(0.4), Controller(30.0, ki=5.0, kd=1.0, limit=8.0))
-    shaft = model.system.node(motor.name, "shaft")
-    nodes = [Node((*n.ports, (pid.name, "shaft")), n.size) if n is shaft else n for n in model.system.nodes]
-    components = tuple(pid if c is source else c for c in model.system.components)
-    return replace(model, system=System(components, tuple(nodes)), simulation=None)
 
 
 def test_rumoca_controls_the_voltage_of_a_motor_as_we_do(tmp_path):

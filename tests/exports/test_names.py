@@ -7,12 +7,12 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
 import pytest
-from devices import device, drive, joint, sine
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from models import X, Z, block, design
-from test_vhdl_ams import analysed, opened
-from validators import package
+from support.devices import device, drive, joint, sine
+from support.export_models import X, Z, block, design
+from support.other_programs import analysed, opened
+from support.validators import package
 
 from kinform.exports import FORMATS, export
 from kinform.exports.names import FILES, MJCF, MODELICA, SDF, VHDL, XML, comment, identifiers

@@ -6,10 +6,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from models import ALL, known, model_of, written
 from scipy.spatial.transform import Rotation
-from test_urdf import posed
-from validators import package
+from support.export_models import ALL, known, model_of, written
+from support.other_programs import posed
+from support.validators import package
 
 from kinform.exports import export
 

@@ -13,9 +13,9 @@ import sys
 
 import numpy as np
 import pytest
-from known import ROOT
-from models import ALL, known, model_of
-from validators import package
+from support.export_models import ALL, known, model_of
+from support.places import ROOT
+from support.validators import package
 
 from kinform.errors import InputError
 from kinform.exports import FORMATS, ExportError, export
@@ -61,8 +61,8 @@ def test_joints_with_several_coordinates_have_columns_for_each():
 
 
 def test_without_a_motion_there_is_no_csv():
-    from devices import Z, device, joint
-    from models import block, design
+    from support.devices import Z, device, joint
+    from support.export_models import block, design
 
     made = device([block("one", (0.1, 0, 0))], [joint("base", "one", "revolute", Z, (0, 0, 0))])
     with pytest.raises(ExportError, match="nothing was simulated"):
@@ -141,8 +141,8 @@ def test_bytes_depend_on_nothing_but_the_design(tmp_path):
     """Another process, another hash seed, another folder: the same bytes, and no path of this machine."""
     code = (
         "import sys, hashlib\n"
-        f"sys.path[:0] = [{str(ROOT / 'tests')!r}, {str(ROOT / 'tests' / 'exports')!r}]\n"
-        "from models import known\n"
+        f"sys.path.insert(0, {str(ROOT / 'tests')!r})\n"
+        "from support.export_models import known\n"
         "from kinform.exports import FORMATS, export\n"
         "for name in ('four_bar',):\n"
         "    for format in sorted(FORMATS):\n"

@@ -7,98 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import Z, device, drive, initial, intended, joint, sine
-from devices import body as bare
-from known import FIXTURES
-from models import ALL, X, block, design, four_bar, known, model_of, written
-from scipy.spatial.transform import Rotation
-from validators import package
+from support.devices import Z, device, drive, initial, intended, joint, sine
+from support.devices import body as bare
+from support.export_models import ALL, X, block, design, four_bar, known, model_of, written
+from support.other_programs import forward, numbers, posed
+from support.places import FIXTURES
+from support.validators import package
 
-from kinform.behaviour.joints import KINDS
 from kinform.exports import export
 from kinform.exports.names import comment
-from kinform.exports.tree import grow
-
-
-def numbers(text):
-    return np.array([float(x) for x in text.split()])
-
-
-def pose(node):
-    """(4, 4) of an <origin>."""
-    X_PC = np.eye(4)
-    if node is not None:
-        X_PC[:3, 3] = numbers(node.get("xyz", "0 0 0"))
-        X_PC[:3, :3] = Rotation.from_euler("xyz", numbers(node.get("rpy", "0 0 0"))).as_matrix()
-    return X_PC
-
-
-def forward(text, values):
-    """(4, 4) pose of every link for joint values by name, as the URDF specification has it."""
-    root = ElementTree.fromstring(text)
-    joints = {node.get("name"): node for node in root.findall("joint")}
-    carried = {node.find("child").get("link"): node for node in joints.values()}
-    assert len(carried) == len(joints), "a link has two parents"
-
-    def value(node):
-        mimic = node.find("mimic")
-        if mimic is None:
-            return values.get(node.get("name"), 0.0)
-        return float(mimic.get("multiplier")) * value(joints[mimic.get("joint")]) + float(mimic.get("offset"))
-
-    def place(link):
-        node = carried.get(link)
-        if node is None:
-            return np.eye(4)
-        moved = np.eye(4)
-        if node.get("type") in ("revolute", "continuous"):
-            axis = numbers(node.find("axis").get("xyz"))
-            moved[:3, :3] = Rotation.from_rotvec(value(node) * axis).as_matrix()
-        elif node.get("type") == "prismatic":
-            moved[:3, 3] = value(node) * numbers(node.find("axis").get("xyz"))
-        else:
-            assert node.get("type") in ("fixed", "floating")
-        return place(node.find("parent").get("link")) @ pose(node.find("origin")) @ moved
-
-    return {node.get("name"): place(node.get("name")) for node in root.findall("link")}
-
-
-def posed(model, seed):
-    """Random coordinates, or where there are loops those of our run: values by URDF joint, and poses (4, 4) of link
-    frames by body."""
-    random = np.random.default_rng(seed)
-    mechanism, tree = model.mechanism, grow(model.system, KINDS)
-    q, values = mechanism.start, {}
-    for link in tree.links:
-        if link.joint is None or link.joint.kind.rates == 0:
-            continue
-        (slot,) = (s for s in mechanism.slots if s.name == link.joint.subject)
-        if slot.has_ball:
-            angles = random.uniform(-1.2, 1.2, 3)
-            turn = Rotation.from_euler("XYZ", angles)
-            q[slot.q] = (turn if link.forward else turn.inv()).as_quat(scalar_first=True)
-        else:
-            q[slot.q] = random.uniform(-2.0, 2.0, slot.q.stop - slot.q.start)
-    if tree.closing:
-        q = model.simulation.joint_position[5 * seed + 2]
-    for link in tree.links:
-        if link.joint is None:
-            continue
-        (slot,) = (s for s in mechanism.slots if s.name == link.joint.subject)
-        if slot.has_ball:
-            turn = Rotation.from_quat(q[slot.q], scalar_first=True)
-            angles = (turn if link.forward else turn.inv()).as_euler("XYZ")
-            values |= {f"{slot.name}.{axis}": angle for axis, angle in zip("xyz", angles, strict=True)}
-        else:
-            values |= {motion.name: q[slot.q.start + motion.coordinate] for motion in link.motions}
-    X_all = mechanism.poses(q)
-    out = {}
-    for link in tree.links:
-        body = mechanism.bodies.index(link.body.subject)
-        X_WB = X_all[mechanism.link_of[body]].copy()
-        X_WB[:3, 3] += X_WB[:3, :3] @ (link.origin - mechanism.centre) + mechanism.centre
-        out[link.body.subject] = X_WB
-    return values, out
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from known import FIXTURES, manifests, stories
-from models import ALL, design, driven_four_bar, known, swinging
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
-from test_modelica import controlled_by_voltage
-from validators import ghdl
-from vhdl_expressions import Jet
-from vhdl_reader import SIZES, Flat, read
-from vhdl_residuals import constant, residuals
+from support.export_models import ALL, design, driven_four_bar, known, swinging
+from support.other_programs import analysed, controlled_by_voltage, opened, order
+from support.places import FIXTURES, manifests, stories
+from support.validators import ghdl
+from support.vhdl_expressions import Jet
+from support.vhdl_reader import SIZES, read
+from support.vhdl_residuals import constant, residuals
 
 from kinform.behaviour import JointComponent, Servo
 from kinform.exports import export, vhdl_ams
@@ -30,25 +29,6 @@ FREEDOMS = {
     "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1, "motorised": 2, "controlled": 2,
 }  # fmt: skip
 """Freedoms of the devices, by hand: those that no drive prescribes."""
-
-
-def order(files):
-    """The names of the files as the system's header lists them."""
-    (listed,) = {
-        found[1] for data in files.values() if (found := re.search(r"in this order: (.*)", data.decode())) is not None
-    }
-    names = listed.split(", ")
-    assert names == sorted(files)
-    return names
-
-
-def opened(made):
-    """(entities, flat system, name of the top entity) of an export, with the starts of its bench."""
-    names = order(made.files)
-    entities, functions = read([made.files[name].decode() for name in names])
-    bench = entities[names[3].removeprefix("4_").removesuffix(".vhd")]
-    ((_, top, starts, _),) = bench.parts
-    return entities, Flat(entities, functions, top, starts), top
 
 
 def kinematics_at(model, k):
@@ -265,21 +245,13 @@ def test_a_driven_coordinate_is_not_given_a_start():
 
 
 def test_a_run_without_forces_holds_what_rests():
-    from models import four_bar
+    from support.export_models import four_bar
 
     found = design(four_bar(level="kinematic", initial=()))
     text = export(found, "vhdl-ams").files["3_device.vhd"].decode()
     assert text.count("entity work.motion_constant") == 1
     found = design(driven_four_bar(level="kinematic"))
     assert "motion_constant" not in export(found, "vhdl-ams").files["3_device.vhd"].decode()
-
-
-def analysed(made, folder):
-    """GHDL's verdict on the files of an export."""
-    for name, data in made.files.items():
-        (folder / name).write_bytes(data)
-    command = [ghdl(), "-s", "--std=93", "--ams", *order(made.files)]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from assemblies import HERE, intended
-from fastened import CORNERS, drilled, found, made_of
-from solids import box, rod
+from support.assemblies import HERE, intended
+from support.solids import box, rod
+from support.suggestions import CORNERS, drilled, found, made_of
 
 from kinform import contacts, kinematics, stages, surfaces
 from kinform.consistency import check

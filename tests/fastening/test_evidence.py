@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fastened import CORNERS, drilled, found
 from manifold3d import CrossSection, Manifold
-from solids import box, random_pose, rod
+from support.solids import box, random_pose, rod
+from support.suggestions import CORNERS, drilled, found
 
 
 def turned(profile, segments=72):

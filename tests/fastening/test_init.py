@@ -9,9 +9,9 @@ import tomllib
 import numpy as np
 import pytest
 import trimesh
-from commands import ran_here
-from fastened import CORNERS, drilled
-from solids import box
+from support.command_line import ran_here
+from support.solids import box
+from support.suggestions import CORNERS, drilled
 
 SOLIDS = {
     "servo": box(-10, 10, -6, 6, 0, 20),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fastened import CORNERS, drilled, found, kinds
-from solids import box, random_pose, rod
+from support.solids import box, random_pose, rod
+from support.suggestions import CORNERS, drilled, found, kinds
 
 POSES = [np.eye(4), random_pose(np.random.default_rng(3))]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import trimesh
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform.form.files import read_raw
 from kinform.form.meshes.health import build_mesh

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import stages
 from kinform.form.reload import reload_meshes

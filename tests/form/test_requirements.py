@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from written import stated_joint
+from support.manifests import stated_joint
 
 from kinform.errors import InputError
 from kinform.form import load

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
+from dataclasses import replace
 
 import pytest
+from support.devices import HERE, Z, assembly, body, intended, joint, kinematics
 
 from kinform.function import resolve_joint
 from kinform.model.assembly import Group
 from kinform.model.function import Function
 from kinform.model.kinematics import Body
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "simulation"))
-
-from dataclasses import replace
-
-from devices import HERE, Z, assembly, body, intended, joint, kinematics
 
 PARTS = [body("arm"), body("base"), body("cover"), body("plate"), body("tool")]
 DOWN = (0.0, 0.0, -1.0)

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from assemblies import assembly
-from assemblies import contacts as no_contacts
-from devices import intended, joint, kinematics
 from scipy.spatial.transform import Rotation
-from solids import box, part, random_pose
+from support.assemblies import assembly
+from support.assemblies import contacts as no_contacts
+from support.devices import intended, joint, kinematics
+from support.solids import box, part, random_pose
 
 from kinform.function.clearances import apart
 from kinform.function.configurations import chain_between

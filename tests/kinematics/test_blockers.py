@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from solids import ball, box, derived, extrusion, random_pose, rod
+from support.solids import ball, box, derived, extrusion, random_pose, rod
 
 SHARES = [0.02, 0.1, 0.2]
 

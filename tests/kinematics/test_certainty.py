@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import Z, cylinder, patch, plane, ring, sphere
+from support.patches import Z, cylinder, patch, plane, ring, sphere
 
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from assemblies import assembly, assume, between, contacts, part
-from builders import Z, cylinder, patch, plane, ring, sphere
 from scipy.spatial.transform import Rotation
-from solids import ball, box, derived, random_pose, rod
+from support.assemblies import assembly, assume, between, contacts, part
+from support.patches import Z, cylinder, patch, plane, ring, sphere
+from support.solids import ball, box, derived, random_pose, rod
 
 from kinform.kinematics import derive
 from kinform.kinematics.pair.extremes import extreme_samples

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from assemblies import assembly
-from assemblies import part as stick
-from gearing import cam_and_follower, gear_pair, rack_and_pinion
-from solids import derived, part, random_pose, rod
+from support.assemblies import assembly
+from support.assemblies import part as stick
+from support.gear_trains import cam_and_follower, gear_pair, rack_and_pinion
+from support.solids import derived, part, random_pose, rod
 
 from kinform.kinematics import functional
 from kinform.kinematics.mobility.couplings import convex_turns

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from builders import Z, cone, cylinder, plane, ring, sphere
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from support.patches import Z, cone, cylinder, plane, ring, sphere
 
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from assemblies import assembly, assume, between, contacts, intended, part
-from builders import Z, cylinder, plane, ring, sphere
+from support.assemblies import assembly, assume, between, contacts, intended, part
+from support.patches import Z, cylinder, plane, ring, sphere
 
 from kinform.design import Design
 from kinform.kinematics import derive, functional, mobility_within, query

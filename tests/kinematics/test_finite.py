@@ -6,11 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import joint
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from linkages import KNOWN, ball_truss, door, four_bar, generic, hinge, manifest, planar, ring, slider_crank, turned
 from scipy.spatial.transform import Rotation
+from support.devices import joint
+from support.linkages import (
+    KNOWN,
+    ball_truss,
+    door,
+    four_bar,
+    generic,
+    hinge,
+    manifest,
+    planar,
+    ring,
+    slider_crank,
+    turned,
+)
 
 from kinform import stages
 from kinform.foundation.algebra.screws import Frame

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
-from solids import ball, box, derived
+from support.solids import ball, box, derived
 
 from kinform.foundation.algebra.screws import Frame, rotation, span, translation
 from kinform.kinematics.wording import group_of, motions_in_words

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from assemblies import assembly, between, contacts, intended, part
-from builders import Z, cylinder, plane, ring
+from support.assemblies import assembly, between, contacts, intended, part
+from support.patches import Z, cylinder, plane, ring
 
 from kinform.design import Design
 from kinform.kinematics import derive, insight, intended_answers, query

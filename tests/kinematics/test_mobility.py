@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from linkages import bennett
+from support.linkages import CLOSED, bennett
 
 from kinform.foundation.graphs.graph import UnionFind, blocks, forest
 from kinform.kinematics.loops.closure import body_twists, close
@@ -23,26 +23,6 @@ def ring_of(points, axes):
     n = len(points)
     edges = [tuple(sorted((k, (k + 1) % n))) for k in range(n)]
     return n, edges, [revolute(a, p) for p, a in zip(points, axes, strict=True)]
-
-
-CLOSED = {
-    "four-bar": (([0, 0, 0], [0, 2, 0], [3, 3, 0], [4, 0, 0]), [Z] * 4, 1),
-    "parallelogram": (([0, 0, 0], [1, 2, 0], [5, 2, 0], [4, 0, 0]), [Z] * 4, 1),
-    "five-bar": (([0, 0, 0], [0, 2, 0], [2, 3.5, 0], [4, 2, 0], [4, 0, 0]), [Z] * 5, 2),
-    "triangle": (([0, 0, 0], [1, 1, 0], [2, 0, 0]), [Z] * 3, 0),
-    "shaky truss": (([0, 0, 0], [1, 0, 0], [2, 0, 0]), [Z] * 3, 1),
-    "bricard": (
-        ([0, 0, 0], [1, 0, 0], [1, -1, 0], [1, -1, 1], [0, -1, 1], [0, 0, 1]),
-        [Y, Z, X, Y, Z, X],
-        1,
-    ),
-    "generic spatial seven-bar": (
-        np.random.default_rng(1).normal(size=(7, 3)),
-        np.random.default_rng(2).normal(size=(7, 3)),
-        1,
-    ),
-    "four-bar with one axis off": (([0, 0, 0], [0, 2, 0], [3, 3, 0], [4, 0, 0]), [Z, [1e-3, 0, 1], Z, Z], 0),
-}
 
 
 @pytest.mark.parametrize("name", CLOSED)

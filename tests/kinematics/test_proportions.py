@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from linkages import bennett, bricard, planar, ring
+from support.linkages import bennett, bricard, planar, ring
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.kinematics.axes.proportions import fit_proportions

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from assemblies import assembly, between, contacts, part
-from builders import cylinder, patch, plane, ring
-from test_mobility import CLOSED, bennett
+from support.assemblies import assembly, between, contacts, part
+from support.linkages import CLOSED, bennett
+from support.patches import cylinder, patch, plane, ring
 
 from kinform.design import Design
 from kinform.kinematics import Motions, derive

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from assemblies import assembly
-from known import FIXTURES
-from manifold3d import Manifold
-from solids import box, derived, part, random_pose, rod
-
-from kinform import contacts, kinematics, surfaces
-
-sys.path.insert(0, str(FIXTURES))
-
 from generators.threads import Thread, threaded
+from manifold3d import Manifold
 from random_assemblies import case
 from random_assemblies.verdict import judge
+from support.assemblies import assembly
+from support.solids import box, derived, part, random_pose, rod
+
+from kinform import contacts, kinematics, surfaces
 
 
 def pair(lead=4.0, starts=1, lean=15.0, gap=0.1, crest=10.0, depth=None, half=8.0, segments=(24, 20)):

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from assemblies import assembly, between, contacts, part
-from builders import cylinder, plane, ring, sphere
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from support.assemblies import assembly, between, contacts, part
+from support.patches import cylinder, plane, ring, sphere
 
 from kinform.kinematics import derive
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gearing import WIDTH, gear_pair, limited, rack_and_pinion, ring, wheel
 from generators.involute import Gear, mesh_angle
-from solids import box, derived, part, random_pose, rod
+from support.gear_trains import WIDTH, gear_pair, limited, rack_and_pinion, ring, wheel
+from support.solids import box, derived, part, random_pose, rod
 
 from kinform.kinematics.mobility.teeth import Side, meshing
 

@@ -11,8 +11,8 @@ import time
 from pathlib import Path
 
 import pytest
-from known import ROOT
-from test_make import KINFORM
+from support.command_line import KINFORM
+from support.places import ROOT
 
 FEW = ("pairs/free_apart", "pairs/revolute_cone")
 FIVE = (*FEW, "pairs/planar_block", "locators/fixed_d_shaft", "seekers/seeker_1dof")

@@ -6,13 +6,10 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from known import ROOT
-
-KINFORM = Path(sys.executable).with_name("kinform")
+from support.command_line import KINFORM
+from support.places import ROOT
 
 
 @pytest.fixture

@@ -10,8 +10,8 @@ import sys
 
 import pytest
 import typer
-from known import FIXTURES, ROOT
-from validators import package
+from support.places import FIXTURES, ROOT
+from support.validators import package
 
 from kinform_cli.app import app
 from kinform_cli.options import FindingsFormat

@@ -5,9 +5,9 @@ from __future__ import annotations
 import shutil
 
 import pytest
-from browser import Browser, program
-from known import FIXTURES
-from markup import NASTY
+from support.browser import Browser, program
+from support.markup import NASTY
+from support.places import FIXTURES
 
 from kinform import stages
 from kinform.reports.page import page_html

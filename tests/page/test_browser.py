@@ -6,8 +6,8 @@ import base64
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from validators import npm
+from support.places import FIXTURES
+from support.validators import npm
 
 
 @pytest.fixture(scope="module")

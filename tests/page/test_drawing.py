@@ -8,14 +8,14 @@ import shutil
 import subprocess
 from importlib.resources import files
 
-import linkages
 import numpy as np
 import pytest
-from devices import Z
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from known import FIXTURES
-from pictures import pixels
+from support import linkages
+from support.devices import Z
+from support.places import FIXTURES
+from support.png import pixels
 
 from kinform import stages
 from kinform.reports.page import Scene

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from markup import NASTY, read
+from support.markup import NASTY, read
+from support.places import FIXTURES
 
 from kinform import results, stages
 from kinform.model.findings import CheckReport, Finding, RuleOutcome

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import results, stages
 from kinform_cli.main import main

@@ -6,7 +6,7 @@ import dataclasses
 import json
 
 import pytest
-from assemblies import assembly, part
+from support.assemblies import assembly, part
 
 from kinform.design import Design
 from kinform.model.findings import CheckReport, Finding, RuleOutcome

@@ -11,9 +11,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-import sarif_structure
-from hostile import DESIGN, ERROR, NAMES, REPORT, RULES, named
 from markdown_it import MarkdownIt
+from support import sarif_structure
+from support.hostile import DESIGN, ERROR, NAMES, REPORT, RULES, named
 
 from kinform.consistency import Rule, adopt, with_baseline
 from kinform.model.findings import CheckReport, Finding, RuleOutcome

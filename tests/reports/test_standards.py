@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from hostile import DESIGN, REPORT, named
-from validators import npm, package
+from support.hostile import DESIGN, REPORT, named
+from support.validators import npm, package
 
 from kinform.model.findings import CheckReport
 from kinform.reports import render

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import results
 from kinform.errors import ResultsError

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import stages
 from kinform.design import Design

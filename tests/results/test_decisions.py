@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from linkage import four_bar
+from support.short_four_bar import four_bar
 
 import kinform
 from kinform import results

@@ -10,9 +10,9 @@ from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
-from designs import NAMED, by_type, designs, difference
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from support.designs import NAMED, by_type, designs, difference
 
 import kinform
 from kinform.design import Design

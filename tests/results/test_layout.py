@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from known import FIXTURES
+from support.places import FIXTURES
 
 from kinform import results
 from kinform.design import Design

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from linkage import four_bar
+from support.short_four_bar import four_bar
 
 import kinform
 from kinform import results, stages

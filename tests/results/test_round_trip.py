@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from designs import arrays_in, designs, difference
 from hypothesis import HealthCheck, Phase, given, settings
+from support.designs import arrays_in, designs, difference
 
 from kinform import results
 from kinform.design import Design

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from portmodels import DOWN, SQUEEZER, bricard, four_bars, governor, pendulum, squeezer
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
-from squeezer_equations import end
+from support.port_models import DOWN, SQUEEZER, bricard, four_bars, governor, pendulum, squeezer
+from support.squeezer_equations import end
 
 from kinform.behaviour import Constant, EffortDrive, SpringDamper
 from kinform.foundation.algebra.spatial import to_matrix

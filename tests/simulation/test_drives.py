@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, joint, rod, sine
-from portmodels import Model
 from scipy.integrate import solve_ivp
+from support.devices import Z, body, device, drive, joint, rod, sine
+from support.port_models import Model
 
 from kinform.behaviour import (
     Constant,

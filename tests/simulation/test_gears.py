@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gearing import epicyclic
-from known import FIXTURES
-from solids import assembly, part
-from validators import package
+from support.gear_trains import epicyclic
+from support.places import FIXTURES
+from support.solids import assembly, part
+from support.validators import package
 
 from kinform import contacts, kinematics, stages, surfaces
 from kinform.exports import export

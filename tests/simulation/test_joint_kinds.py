@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import body, device, joint
 from scipy.linalg import expm
+from support.devices import body, device, joint
 
 from kinform.behaviour import build
 from kinform.behaviour.joints import KINDS

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from known import FIXTURES
-from portmodels import DOWN, Model, bricard, four_bars, governor, hung_chain
+from support.places import FIXTURES
+from support.port_models import DOWN, Model, bricard, four_bars, governor, hung_chain
 
 from kinform.behaviour import (
     Constant,
@@ -38,7 +38,7 @@ from kinform.simulation.solver.engine import Engine, engine
 SHORT = """
 import sys
 sys.path.insert(0, {tests!r})
-from portmodels import DOWN, pendulum
+from support.port_models import DOWN, pendulum
 from kinform.behaviour import Constant, EffortDrive, SpringDamper
 from kinform.simulation import Course, simulate_system
 print(simulate_system(pendulum().system(), Course(0.2, 0.1, DOWN)).status, "numba" in sys.modules)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, joint, rod, sine
-from portmodels import DOWN
+from support.devices import Z, body, device, drive, joint, rod, sine
+from support.port_models import DOWN
 
 from kinform.behaviour import Model, Sine, Table
 from kinform.simulation import Course, simulate, simulate_system

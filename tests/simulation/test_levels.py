@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from devices import (
+from support.devices import (
     Z,
     assembly,
     body,

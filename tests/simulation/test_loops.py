@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, initial, joint, rod, sine
+from support.devices import Z, body, device, drive, initial, joint, rod, sine
 
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.function import Law

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, initial, intended, joint, rod, sine
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
+from support.devices import Z, body, device, drive, initial, intended, joint, rod, sine
 
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.function import Law, Load

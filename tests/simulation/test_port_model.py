@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, intended, joint, rod, sine
+from support.devices import Z, body, device, drive, intended, joint, rod, sine
 
 from kinform.behaviour import Constant, Node, RigidBody, System, build, count, signal, smooth
 from kinform.behaviour.components import EffortDrive, Ground, MotionDrive

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from devices import Z, body, device, drive, initial, joint, rod
-from portmodels import DOWN, Model, bricard, four_bars
+from support.devices import Z, body, device, drive, initial, joint, rod
+from support.port_models import DOWN, Model, bricard, four_bars
 
 from kinform.behaviour import Gear, Spring, SpringDamper
 from kinform.model.function import Law, Load

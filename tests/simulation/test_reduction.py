@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from portmodels import DOWN, bricard, four_bars, hung_chain, squeezer
+from support.port_models import DOWN, bricard, four_bars, hung_chain, squeezer
 
 from kinform.simulation import Course, SolverSettings, simulate_system
 from kinform.simulation.kernel.addresses import address, addresses

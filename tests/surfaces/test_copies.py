@@ -9,7 +9,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from shapes import block, of_manifold, solid_rod
+from support.meshes import block, of_manifold, solid_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover, rigid_copies, surfaces_of_copy

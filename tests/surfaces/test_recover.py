@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from shapes import block, kinds, mesh_of, of_manifold, rod, solid_rod
+from support.meshes import block, kinds, mesh_of, of_manifold, rod, solid_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover

@@ -6,7 +6,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from shapes import kinds, mesh_of, of_manifold
+from support.meshes import kinds, mesh_of, of_manifold
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover

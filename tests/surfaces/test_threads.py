@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
-from known import FIXTURES
+from generators.threads import Thread, threaded
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
-from shapes import kinds, of_manifold
-
-sys.path.insert(0, str(FIXTURES))
-
-from generators.threads import Thread, threaded
+from support.meshes import kinds, of_manifold
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover

@@ -6,7 +6,7 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from shapes import block, kinds, mesh_of, of_manifold, solid_rod
+from support.meshes import block, kinds, mesh_of, of_manifold, solid_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover

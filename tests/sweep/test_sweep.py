@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 
 import numpy as np
 import pytest
-from known import FIXTURES
-
-sys.path.insert(0, str(FIXTURES))
-
 from random_assemblies import FAMILIES, case
 from random_assemblies.verdict import judge
 

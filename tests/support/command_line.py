@@ -7,6 +7,7 @@ import io
 import os
 import signal
 import subprocess
+import sys
 from pathlib import Path
 from unittest import mock
 
@@ -34,3 +35,6 @@ def environment(**extra: str) -> dict[str, str]:
     dropped = ("FORCE_COLOR", "PY_COLORS", "GITHUB_ACTIONS", "NO_COLOR", "COLUMNS", "KINFORM_DEBUG")
     kept = {name: value for name, value in os.environ.items() if name not in dropped}
     return {**kept, "TERM": "xterm-256color", **extra}
+
+
+KINFORM = Path(sys.executable).with_name("kinform")

@@ -1,4 +1,4 @@
-"""Where fixtures and shared data are, and what is known of them."""
+"""Where fixtures and shared data are, and what is true of them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 FIXTURES = ROOT / "fixtures"
 SHARED = ROOT.parent / "shared"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from known import FIXTURES
+from support.places import FIXTURES
 
 
 def four_bar(folder: Path) -> None:

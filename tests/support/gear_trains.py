@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from generators.involute import Gear, mesh_angle, rack_outline
-from solids import box, extrusion, rod
+
+from support.solids import box, extrusion, rod
 
 WIDTH = 8
 

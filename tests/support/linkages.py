@@ -211,3 +211,23 @@ def manifest(joints, *, mobility=None, ground="base"):
             if vector is not None:
                 lines.append(f"{key} = {[float(x) for x in vector]}")
     return "\n".join(lines) + "\n"
+
+
+CLOSED = {
+    "four-bar": (([0, 0, 0], [0, 2, 0], [3, 3, 0], [4, 0, 0]), [Z] * 4, 1),
+    "parallelogram": (([0, 0, 0], [1, 2, 0], [5, 2, 0], [4, 0, 0]), [Z] * 4, 1),
+    "five-bar": (([0, 0, 0], [0, 2, 0], [2, 3.5, 0], [4, 2, 0], [4, 0, 0]), [Z] * 5, 2),
+    "triangle": (([0, 0, 0], [1, 1, 0], [2, 0, 0]), [Z] * 3, 0),
+    "shaky truss": (([0, 0, 0], [1, 0, 0], [2, 0, 0]), [Z] * 3, 1),
+    "bricard": (
+        ([0, 0, 0], [1, 0, 0], [1, -1, 0], [1, -1, 1], [0, -1, 1], [0, 0, 1]),
+        [Y, Z, X, Y, Z, X],
+        1,
+    ),
+    "generic spatial seven-bar": (
+        np.random.default_rng(1).normal(size=(7, 3)),
+        np.random.default_rng(2).normal(size=(7, 3)),
+        1,
+    ),
+    "four-bar with one axis off": (([0, 0, 0], [0, 2, 0], [3, 3, 0], [4, 0, 0]), [Z, [1e-3, 0, 1], Z, Z], 0),
+}

@@ -6,15 +6,15 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from assemblies import contacts as no_contacts
-from devices import assembly, body, drive, intended, joint, kinematics, rod
-from solids import box, part
 
 from kinform.consistency import check
 from kinform.design import Design
 from kinform.mass import compile_mass
 from kinform.model.function import Function, Requirement, SimulationRequest
 from kinform.simulation import simulate
+from support.assemblies import contacts as no_contacts
+from support.devices import assembly, body, drive, intended, joint, kinematics, rod
+from support.solids import box, part
 
 X, Y, Z, ORIGIN = (1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0), (0, 0, 0)
 G = 9.81

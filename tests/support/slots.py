@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from solids import assembly, box, part, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.model.simulation import Simulation
+from support.solids import assembly, box, part, rod
 
 __all__ = ["SLOT", "block_in_slot", "derived", "lever_between_pegs", "moved"]
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from devices import HERE, Z, body, device, drive, initial, joint, rod, sine
 
 from kinform import stages
 from kinform.design import Design
@@ -15,6 +14,7 @@ from kinform.exports.model import export_model
 from kinform.model.assembly import Subassembly
 from kinform.model.function import Law, Load, SimulationRequest
 from kinform.simulation import simulate
+from support.devices import HERE, Z, body, device, drive, initial, joint, rod, sine
 
 DOWN = np.array([0.0, -9.81, 0.0])
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from assemblies import assembly
-from solids import box, part, rod
-
 from kinform import contacts, kinematics, surfaces
+from support.assemblies import assembly
+from support.solids import box, part, rod
 
 CORNERS = [(12, 8), (-12, 8), (-12, -8), (12, -8)]
 

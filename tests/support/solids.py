@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 
 import numpy as np
-from assemblies import HERE, assembly
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
 
 from kinform import contacts, kinematics, surfaces
 from kinform.model.assembly import Mesh, MeshHealth, Part
+from support.assemblies import HERE, assembly
 
 
 def box(x0, x1, y0, y1, z0, z1):

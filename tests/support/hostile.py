@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 
-from assemblies import assembly, part
-
 from kinform.design import Design
 from kinform.model.assembly import Source
 from kinform.model.findings import CheckReport, Finding, Ignored, RuleOutcome
+from support.assemblies import assembly, part
 
 NAMES = (
     "[m6]",

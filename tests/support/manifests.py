@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fixtures.generators.solids import Solid
-from fixtures.generators.writers import binary_stl
+from generators.solids import Solid
+from generators.writers import binary_stl
 
 __all__ = ["manifest", "stated_joint", "stated_part"]
 

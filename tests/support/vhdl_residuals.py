@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lstsq
-from vhdl_expressions import Evaluator, names_in, parse
-from vhdl_reader import SIZES
+
+from support.vhdl_expressions import Evaluator, names_in, parse
+from support.vhdl_reader import SIZES
 
 
 def chosen(statement, evaluate, values):
