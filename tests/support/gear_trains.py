@@ -44,7 +44,7 @@ def limited(outline, low, high):
 
 
 def ring(teeth, outer, tips):
-    """A wheel with inner teeth, whose spaces are the teeth of an outer one; short enough not to foul a pinion's roots."""
+    """A wheel with inner teeth, whose spaces are the teeth of an outer one; too short to foul a pinion's roots."""
     outline = limited(Gear(teeth, thin=-0.08).outline(), tips, outer)
     return rod(outer, 0, WIDTH, 96) - extrusion(outline, -1, WIDTH + 1)
 

@@ -1,4 +1,18 @@
-"""Joints and mobility from contacts: screw algebra, constraint rows, decisions, loop closure."""
+"""Joints and mobility from contacts: screw algebra, constraint rows, decisions, loop closure.
+
+`derivation` is the method of the stage, from contacts to `model.kinematics.Kinematics`. The rooms, in the order in
+which one reads them; each knows those before it and none after it (separation needs `pair` and `answers` only):
+
+- `pair`: the joint of two bodies, from the contact between them. Its docstring tells how a joint is decided.
+- `bodies`: which parts are one body, and which bodies have a joint.
+- `loops`: closure of the loops that joints make. Its docstring tells how a loop is closed.
+- `axes`: joint axes made exactly consistent across the assembly.
+- `mobility`: freedoms of the whole, their finite counterparts, redundancy, couplings.
+- `separation`: J, and what comes apart.
+- `questions`: what users ask of all that.
+
+Beside them `constants` has every number that decides, with its reason; `wording` puts spaces of motions and of forces
+in words; `answers` is how steps are found that an earlier run has taken."""
 
 from kinform.kinematics.derivation import derive, functional, mobility_within
 from kinform.kinematics.mobility.named_freedoms import Motions

@@ -1,9 +1,9 @@
 """Spaces of screws in words: of relative motions, and of the forces and moments that are held against them.
 
-Motions: the Lie subgroup that a space is, and what turns and slides span it. The ten kinds of subgroups of rigid motions
-beside the identity and all of them: revolute, prismatic, screw, cylindrical, planar translation, planar, spherical,
-planar screw, spatial translation, Schoenflies (Hervé 1978). The lower pairs among them have a type of their own; the
-others are `general` joints, and only words tell them apart.
+Motions: the Lie subgroup that a space is, and what turns and slides span it. The ten kinds of subgroups of rigid
+motions beside the identity and all of them: revolute, prismatic, screw, cylindrical, planar translation, planar,
+spherical, planar screw, spatial translation, Schoenflies (Hervé 1978). The lower pairs among them have a type of
+their own; the others are `general` joints, and only words tell them apart.
 
 Forces and moments: readable directions that span a space of wrenches, "force along z, moments about x and y".
 """

@@ -198,7 +198,7 @@ def _moves(loops: _Loops, q: Array, rank: int) -> Array:
     least by their uncertainties.
 
     What a frame's twist does to a loop is the difference of what the bodies on its two sides make of it, in the sense
-    in which the loop runs through the joint. Of that only what no joint rate can close counts: the rows beyond the rank.
+    in which the loop runs through the joint. Of that only what no joint rate can close counts: rows beyond the rank.
     """
     system, frame, sigma = loops.system, loops.frame, loops.sigma
     number = {body: i for i, body in enumerate(sorted({n for edge in loops.edges for n in edge}))}

@@ -1,1 +1,5 @@
-"""The bodies and joints of an assembly."""
+"""Which parts are one body, and which bodies have a joint.
+
+`merging` makes parts one, by groups, assumptions and contact; `classification` asks `pair` about every two bodies
+that touch, again until nothing fuses; `stated_joints` are those that need no contact, `fasteners` what suggestions
+add, where they are asked for; `extents` says how large bodies are."""

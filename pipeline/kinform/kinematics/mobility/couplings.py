@@ -56,8 +56,8 @@ def couplings_between(
 
 
 def _sides(through: int, joints: Sequence[Joint], around: Mapping[str, list[int]]) -> list[tuple[int, int]]:
-    """Joints of one freedom that join the two bodies of the joint `through` to a common third one, in the order of their
-    names."""
+    """Joints of one freedom that join the two bodies of the joint `through` to a common third one, in the order of
+    their names."""
     pairs = []
     first, second = joints[through].bodies
     for a in around[first]:

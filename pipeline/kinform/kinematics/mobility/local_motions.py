@@ -138,7 +138,9 @@ def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = Non
     """Configurations (D, n) near `start` (D, n) that close the loops as well as Gauss–Newton can, their residuals (D,)
     and Jacobians (D, 6 loops, n).
 
-    No iteration moves by more than half of `step`. With `rank` only so many singular values are used, and convergence is quadratic or there is none."""
+    No iteration moves by more than half of `step`. With `rank` only so many singular values are used, and convergence
+    is quadratic or there is none.
+    """
     q = start.copy()
     active = np.arange(len(q))
     for _ in range(SLOW_ITERATIONS if rank is None else FAST_ITERATIONS):

@@ -105,9 +105,9 @@ def _concurrent(forces: Array) -> bool:
 def _together(joints: Sequence[Joint], block: Block, count: int, rest: int) -> list[Redundancy]:
     """Self-stresses, `count` in all, that no loop of the basis has alone (`rest`), in minimal sets of joints.
 
-    A combination z of the self-stresses gives each loop a wrench, and each joint the sum of those of its loops, which is
-    what it bears. Those of single loops are taken first. Then, as long as some are left, joint after joint is asked to
-    bear nothing, wherever a combination is left that is new: what still bears is a minimal set.
+    A combination z of the self-stresses gives each loop a wrench, and each joint the sum of those of its loops, which
+    is what it bears. Those of single loops are taken first. Then, as long as some are left, joint after joint is asked
+    to bear nothing, wherever a combination is left that is new: what still bears is a minimal set.
     """
     spaces = [joint.twists for joint in joints]
     norms = np.concatenate([np.linalg.norm(scaled(s.T, block.frame), axis=0) for s in spaces])

@@ -245,8 +245,8 @@ def _near(outline: _Outline, other: _Outline) -> Array:
 def _stops(motion: _Outline, still: Array, moving: Array) -> tuple[float, float]:
     """How far `moving` edges can go forwards and backwards until they meet `still` ones; negative where they overlap.
 
-    Straight edges meet first at a corner of one of them: each corner of the one side is held against the material of the
-    other at its own level.
+    Straight edges meet first at a corner of one of them: each corner of the one side is held against the material of
+    the other at its own level.
     """
     forwards: list[float] = []
     backwards: list[float] = []

@@ -122,6 +122,6 @@ def _completed(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array
 
 
 def _all_preserve(evidence: Evidence, twists: Array, keep: Flags, slack: float = 1.0) -> bool:
-    """Does every kept patch slide on itself under the twist (6,) or each of the twists (6, n), within its tolerances?"""
+    """Does every kept patch slide on itself under the twist (6,), or each of the twists (6, n)?"""
     twists = twists.reshape(6, -1)
     return bool(preserved_motions(evidence, twists, evidence.rows @ twists, slack)[keep].all())
