@@ -236,9 +236,13 @@ def test_contact_does_not_say_whether_a_stated_joint_is_held():
 # --- meshes, and metamorphic --------------------------------------------------------------------
 
 CASES = {
-    "peg in a blind hole": (lambda: box(-20, 20, -20, 20, -20, 0) - rod(5.05, -15, 1, 48), lambda: rod(5, -15, 10), [Z]),
+    "peg in a blind hole": (
+        lambda: box(-20, 20, -20, 20, -20, 0) - rod(5.05, -15, 1, 48), lambda: rod(5, -15, 10), [Z],
+    ),
     "ball in half a socket": (lambda: box(-20, 20, -20, 20, -20, 0) - ball(8.05, 64, 3), lambda: ball(8), [Z]),
-    "ball in a socket past its equator": (lambda: box(-20, 20, -20, 20, -20, 5) - ball(8.05, 64, 3), lambda: ball(8), []),
+    "ball in a socket past its equator": (
+        lambda: box(-20, 20, -20, 20, -20, 5) - ball(8.05, 64, 3), lambda: ball(8), [],
+    ),
     "box in an open slot": (
         lambda: box(-20, 20, -20, 20, -20, 7) - box(-5, 5, -30, 30, -7, 8), lambda: box(-5, 5, -6, 6, -7, 7), [Z],
     ),

@@ -41,7 +41,8 @@ def the_screw(joints, X, lead, scale=1e-3):
     "thread",
     [
         {"lead": 1.0, "half": 3.0}, {"lead": -4.0}, {"lead": 10.0}, {"lead": 8.0, "starts": 2},
-        {"lead": -12.0, "starts": 3}, {"lean": 0.0}, {"lead": 1.5, "crest": 5.0, "depth": 0.9, "lean": 30.0, "half": 4.0},
+        {"lead": -12.0, "starts": 3}, {"lean": 0.0},
+        {"lead": 1.5, "crest": 5.0, "depth": 0.9, "lean": 30.0, "half": 4.0},
     ],
     ids=str,
 )  # fmt: skip
