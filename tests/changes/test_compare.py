@@ -10,7 +10,7 @@ import pytest
 from markdown_it import MarkdownIt
 
 from kinform.changes import Snapshot, Tolerance, compare, render
-from kinform.changes.snapshot import Axis, BodyMass, JointState
+from kinform.changes.behaviours import Axis, BodyMass, JointState
 
 HINGE = JointState(
     "door~frame", ("door", "frame"), "revolute", "determined", 1, Axis((0.0, 0.0, 1.0), (0.1, 0.0, 0.5)), None, None, None,
@@ -64,10 +64,10 @@ CASES = {
         with_joint(HINGE, axis=Axis((math.sin(0.01), 0.0, math.cos(0.01)), (0.1, 0.0, 0.5))),
         [("axis-tilted", "door~frame", "axis tilted by 0.573°")],
     ),
-    "upper end": (with_joint(HINGE, upper=math.radians(26.0)), [("range", "door~frame", "upper end of the range -4°")]),
-    "lower end of a slide": (with_joint(SLIDE, lower=-0.098), [("range", "drawer~frame", "lower end of the range +2 mm")]),
+    "upper end": (with_joint(HINGE, range_upper=math.radians(26.0)), [("range", "door~frame", "upper end of the range -4°")]),
+    "lower end of a slide": (with_joint(SLIDE, range_lower=-0.098), [("range", "drawer~frame", "lower end of the range +2 mm")]),
     "free": (
-        with_joint(HINGE, upper=math.inf),
+        with_joint(HINGE, range_upper=math.inf),
         [("range", "door~frame", "upper end of the range was 30°, is unbounded")],
     ),
     "gone": (replace(DESK, joints=(HINGE,)), [("joint-gone", "drawer~frame", "is gone (prismatic)")]),
@@ -84,11 +84,11 @@ CASES = {
         [("mass", "door", "mass is no longer known")],
     ),
     "centre": (
-        replace(DESK, masses=(replace(DESK.masses[0], centre=(0.0, 0.2, 0.001)), *DESK.masses[1:])),
+        replace(DESK, masses=(replace(DESK.masses[0], centre_of_mass=(0.0, 0.2, 0.001)), *DESK.masses[1:])),
         [("centre-of-mass", "door", "centre of mass moved by 1 mm")],
     ),
     "inertia": (
-        replace(DESK, masses=(replace(DESK.masses[0], moments=(1e-3, 2e-3, 2e-3)), *DESK.masses[1:])),
+        replace(DESK, masses=(replace(DESK.masses[0], principal_moments=(1e-3, 2e-3, 2e-3)), *DESK.masses[1:])),
         [("inertia", "door", "principal moments changed by up to 20 %")],
     ),
     "collision": (
@@ -119,7 +119,7 @@ def test_a_change_is_told(case):
 
 def test_an_axis_that_points_the_other_way_has_not_moved_and_turns_the_range_round():
     other = Axis((0.0, 0.0, -1.0), (0.1, 0.0, -7.0))
-    assert told(with_joint(HINGE, axis=other, lower=-HINGE.upper, upper=-HINGE.lower)) == []
+    assert told(with_joint(HINGE, axis=other, range_lower=-HINGE.range_upper, range_upper=-HINGE.range_lower)) == []
     assert told(with_joint(HINGE, axis=other)) == [
         ("range", "door~frame", "lower end of the range +60°"),
         ("range", "door~frame", "upper end of the range +60°"),
@@ -128,14 +128,16 @@ def test_an_axis_that_points_the_other_way_has_not_moved_and_turns_the_range_rou
 
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_an_end_that_is_no_longer_known_is_told(side):
-    after = with_joint(HINGE, **{side: None})
+    after = with_joint(HINGE, **{f"range_{side}": None})
     assert [(kind, name) for kind, name, _ in told(after)] == [("range", "door~frame")]
     assert "is not known" in told(after)[0][2]
     assert compare(after, DESK).code == 1
 
 
 def test_ranges_that_only_one_side_computed_are_no_change_and_not_verified():
-    unranged = tuple(replace(joint, lower=None, upper=None, range_status="unknown") for joint in DESK.joints)
+    unranged = tuple(
+        replace(joint, range_lower=None, range_upper=None, range_status="unknown") for joint in DESK.joints
+    )
     found = compare(DESK, replace(DESK, joints=unranged, ranges=None))
     assert (found.changes, found.missing, found.code) == ((), (("ranges", "not computed after"),), 2)
 
@@ -171,7 +173,13 @@ def test_a_body_with_a_new_name_keeps_its_joints_and_its_mass():
 
 
 def test_bodies_in_the_other_order_turn_the_range_round():
-    turned = replace(HINGE, name="frame~gate", bodies=("frame", "gate"), lower=-HINGE.upper, upper=-HINGE.lower)
+    turned = replace(
+        HINGE,
+        name="frame~gate",
+        bodies=("frame", "gate"),
+        range_lower=-HINGE.range_upper,
+        range_upper=-HINGE.range_lower,
+    )
     after = replace(
         DESK, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("door",))), joints=(SLIDE, turned),
         masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")),
@@ -237,7 +245,7 @@ def test_a_part_with_another_name_and_the_same_mesh_is_renamed_and_nothing_else(
     before = replace(DESK, shapes=(("door", "a"), ("drawer", "b"), ("frame", "c"), ("knob", "d")))
     gate = replace(
         before, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("gate",))), shapes=(*before.shapes[1:], ("gate", "a")),
-        joints=(SLIDE, replace(HINGE, name="frame~gate", bodies=("frame", "gate"), lower=-HINGE.upper, upper=-HINGE.lower)),
+        joints=(SLIDE, replace(HINGE, name="frame~gate", bodies=("frame", "gate"), range_lower=-HINGE.range_upper, range_upper=-HINGE.range_lower)),
         masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")), ranges=("drawer~frame", "frame~gate"),
         interferences=((("frame", "gate"), 1e-4),), findings=(("KF304", ("gate",), "note", 1),),
     )  # fmt: skip

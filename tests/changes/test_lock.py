@@ -74,8 +74,8 @@ def test_the_same_behaviour_passes_and_an_unknown_one_is_not_verified(four_bar):
 
 def test_unbounded_ranges_survive(four_bar):
     behaviour = snapshot(four_bar)
-    joint = replace(behaviour.joints[0], lower=-math.inf, upper=math.inf, range_status="unbounded")
-    other = replace(behaviour.joints[1], lower=-0.25, upper=0.5, range_status="found")
+    joint = replace(behaviour.joints[0], range_lower=-math.inf, range_upper=math.inf, range_status="unbounded")
+    other = replace(behaviour.joints[1], range_lower=-0.25, range_upper=0.5, range_status="found")
     behaviour = replace(behaviour, joints=(joint, other, *behaviour.joints[2:]))
     lock = read_lock(write_lock(behaviour), "b.json")
     assert compare(lock.behaviour, behaviour, lock.tolerance).changes == ()

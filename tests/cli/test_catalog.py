@@ -11,7 +11,7 @@ import pytest
 from support.places import FIXTURES
 
 from kinform import results
-from kinform.catalog import many
+from kinform.catalog import joint_count
 from kinform_cli.main import main
 
 DESIGNS = {
@@ -152,7 +152,7 @@ def test_a_damaged_catalog_is_an_error_and_no_traceback(designs, capsys):
 
 
 def test_counts_of_joints():
-    assert many("revolute") == ("revolute", 1, None)
-    assert many("revolute:2") == ("revolute", 2, 2)
-    assert many("revolute:0") == ("revolute", 0, 0)
-    assert many("Revolute:2+") == ("revolute", 2, None)
+    assert joint_count("revolute") == ("revolute", 1, None)
+    assert joint_count("revolute:2") == ("revolute", 2, 2)
+    assert joint_count("revolute:0") == ("revolute", 0, 0)
+    assert joint_count("Revolute:2+") == ("revolute", 2, None)

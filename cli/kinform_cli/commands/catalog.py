@@ -133,7 +133,7 @@ def find(
         tuple(name or ()), tuple(meets or ()), verified,
     )  # fmt: skip
     designs, total = catalog.find(file, wanted)
-    states = [catalog.stale(entry, file.parent) for entry in designs]
+    states = [catalog.source_state(entry, file.parent) for entry in designs]
     from kinform_cli.views import catalog as view
 
     if format is TableFormat.json:
@@ -164,9 +164,9 @@ def _keep(kept: Catalog, refused: Sequence[Refused], file: Path) -> None:
 
 
 def _joint_counts(asked: Sequence[str]) -> tuple[tuple[str, int, int | None], ...]:
-    from kinform.catalog import many
+    from kinform.catalog import joint_count
 
     try:
-        return tuple(many(text) for text in asked)
+        return tuple(joint_count(text) for text in asked)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--joint") from None

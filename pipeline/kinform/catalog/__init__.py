@@ -5,7 +5,7 @@ It holds nothing that the results files do not say, and can be rebuilt from them
 
 from kinform.catalog.build import Refused, add, rebuild
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, entry_of
-from kinform.catalog.find import Wanted, find, many, stale
+from kinform.catalog.search import Wanted, find, joint_count, source_state
 from kinform.catalog.store import SCHEMA, Catalog, read, write
 
 __all__ = [
@@ -19,9 +19,9 @@ __all__ = [
     "add",
     "entry_of",
     "find",
-    "many",
+    "joint_count",
     "read",
     "rebuild",
-    "stale",
+    "source_state",
     "write",
 ]

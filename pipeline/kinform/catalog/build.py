@@ -40,11 +40,11 @@ def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> 
     kept = set(catalog.sources)
     for source in sorted({Path(source) for source in sources}):
         if source.is_dir():
-            found, left_out = _below(source, folder)
+            designs, left_out = _designs_of(source, folder)
             refused += left_out
-            if not found:
+            if not designs:
                 problems.append(_empty(source, left_out))
-            entries |= {entry.path: entry for entry in found}
+            entries |= {entry.path: entry for entry in designs}
         else:
             try:
                 entry = _entry(source, folder)
@@ -55,8 +55,8 @@ def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> 
         kept.add(_relative(source, folder))
     if problems:
         raise InputError(problems)
-    known = {entry.path: entry for entry in catalog.entries}
-    return Catalog(tuple(sorted(kept)), _sorted((known | entries).values())), tuple(refused)
+    earlier = {entry.path: entry for entry in catalog.entries}
+    return Catalog(tuple(sorted(kept)), _sorted((earlier | entries).values())), tuple(refused)
 
 
 def rebuild(catalog: Catalog, folder: str | Path) -> tuple[Catalog, tuple[Refused, ...]]:
@@ -64,18 +64,9 @@ def rebuild(catalog: Catalog, folder: str | Path) -> tuple[Catalog, tuple[Refuse
     entries: dict[str, Entry] = {}
     refused: list[Refused] = []
     for name in catalog.sources:
-        source = Path(folder) / name
-        if source.is_dir():
-            found, left_out = _below(source, folder)
-            refused += left_out
-            entries |= {entry.path: entry for entry in found}
-            continue
-        try:
-            entry = _entry(source, folder)
-        except _NOT_A_DESIGN as error:
-            refused.append(Refused(name, _problem(error, source).message))
-            continue
-        entries[entry.path] = entry
+        designs, left_out = _designs_of(Path(folder) / name, folder)
+        refused += left_out
+        entries |= {entry.path: entry for entry in designs}
     return Catalog(catalog.sources, _sorted(entries.values())), tuple(refused)
 
 
@@ -88,9 +79,12 @@ def digest_of(path: Path) -> str:
 _NOT_A_DESIGN = (ResultsError, StageError)
 
 
-def _below(folder: Path, home: str | Path) -> tuple[list[Entry], list[Refused]]:
+def _designs_of(source: Path, home: str | Path) -> tuple[list[Entry], list[Refused]]:
+    """The designs below a folder, or in a results file, and what is none."""
     entries, refused = [], []
-    for path in sorted(p for p in folder.rglob("*") if p.suffix.lower() in _ENDINGS and p.is_file()):
+    paths = source.rglob("*") if source.is_dir() else ()
+    files = [path for path in paths if path.suffix.lower() in _ENDINGS and path.is_file()]
+    for path in sorted(files) if source.is_dir() else [source]:
         try:
             entries.append(_entry(path, home))
         except _NOT_A_DESIGN as error:

@@ -122,9 +122,8 @@ def _loops(kinematics: Kinematics) -> int:
 def _mass(design: Design) -> float | None:
     if design.mass is None:
         return None
-    masses = [part.mass for part in design.mass.parts]
-    known = [mass for mass in masses if mass is not None]
-    return float(sum(known)) if known and len(known) == len(masses) else None
+    masses = [part.mass for part in design.mass.parts if part.mass is not None]
+    return float(sum(masses)) if masses and len(masses) == len(design.mass.parts) else None
 
 
 def _size(assembly: Assembly) -> Triple | None:
@@ -138,9 +137,9 @@ def _size(assembly: Assembly) -> Triple | None:
 def _joints(assembly: Assembly, kinematics: Kinematics) -> tuple[CatalogJoint, ...]:
     stated: dict[str, IntendedJoint] = {}
     for intended in assembly.function.joints:
-        found = resolve_joint(assembly, kinematics, intended.name).joint
-        if found is not None:
-            stated.setdefault(str(found.name), intended)
+        derived = resolve_joint(assembly, kinematics, intended.name).joint
+        if derived is not None:
+            stated.setdefault(str(derived.name), intended)
     out = []
     for joint in kinematics.joints:
         wanted = stated.get(joint.name)
@@ -166,14 +165,14 @@ def _requirement(wanted: Requirement, report: CheckReport | None) -> CatalogRequ
     if report is None or not any(rule.code == _UNDECIDED and rule.outcome != "skipped" for rule in report.rules):
         return CatalogRequirement(wanted.name, wanted.kind, None)
     accepted = (item.finding for item in report.ignored)
-    own = {
+    codes = {
         finding.code
         for finding in (*report.findings, *accepted)
         if finding.subject[:1] == (wanted.name,) and (finding.file, finding.line) == (wanted.file, wanted.line)
     }
     narrowed = any(rule.reason == "not selected by [check]" and rule.code.startswith(_KINDS) for rule in report.rules)
-    met = not own
-    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in own or (met and narrowed) else met)
+    met = not codes
+    return CatalogRequirement(wanted.name, wanted.kind, None if _UNDECIDED in codes or (met and narrowed) else met)
 
 
 def _triple(values: object) -> Triple | None:

@@ -9,14 +9,15 @@ from __future__ import annotations
 import contextlib
 import sqlite3
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
 from kinform.results import replace_file
 
-__all__ = ["SCHEMA", "Catalog", "opened", "read", "write"]
+__all__ = ["SCHEMA", "Catalog", "entry_from", "open_catalog", "read", "write"]
 
 SCHEMA = "kinform/catalog/1"
 
@@ -54,7 +55,7 @@ class Catalog:
 
 def read(path: str | Path) -> Catalog:
     """The catalog at `path`. Raises InputError when there is none, or it is something else."""
-    with opened(path) as database:
+    with open_catalog(path) as database:
         sources = tuple(row[0] for row in database.execute("SELECT path FROM sources ORDER BY path"))
         rows = database.execute("SELECT * FROM designs ORDER BY path").fetchall()
         return Catalog(sources, tuple(entry_from(database, row) for row in rows))
@@ -63,15 +64,15 @@ def read(path: str | Path) -> Catalog:
 def write(catalog: Catalog, path: str | Path) -> None:
     """Write the catalog in one step. Raises InputError where `path` holds something else, or is not writable."""
     if Path(path).exists() and Path(path).stat().st_size:
-        with opened(path):
+        with open_catalog(path):
             pass
     replace_file(path, _bytes(catalog))
 
 
 @contextlib.contextmanager
-def opened(path: str | Path) -> Iterator[sqlite3.Connection]:
+def open_catalog(path: str | Path) -> Iterator[sqlite3.Connection]:
     """The database, open for reading. Raises InputError when there is none, or it is no catalog."""
-    database = _opened(Path(path))
+    database = _connection(Path(path))
     try:
         yield database
     except sqlite3.DatabaseError as error:
@@ -80,7 +81,7 @@ def opened(path: str | Path) -> Iterator[sqlite3.Connection]:
         database.close()
 
 
-def _opened(path: Path) -> sqlite3.Connection:
+def _connection(path: Path) -> sqlite3.Connection:
     make = "make one: kinform catalog add DIR"
     try:
         with path.open("rb") as stream:
@@ -94,13 +95,13 @@ def _opened(path: Path) -> sqlite3.Connection:
         raise _refuse(path, *other)
     database = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
     try:
-        found = database.execute("SELECT schema FROM catalog").fetchall()
+        schemas = database.execute("SELECT schema FROM catalog").fetchall()
     except sqlite3.DatabaseError:
         database.close()
         raise _refuse(path, *other) from None
-    if found != [(SCHEMA,)]:
+    if schemas != [(SCHEMA,)]:
         database.close()
-        schema = found[0][0] if found else "none"
+        schema = schemas[0][0] if schemas else "none"
         raise _refuse(path, f"the catalog has the schema {schema}; this kinform reads {SCHEMA}", "make it again")
     database.row_factory = sqlite3.Row
     database.create_function("fold", 1, lambda text: "" if text is None else str(text).casefold(), deterministic=True)
@@ -109,16 +110,12 @@ def _opened(path: Path) -> sqlite3.Connection:
 
 def entry_from(database: sqlite3.Connection, row: sqlite3.Row) -> Entry:
     """The entry of one row of `designs`."""
-    own = (row["path"],)
-    parts = database.execute("SELECT name FROM parts WHERE design = ? ORDER BY name", own)
-    joints = database.execute("SELECT * FROM joints WHERE design = ? ORDER BY name", own)
-    wanted = database.execute("SELECT name, kind, met FROM requirements WHERE design = ? ORDER BY name", own)
-    plain = (
-        "path", "digest", "name", "units", "bodies", "instantaneous", "finite", "effective", "idle", "loops", "mass",
-        "verdict",
-    )  # fmt: skip
+    key = (row["path"],)
+    parts = database.execute("SELECT name FROM parts WHERE design = ? ORDER BY name", key)
+    joints = database.execute("SELECT * FROM joints WHERE design = ? ORDER BY name", key)
+    wanted = database.execute("SELECT name, kind, met FROM requirements WHERE design = ? ORDER BY name", key)
     return Entry(
-        **{key: row[key] for key in plain},
+        **_values(Entry, row),
         size=_triple(row, "size"),
         parts=tuple(part[0] for part in parts),
         joints=tuple(_joint(joint) for joint in joints),
@@ -129,10 +126,12 @@ def entry_from(database: sqlite3.Connection, row: sqlite3.Row) -> Entry:
 
 
 def _joint(row: sqlite3.Row) -> CatalogJoint:
-    plain = (
-        "name", "type", "status", "freedoms", "pitch", "lower", "upper", "intended", "wanted_lower", "wanted_upper",
-    )  # fmt: skip
-    return CatalogJoint(**{key: row[key] for key in plain}, axis=_triple(row, "axis"), point=_triple(row, "point"))
+    return CatalogJoint(**_values(CatalogJoint, row), axis=_triple(row, "axis"), point=_triple(row, "point"))
+
+
+def _values(record: type[Entry | CatalogJoint], row: sqlite3.Row) -> dict[str, Any]:
+    """The fields of a record for which the row has a column."""
+    return {field.name: row[field.name] for field in fields(record) if field.name in row.keys()}  # noqa: SIM118
 
 
 def _triple(row: sqlite3.Row, name: str) -> Triple | None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from kinform.changes.behaviours import Snapshot, snapshot
 from kinform.changes.change import Change
-from kinform.changes.compare import Comparison, compare
+from kinform.changes.comparison import Comparison, compare
 from kinform.changes.lock import Lock, read_lock, with_lock, write_lock
 from kinform.changes.render import FORMATS, render
-from kinform.changes.snapshot import Snapshot, snapshot
 from kinform.changes.tolerance import Tolerance
 
 __all__ = [

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kinform.changes.snapshot import Axis, Vector
-from kinform.foundation.words import direction, length, place
+from kinform.changes.behaviours import Axis, Vector
+from kinform.foundation.words import counted, direction, length, place
 
-__all__ = ["Change", "Said", "freedoms", "listed", "quoted", "signed"]
+__all__ = ["Change", "Lengths", "freedoms_changed", "quoted", "signed"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Said:
+class Lengths:
     """Lengths and places in the units of an assembly."""
 
     units: str
@@ -51,21 +51,16 @@ class Said:
         return direction(axis.direction) + ("" if axis.point is None else f" through {self.place(axis.point)}")
 
 
-def quoted(name: str) -> str:
-    """A name in quotes."""
-    return f"'{name}'"
-
-
-def listed(names: list[str]) -> str:
+def quoted(*names: str) -> str:
     """Names in quotes, with commas."""
-    return ", ".join(map(quoted, names))
+    return ", ".join(f"'{name}'" for name in names)
 
 
-def freedoms(count: int) -> str:
-    """A number of freedoms with its noun."""
-    return f"{count} freedom" + ("" if count == 1 else "s")
+def freedoms_changed(by: int) -> str:
+    """ "1 freedom gained", "2 freedoms lost"."""
+    return f"{counted(abs(by), 'freedom')} {'gained' if by > 0 else 'lost'}"
 
 
-def signed(value: float, say: Callable[[float], str]) -> str:
+def signed(value: float, words: Callable[[float], str]) -> str:
     """A difference with its sign."""
-    return say(value) if value < 0 else f"+{say(value)}"
+    return words(value) if value < 0 else f"+{words(value)}"

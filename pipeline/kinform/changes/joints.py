@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from kinform.changes.change import Change, Said, freedoms, quoted, signed
+from kinform.changes.behaviours import Axis, JointState, Snapshot
+from kinform.changes.change import Change, Lengths, freedoms_changed, quoted, signed
 from kinform.changes.matching import holder
-from kinform.changes.snapshot import Axis, JointState, Snapshot
 from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import angle, direction
 
@@ -17,17 +17,17 @@ __all__ = ["joint_changes"]
 
 
 def joint_changes(
-    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Said, ranged: bool
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Lengths, ranged: bool
 ) -> Iterator[Change]:
     """Joints that came, went or changed; ranges where `ranged`: known on both sides."""
     into = {name: now.get(name) or holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
     new = {frozenset(joint.bodies): joint for joint in after.joints or ()}
-    found = set()
+    still = set()
     for joint in before.joints or ():
         ends = [into.get(name) for name in joint.bodies]
         pair = frozenset(str(end) for end in ends)
         if pair in new and len(pair) == 2:
-            found.add(pair)
+            still.add(pair)
             turned = tuple(str(end) for end in ends) != new[pair].bodies
             yield from _joint(joint, new[pair], within, say)
             if ranged and joint.type == new[pair].type:
@@ -40,23 +40,36 @@ def joint_changes(
         else:
             yield Change("joint-gone", (joint.name,), f"is gone ({joint.type})", joint.type, None)
     for pair, joint in sorted(new.items(), key=lambda item: item[1].name):
-        if pair not in found:
+        if pair not in still:
             yield Change("joint-new", (joint.name,), f"is new ({joint.type}, {joint.status})", None, joint.type)
 
 
-def _joint(old: JointState, new: JointState, within: Tolerance, say: Said) -> Iterator[Change]:
+def _joint(old: JointState, new: JointState, within: Tolerance, say: Lengths) -> Iterator[Change]:
     subject = (new.name,)
     if old.type != new.type:
-        less = new.freedoms - old.freedoms
-        told = "" if not less else f", {freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
+        gain = new.freedoms - old.freedoms
+        message = f", {freedoms_changed(gain)}" if gain else ""
         yield Change(
-            "joint-type", subject, f"was {old.type}, is {new.type}{told}", old.type, new.type, float(less), "freedoms"
+            "joint-type",
+            subject,
+            f"was {old.type}, is {new.type}{message}",
+            old.type,
+            new.type,
+            float(gain),
+            "freedoms",
         )
         return
     if old.freedoms != new.freedoms:
-        less = new.freedoms - old.freedoms
-        told = f"{freedoms(abs(less))} {'gained' if less > 0 else 'lost'}"
-        yield Change("joint-freedoms", subject, told, str(old.freedoms), str(new.freedoms), float(less), "freedoms")
+        gain = new.freedoms - old.freedoms
+        yield Change(
+            "joint-freedoms",
+            subject,
+            freedoms_changed(gain),
+            str(old.freedoms),
+            str(new.freedoms),
+            float(gain),
+            "freedoms",
+        )
     if old.status != new.status:
         yield Change("joint-status", subject, f"was {old.status}, is {new.status}", old.status, new.status)
     yield from _axes(subject, "axis", old.axis, new.axis, within, say)
@@ -76,12 +89,12 @@ def _joint(old: JointState, new: JointState, within: Tolerance, say: Said) -> It
 
 
 def _axes(
-    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: Said
+    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: Lengths
 ) -> Iterator[Change]:
     if old is None or new is None:
         if old is not new:
-            told = f"{what} is {'known now' if old is None else 'no longer known'}"
-            yield Change("axis-known", subject, told, say.line(old), say.line(new))
+            message = f"{what} is {'known now' if old is None else 'no longer known'}"
+            yield Change("axis-known", subject, message, say.line(old), say.line(new))
         return
     one, two = np.array(old.direction), np.array(new.direction)
     tilt = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
@@ -100,30 +113,32 @@ def _axes(
             )  # fmt: skip
 
 
-def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, say: Said) -> Iterator[Change]:
+def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, say: Lengths) -> Iterator[Change]:
     """How far the joint goes. Its value is of the second body relative to the first, about the axis: exchanged bodies
     turn the range round, and so does an axis that has come to point the other way."""
     if old.axis is not None and new.axis is not None and np.dot(old.axis.direction, new.axis.direction) < 0.0:
         turned = not turned
-    lower, upper = (new.lower, new.upper) if not turned else (_minus(new.upper), _minus(new.lower))
+    lower, upper = (
+        (new.range_lower, new.range_upper) if not turned else (_minus(new.range_upper), _minus(new.range_lower))
+    )
     subject = (new.name,)
     if old.range_status != new.range_status:
-        told = f"range was {old.range_status}, is {new.range_status}"
-        yield Change("range-status", subject, told, old.range_status, new.range_status)
+        message = f"range was {old.range_status}, is {new.range_status}"
+        yield Change("range-status", subject, message, old.range_status, new.range_status)
     shown, agree, unit = (say.length, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
-    for side, one, two in (("lower", old.lower, lower), ("upper", old.upper, upper)):
+    for side, one, two in (("lower", old.range_lower, lower), ("upper", old.range_upper, upper)):
         if one is None or two is None:
             if one is not two and old.range_status == new.range_status:
-                told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
-                yield Change("range", subject, told, _end(one, shown), _end(two, shown))
+                message = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+                yield Change("range", subject, message, _end(one, shown), _end(two, shown))
         elif agree(one, two):
             continue
         elif math.isfinite(one) and math.isfinite(two):
-            told = f"{side} end of the range {signed(two - one, shown)}"
-            yield Change("range", subject, told, shown(one), shown(two), two - one, unit)
+            message = f"{side} end of the range {signed(two - one, shown)}"
+            yield Change("range", subject, message, shown(one), shown(two), two - one, unit)
         else:
-            told = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
-            yield Change("range", subject, told, _end(one, shown), _end(two, shown))
+            message = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
+            yield Change("range", subject, message, _end(one, shown), _end(two, shown))
 
 
 def _end(value: float | None, say: Callable[[float], str]) -> str:

@@ -14,9 +14,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from kinform.changes.behaviours import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.change import Change
-from kinform.changes.compare import Comparison, compare
-from kinform.changes.snapshot import Axis, BodyMass, JointState, Snapshot, Vector
+from kinform.changes.comparison import Comparison, compare
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
@@ -99,7 +99,7 @@ def read_lock(text: str, file: str) -> Lock:
 
 def with_lock(report: CheckReport, design: Design, lock: Lock) -> CheckReport:
     """The report with a finding for each difference from the lock, and what became of the rule KF450."""
-    from kinform.changes.snapshot import snapshot
+    from kinform.changes.behaviours import snapshot
     from kinform.consistency import amended
 
     found = compare(lock.behaviour, snapshot(design), lock.tolerance)
@@ -164,9 +164,9 @@ def _short(value: float) -> float:
 def _mass(body: BodyMass, grain: _Grain) -> dict[str, Any]:
     return {
         "mass_g": None if body.mass is None else grain.mass(body.mass),
-        "centre_of_mass_mm": None if body.centre is None else grain.place(body.centre),
-        "principal_moments_g_mm2": None if body.moments is None else grain.moments(body.moments),
-        "inertia_g_mm2": None if body.tensor is None else grain.moments(body.tensor),
+        "centre_of_mass_mm": None if body.centre_of_mass is None else grain.place(body.centre_of_mass),
+        "principal_moments_g_mm2": None if body.principal_moments is None else grain.moments(body.principal_moments),
+        "inertia_g_mm2": None if body.inertia is None else grain.moments(body.inertia),
     }
 
 
@@ -183,9 +183,9 @@ def _joint(joint: JointState, grain: _Grain) -> dict[str, Any]:
         found["point_mm"] = grain.place(point)
     if joint.pitch is not None:
         found["pitch_mm"] = grain.length(joint.pitch)
-    if joint.range_status != "unknown" or joint.lower is not None or joint.upper is not None:
+    if joint.range_status != "unknown" or joint.range_lower is not None or joint.range_upper is not None:
         unit, say = ("mm", grain.length) if joint.slides else ("deg", grain.angle)
-        limits = [x if x is None else FREE if math.isinf(x) else say(x) for x in (joint.lower, joint.upper)]
+        limits = [x if x is None else FREE if math.isinf(x) else say(x) for x in (joint.range_lower, joint.range_upper)]
         found["range"] = {"status": joint.range_status, unit: limits}
     return found
 
@@ -277,8 +277,8 @@ def _read_joint(joint: Mapping[str, Any]) -> JointState:
         axis2=None if axis2 is None else Axis(axis2, None),
         centre=point if centred else None,
         pitch=None if pitch is None else 1e-3 * float(pitch),
-        lower=None if lower is None else -math.inf if lower == FREE else scale * float(lower),
-        upper=None if upper is None else math.inf if upper == FREE else scale * float(upper),
+        range_lower=None if lower is None else -math.inf if lower == FREE else scale * float(lower),
+        range_upper=None if upper is None else math.inf if upper == FREE else scale * float(upper),
         range_status=str(limits.get("status", "unknown")),
     )
 

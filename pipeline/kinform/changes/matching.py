@@ -10,12 +10,12 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from kinform.changes.snapshot import Snapshot
+from kinform.changes.behaviours import Snapshot
 
-__all__ = ["holder", "matched", "renamed", "with_names"]
+__all__ = ["holder", "new_names", "same_bodies", "with_names"]
 
 
-def renamed(before: Snapshot, after: Snapshot) -> dict[str, str]:
+def new_names(before: Snapshot, after: Snapshot) -> dict[str, str]:
     """By part that is gone: the new part that alone has its mesh, where no other part that is gone has that mesh."""
     old, new = ({part for _, parts in side.bodies or () for part in parts} for side in (before, after))
     gone = [(digest, part) for part, digest in before.shapes if part in old - new]
@@ -52,16 +52,16 @@ def _now(name: str, other: Mapping[str, str]) -> str:
     return other.get(name) or "~".join(sorted(other.get(part, part) for part in name.split("~")))
 
 
-def matched(before: Snapshot, after: Snapshot) -> dict[str, str]:
+def same_bodies(before: Snapshot, after: Snapshot) -> dict[str, str]:
     """By body before: the body after that holds most of its parts, where that is so the other way too."""
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
     there = {name: holder(parts, new) for name, parts in old.items()}
     back = {name: holder(parts, old) for name, parts in new.items()}
-    return {name: found for name, found in there.items() if found is not None and back[found] == name}
+    return {name: body for name, body in there.items() if body is not None and back[body] == name}
 
 
 def holder(parts: tuple[str, ...], bodies: Mapping[str, tuple[str, ...]]) -> str | None:
     """The body that holds most of the parts; None where none holds any."""
-    shared = {name: len(set(parts).intersection(own)) for name, own in bodies.items()}
+    shared = {name: len(set(parts).intersection(held)) for name, held in bodies.items()}
     most = max(shared.values(), default=0)
     return min((name for name, count in shared.items() if count == most), default=None) if most else None

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable
 
 from kinform.changes.change import Change
-from kinform.changes.compare import Comparison
+from kinform.changes.comparison import Comparison
 from kinform.foundation.words import counted, one_line
 from kinform.reports.markdown import cell_code, code, escaped, table
 

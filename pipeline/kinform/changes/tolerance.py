@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 __all__ = ["UNITS", "Tolerance"]
 
 UNITS: dict[str, tuple[str, float]] = {
-    "m": ("length", 1.0), "cm": ("length", 1e-2), "mm": ("length", 1e-3), "um": ("length", 1e-6), "µm": ("length", 1e-6),
-    "in": ("length", 0.0254), "rad": ("angle", 1.0), "deg": ("angle", math.pi / 180.0), "°": ("angle", math.pi / 180.0),
+    "m": ("length", 1.0), "cm": ("length", 1e-2), "mm": ("length", 1e-3), "um": ("length", 1e-6),
+    "µm": ("length", 1e-6), "in": ("length", 0.0254), "rad": ("angle", 1.0),
+    "deg": ("angle", math.pi / 180.0), "°": ("angle", math.pi / 180.0),
     "kg": ("mass", 1.0), "g": ("mass", 1e-3), "mg": ("mass", 1e-6), "%": ("share", 1e-2),
 }  # fmt: skip
 """By unit: what it measures, and its size in SI."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from kinform.behaviour import DcMotor, EffortDrive, MotionDrive, Servo
 from kinform.behaviour.primitives import Ball, OneFreedom
+from kinform.exports.names import free_name
 from kinform.exports.robot import Driver, Robot, RobotLink
 from kinform.model.arrays import Array
 
@@ -58,7 +59,8 @@ def chain(robot: Robot, link: RobotLink, taken: set[str]) -> list[Hinge]:
     out = []
     for k, (name, kind, axis, follows) in enumerate(steps):
         last = k == len(steps) - 1
-        child = link.name if last else _free(f"{link.name}_{k + 1}", taken)
+        child = link.name if last else free_name(f"{link.name}_{k + 1}", taken)
+        taken.add(child)
         offset = link.offset if k == 0 else np.zeros(3)
         out.append(Hinge(name, kind, parent, child, offset, axis, not last, follows, joint.subject))
         parent = child
@@ -75,13 +77,6 @@ def _steps(name: str, primitive: OneFreedom | Ball) -> list[tuple[str, str, Arra
     if lead == 0.0:
         return [turn]
     return [turn, (f"{name}.slide", "prismatic", primitive.omega, (name, lead))]
-
-
-def _free(name: str, taken: set[str]) -> str:
-    while name in taken:
-        name += "_"
-    taken.add(name)
-    return name
 
 
 def tree_losses(robot: Robot, format: str, *, springs: bool = False) -> Iterator[str]:

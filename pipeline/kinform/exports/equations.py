@@ -48,7 +48,8 @@ class Closure:
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """A model as its equations: the tree of its links, what closes the loops, and which rates nothing else determines."""
+    """A model as its equations: the tree of its links, what closes the loops, and which rates nothing else
+    determines."""
 
     model: ExportModel
     tree: Tree
@@ -68,7 +69,8 @@ class Equations:
     """Choices that were made, in sentences."""
 
     def actors(self, joint: JointComponent) -> Iterator[Actor]:
-        """What acts on a joint, tables of motions smoothed where bodies with mass have to follow; one motion at most."""
+        """What acts on a joint, tables of motions smoothed where bodies with mass have to follow; one motion at
+        most."""
         led = False
         for actor in self.model.system.actors(joint.name):
             if not isinstance(actor, MotionDrive):
@@ -199,8 +201,8 @@ def _singular(model: ExportModel) -> tuple[str, ...]:
     if run is None or not len(run.rank) or run.rank.max() <= run.rank[0]:
         return ()
     return (
-        f"the loops away from the start: {run.rank[0]} of their equations are independent there, {run.rank.max()} later "
-        "in our run, and only the former are held; it starts in a singular pose",
+        f"the loops away from the start: {run.rank[0]} of their equations are independent there, {run.rank.max()} "
+        "later in our run, and only the former are held; it starts in a singular pose",
     )
 
 

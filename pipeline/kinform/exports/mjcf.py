@@ -20,7 +20,7 @@ from kinform.exports.constants import GRAIN, LEAST_MOMENT, MOST_FACETS, STEP, ST
 from kinform.exports.exported import Exported
 from kinform.exports.mjcf_drives import actuators, gears, load
 from kinform.exports.model import ExportModel
-from kinform.exports.names import MJCF
+from kinform.exports.names import MJCF, free_name
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render, vector
 from kinform.exports.tree import Closing, Link, Motion
@@ -149,9 +149,7 @@ def _cut(robot: Robot, closing: Closing, bodies: list[_Body], names: set[str]) -
     forward = closing.b != 0
     parent, cut = (closing.a, closing.b) if forward else (closing.b, closing.a)
     whole = bodies[cut]
-    name = f"{whole.link.name} half"
-    while name in names:
-        name += "_"
+    name = free_name(f"{whole.link.name} half", names)
     names.add(name)
     point = closing.joint.geometry.point
     origin = whole.link.link.origin if point is None else point

@@ -16,7 +16,7 @@ from kinform.behaviour.components import EndStop, SpringDamper
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions
-from kinform.function import resolve_joint
+from kinform.function import stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.function import SimulationRequest
@@ -181,11 +181,9 @@ def _ranges(
     """Ranges that the geometry leaves; a side that it leaves open, or that is not known, as the function states it."""
     single = {joint.subject for joint in joints if joint.kind.rates == 1}
     out: dict[str, tuple[float, float]] = {}
-    for stated in assembly.function.joints:
-        derived = resolve_joint(assembly, kinematics, stated.name)
-        if stated.range is not None and derived.joint is not None and derived.joint.name in single:
-            low, high = stated.range if derived.sign > 0 else (-stated.range[1], -stated.range[0])
-            out[derived.joint.name] = (float(low), float(high))
+    for name, (low, high) in stated_ranges(assembly, kinematics):
+        if name in single:
+            out[name] = (float(low), float(high))
     for joint in kinematics.joints:
         if joint.name in single and joint.range_status in ("found", "unbounded"):
             stated_low, stated_high = out.get(joint.name, (-np.inf, np.inf))

@@ -42,8 +42,8 @@ __all__ = ["export"]
 
 LIBRARY = (
     "Frame Shaft Ground Body Revolute Prismatic Screw Spherical Fixed Free Cylindrical Planar PlanarReversed Universal "
-    "Motion Effort Spring Damper Gear Load System Place Turn turned back product Pin Servo Voltage VoltageController Motor "
-    "MotorWithoutCoil"
+    "Motion Effort Spring Damper Gear Load System Place Turn turned back product Pin Servo Voltage VoltageController "
+    "Motor MotorWithoutCoil"
 ).split()
 
 _SUFFIXES = ("", "_closure", "_free", *(f"_held_{k}" for k in (1, 2, 3)))

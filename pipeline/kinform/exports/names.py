@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
-__all__ = ["FILES", "MJCF", "MODELICA", "SDF", "VHDL", "XML", "Language", "comment", "identifiers", "single_line"]
+__all__ = [
+    "FILES", "MJCF", "MODELICA", "SDF", "VHDL", "XML", "Language", "comment", "free_name", "identifiers", "single_line",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,13 @@ def identifiers(
         used.update(language.key(identifier + end) for end in ends)
         out[name] = identifier
     return out
+
+
+def free_name(name: str, taken: Container[str]) -> str:
+    """The name, or the name with underscores behind it where it is taken."""
+    while name in taken:
+        name += "_"
+    return name
 
 
 def single_line(text: str) -> str:

@@ -1,9 +1,9 @@
 """json: the port model as data, its JSON Schema (published in docs/), and reading it back.
 
-The tables of the file follow from the records of `kinform.behaviour`: `kind`, as `behaviour.kinds` calls it, and a key for
-each field. Written by hand is only what JSON says in another form: nodes and exposed ports by name, the geometry of a joint
-beside its type, and the whole. Numbers are doubles in shortest decimal form, so that reading gives an equal model, bit by
-bit.
+The tables of the file follow from the records of `kinform.behaviour`: `kind`, as `behaviour.kinds` calls it, and a key
+for each field. Written by hand is only what JSON says in another form: nodes and exposed ports by name, the geometry of
+a joint beside its type, and the whole. Numbers are doubles in shortest decimal form, so that reading gives an equal
+model, bit by bit.
 """
 
 from __future__ import annotations
@@ -230,7 +230,8 @@ class _Documented(_Strict):
 
 
 def _table_of(record: type, *parts: type, **keys: Any) -> type[_Strict]:
-    """The table of a record: these keys, then one for each field of the record, or of its `parts` where they are given."""
+    """The table of a record: these keys, then one for each field of the record, or of its `parts` where they are
+    given."""
     for entry in (entry for part in parts or (record,) for entry in _entries(part)):
         default = None if entry.sparse else ...
         keys[entry.key] = (entry.type, Field(default, description=DESCRIPTIONS.get(entry.key)))

@@ -16,7 +16,7 @@ from kinform.exports.chains import Hinge, chain, tree_losses
 from kinform.exports.constants import GRAIN, LEAST_SKEW
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
-from kinform.exports.names import SDF
+from kinform.exports.names import SDF, free_name
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
 from kinform.model.arrays import Array
@@ -77,7 +77,7 @@ def export(model: ExportModel) -> Exported:
     remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     text = render(
         "model.sdf.j2", robot=robot, joints=joints, grains=grains, lost=lost, remarks=remarks, grain=GRAIN,
-        ground=_free(robot, "world_fixed"),
+        ground=free_name("world_fixed", robot.joint_names.values()),
     )  # fmt: skip
     return Exported({f"{robot.stem}.sdf": text, **robot.meshes}, tuple(lost), tuple(remarks))
 
@@ -125,9 +125,3 @@ def _mimicking(
     if not done:
         lost.append(f"{gear}: SDF lets a joint follow one other only, and none that closes a loop")
     return out
-
-
-def _free(robot: Robot, name: str) -> str:
-    while name in robot.joint_names.values():
-        name += "_"
-    return name

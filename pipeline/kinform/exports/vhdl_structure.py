@@ -22,7 +22,11 @@ COUNT = {
     "prismatic_joint": 41, "screw_joint": 47, "cylindrical_joint": 49, "planar_joint": 57, "universal_joint": 52,
     "spherical_joint": 45, "closure": 60, "load": 21, "spring": 1, "damper": 1, "gear": 2, "servo": 6, "dc_motor": 2,
     "voltage_controller": 6,
-    **{f"{kind}_{law}": 1 for kind in ("motion", "effort", "target", "voltage") for law in ("constant", "ramp", "sine")},
+    **{
+        f"{kind}_{law}": 1
+        for kind in ("motion", "effort", "target", "voltage")
+        for law in ("constant", "ramp", "sine")
+    },
 }  # fmt: skip
 """Equations of each entity, as many as its unknowns: through quantities, and quantities that are not inputs."""
 
@@ -40,7 +44,8 @@ _SUFFIXES = (
         f"_{name}"
         for name in (
             "m c inertia n s n1 n2 n3 lead w_start given effort level offset slope amplitude speed phase stiffness "
-            "rest damping ratio a_effort b_effort force torque turning kp ki kd bound resistance inductance coupling gear p"
+            "rest damping ratio a_effort b_effort force torque turning kp ki kd bound resistance inductance coupling "
+            "gear p"
         ).split()
     ),
     *(

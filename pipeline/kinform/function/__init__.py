@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kinform.function.joint_names import Resolution, resolve_joint
+from kinform.function.joint_names import Resolution, resolve_joint, stated_ranges
 
-__all__ = ["CODE_VERSION", "Resolution", "resolve_joint"]
+__all__ = ["CODE_VERSION", "Resolution", "resolve_joint", "stated_ranges"]
 
 CODE_VERSION: int = 3

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import blocks
-from kinform.function.joint_names import resolve_joint
+from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -199,14 +199,7 @@ def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str
             low = -math.inf if joint.range_lower is None else joint.range_lower
             high = math.inf if joint.range_upper is None else joint.range_upper
             out[joint.name] = (low, high)
-    for intended in assembly.function.joints:
-        if intended.range is None:
-            continue
-        found = resolve_joint(assembly, kinematics, intended.name)
-        if found.joint is None:
-            continue
-        low, high = intended.range if found.sign > 0 else (-intended.range[1], -intended.range[0])
-        name = found.joint.name
+    for name, (low, high) in stated_ranges(assembly, kinematics):
         if prefer == "both" and name in out:
             low, high = max(low, out[name][0]), min(high, out[name][1])
         out[name] = (low, high)

@@ -6,6 +6,7 @@ designer may list the bodies in the other order and turn the axis round; each re
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["Resolution", "resolve_joint"]
+__all__ = ["Resolution", "resolve_joint", "stated_ranges"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +46,15 @@ def resolve_joint(assembly: Assembly, kinematics: Kinematics, name: str) -> Reso
             return Resolution(name, None, joint.bodies, joint, 1)
     known = ", ".join([j.name for j in assembly.function.joints] + [j.name for j in kinematics.joints])
     return Resolution(name, None, ("", ""), None, 1, f'there is no joint "{name}"; known: {known or "none"}')
+
+
+def stated_ranges(assembly: Assembly, kinematics: Kinematics) -> Iterator[tuple[str, tuple[float, float]]]:
+    """(name of the derived joint, range in kinform's sign: rad or m), as the function states them, in its order."""
+    for intended in assembly.function.joints:
+        derived = resolve_joint(assembly, kinematics, intended.name)
+        if intended.range is not None and derived.joint is not None:
+            low, high = intended.range
+            yield derived.joint.name, (low, high) if derived.sign > 0 else (-high, -low)
 
 
 def _resolve_intended(assembly: Assembly, kinematics: Kinematics, intended: IntendedJoint) -> Resolution:

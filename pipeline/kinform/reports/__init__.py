@@ -31,8 +31,8 @@ def render(
 ) -> str:
     """The report in that format, ending in a newline; ValueError for an unknown format.
 
-    `fail_on` is the least severity that fails the gate, which the verdict goes by, and what JUnit calls a failure. `run` is the
-    account of a run, which the JSON carries.
+    `fail_on` is the least severity that fails the gate, which the verdict goes by, and what JUnit calls a failure.
+    `run` is the account of a run, which the JSON carries.
     """
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}")

@@ -147,7 +147,8 @@ OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
 BAND = 1 << 15
 """Pixels that are shaded at once: they stay in the processor's cache."""
 OUTLINE_STEP = 6.0
-"""px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more, covers."""
+"""px: where depth changes by more from one pixel to the next, there is an outline; and what is nearer by more,
+covers."""
 OUTLINE_COSINE = 0.86
 """Cosine of the change of direction from one pixel to the next above which there is none (31°)."""
 OUTLINE_SHADE = 0.52

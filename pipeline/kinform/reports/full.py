@@ -14,7 +14,8 @@ __all__ = ["render"]
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
-    """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the verdict."""
+    """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the
+    verdict."""
     order = {severity: k for k, severity in enumerate(reversed(SEVERITIES))}
     blocks = [_finding(f, design.assembly.units) for f in sorted(report.findings, key=lambda f: order[f.severity])]
     undecided = [r for r in report.rules if r.outcome == "inconclusive"]

@@ -20,9 +20,8 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     manifest = design.assembly.source.file
     lines = [_finding(finding, manifest, design.assembly.units) for finding in report.findings]
     lines += [_undecided(rule, manifest) for rule in report.rules if rule.outcome == "inconclusive"]
-    lines.append(
-        f"{verdict_line(report, fail_on)}; {severity_counts(report)}; {rule_counts(report)}; {one_line(design.assembly.name)}"
-    )
+    counts = f"{severity_counts(report)}; {rule_counts(report)}"
+    lines.append(f"{verdict_line(report, fail_on)}; {counts}; {one_line(design.assembly.name)}")
     return "\n".join(lines) + "\n"
 
 

@@ -1,8 +1,9 @@
 """JUnit XML, for the test views of CI: a test case a rule, of a rule with findings a case a finding.
 
-Findings at or above the severity that fails the gate are failures; lesser ones are told by cases that pass. A
-rule that could not decide is an error, one that does not apply is skipped, and so is a finding that is accepted, with the
-reason; so failures are exit code 1 and errors alone exit code 2. The text is ASCII with character references; what XML 1.0 cannot carry is escaped as in Python.
+Findings at or above the severity that fails the gate are failures; lesser ones are told by cases that pass. A rule that
+could not decide is an error, one that does not apply is skipped, and so is a finding that is accepted, with the reason;
+so failures are exit code 1 and errors alone exit code 2. The text is ASCII with character references; what XML 1.0
+cannot carry is escaped as in Python.
 """
 
 from __future__ import annotations

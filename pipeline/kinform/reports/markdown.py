@@ -18,7 +18,8 @@ __all__ = ["cell_code", "code", "escaped", "render", "table"]
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
-    """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is ignored or skipped."""
+    """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is
+    ignored or skipped."""
     blocks = [
         f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report, fail_on))}",
         f"{severity_counts(report)}; {rule_counts(report)}",

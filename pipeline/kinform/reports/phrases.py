@@ -34,7 +34,8 @@ def details(finding: Finding, units: str) -> dict[str, str]:
 
 
 def accepted(report: CheckReport) -> list[str]:
-    """Of every finding that is accepted, and of every rule all of whose doubts are, a line that says by whom and why."""
+    """Of every finding that is accepted, and of every rule all of whose doubts are, a line that says by whom and
+    why."""
     findings = [
         f"{item.finding.code} {item.finding.rule}: {', '.join(map(one_line, item.finding.subject))}: "
         f"{one_line(item.reason) if item.reason else 'adopted'} (by the {item.by})"

@@ -1,9 +1,10 @@
-"""SARIF 2.1.0 (OASIS), for code scanning: a result a finding, located at the line of the manifest that declares its subject.
+"""SARIF 2.1.0 (OASIS), for code scanning: a result a finding, located at the line of the manifest that declares its
+subject.
 
-A rule that could not decide is a result of kind `open`; what became of every rule is in the properties of the
-run. Findings that are accepted are results with a suppression that gives the reason. Where a baseline was compared,
-results are new, unchanged (adopted) or absent (not found any more). The text is ASCII, so that no encoding of a terminal
-or a pipe changes it.
+A rule that could not decide is a result of kind `open`; what became of every rule is in the properties of the run.
+Findings that are accepted are results with a suppression that gives the reason. Where a baseline was compared, results
+are new, unchanged (adopted) or absent (not found any more). The text is ASCII, so that no encoding of a terminal or a
+pipe changes it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The kinematic graph as a drawing: bodies as boxes, joints as lines with their type, loops, and what is ground.
 
-SVG is drawn here, with nothing from outside: as a picture of its own, or as a part of a page that can be pressed. DOT is
-for Graphviz and whatever reads its language.
+SVG is drawn here, with nothing from outside: as a picture of its own, or as a part of a page that can be pressed. DOT
+is for Graphviz and whatever reads its language.
 """
 
 from __future__ import annotations
@@ -258,7 +258,8 @@ def _box(name: str, centre: Array, size: Array, ground: bool, colour: str = "") 
         box += f'<rect class="ground" {frame}/><rect class="plate" {plate}/>'
     shift = 7.0 if colour else 0.0
     if colour:
-        box += f'<rect class="swatch" fill="{colour}" x="{x + 8:.1f}" y="{centre[1] - 5:.1f}" width="10" height="10" rx="2"/>'
+        corner = f'x="{x + 8:.1f}" y="{centre[1] - 5:.1f}"'
+        box += f'<rect class="swatch" fill="{colour}" {corner} width="10" height="10" rx="2"/>'
     return (
         box + f'<text x="{centre[0] + shift:.1f}" y="{centre[1] + 4.5:.1f}" text-anchor="middle">{escape(name)}</text>'
     )

@@ -1,7 +1,7 @@
 """One self-contained page about a design, pictures of it, and a summary for pull requests.
 
-`page_html` gives the HTML, `page_pictures` the PNG files by name, `page_summary` the Markdown that embeds them. Nothing is
-written here, and nothing depends on clock, host or paths.
+`page_html` gives the HTML, `page_pictures` the PNG files by name, `page_summary` the Markdown that embeds them. Nothing
+is written here, and nothing depends on clock, host or paths.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""What the page says of a design: the verdict; findings with their rules' words, joints with their evidence, assumptions, rules."""
+"""What the page says of a design: the verdict; findings with their rules' words, joints with their evidence,
+assumptions, rules."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ from kinform.reports.page.subjects import wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
 __all__ = [
-    "Assumed", "FindingFacts", "JointFacts", "RuleFacts", "Verdict", "assumptions", "findings", "joints", "rules", "verdict_of",
+    "Assumed", "FindingFacts", "JointFacts", "RuleFacts", "Verdict", "assumptions", "findings", "joints", "rules",
+    "verdict_of",
 ]  # fmt: skip
 
 SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
@@ -164,7 +166,8 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
     elif joint.held_reason:
         facts.append(("held by contact", f"not known: {joint.held_reason}"))
     blockers = tuple(
-        f"{' and '.join(b.parts)}: {words.area(b.area, units)} ({100 * b.share:.2g} % of the contact) forbids {b.forbids}"
+        f"{' and '.join(b.parts)}: {words.area(b.area, units)} ({100 * b.share:.2g} % of the contact) "
+        f"forbids {b.forbids}"
         for b in joint.blockers
     )
     return JointFacts(

@@ -1,8 +1,8 @@
 """The freedoms of an assembly as motions to look at: one a driving joint, with every loop kept closed.
 
-Each has one joint that drives it while the other drivers rest: those that the mobility names, or, where it names
-none, columns of its basis chosen by pivoted QR. Bodies move by products of exponentials of the joints' twists; loops are closed by
-Gauss–Newton steps with the driver held. What does not close is not shown further.
+Each has one joint that drives it while the other drivers rest: those that the mobility names, or, where it names none,
+columns of its basis chosen by pivoted QR. Bodies move by products of exponentials of the joints' twists; loops are
+closed by Gauss–Newton steps with the driver held. What does not close is not shown further.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
-from kinform.function import resolve_joint
+from kinform.function import stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.names import PartName
@@ -152,17 +152,13 @@ class _Spans:
         """Of joints with one freedom: to where parts meet, and to where the function asks for if that is further."""
         kinematics = self.design.kinematics
         assert kinematics is not None
-        asked = {}
-        for intended in self.design.assembly.function.joints:
-            found = resolve_joint(self.design.assembly, kinematics, intended.name)
-            if found.joint is not None and intended.range is not None:
-                asked[found.joint.name] = sorted(found.sign * end for end in intended.range)
+        asked = dict(stated_ranges(self.design.assembly, kinematics))
         out: dict[str, Span] = {}
         for joint in kinematics.joints:
             if joint.freedoms == 1 and joint.name in self.ranges:
                 ends = self.ranges[joint.name].lower, self.ranges[joint.name].upper
                 low, high = (self._stop(end) for end in ends)
-                wanted = asked.get(joint.name, [0.0, 0.0])
+                wanted = asked.get(joint.name, (0.0, 0.0))
                 out[joint.name] = Span(
                     None if low is None else min(low, wanted[0]), None if high is None else max(high, wanted[1])
                 )

@@ -9,12 +9,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from typing import Any
 
 import numpy as np
 
 from kinform.design import Design
 from kinform.foundation.units import metres_per
-from kinform.function import resolve_joint
+from kinform.function import stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 from kinform.reports.constants import (
@@ -78,6 +79,7 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
 
 def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
     metres = metres_per(design.assembly.units)
+    stated = [] if design.kinematics is None else list(stated_ranges(design.assembly, design.kinematics))
     out = []
     for name, kind, unit, column in coordinates(run):
         scale, shown = _scale(unit, design.assembly.units, metres)
@@ -87,7 +89,7 @@ def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plo
             found = next((j for j in design.ranged.joints if j.name == name), None)
             if found is not None:
                 ends = [("found", found.range_lower, found.range_upper)] if found.range_status == "found" else []
-                wanted = _required(design, name)
+                wanted = next((ends for joint, ends in stated if joint == name), None)
                 ends += [("required", *wanted)] if wanted is not None else []
                 for word, low, high in ends:
                     limits += [(f"{word} limit", v * scale) for v in (low, high) if v is not None and math.isfinite(v)]
@@ -110,17 +112,6 @@ def _without_far_limits(plot: Plot) -> Plot:
         f", {label} {_number(value)}{plot.unit} not shown" for label, value in plot.limits if (label, value) not in near
     )
     return replace(plot, title=plot.title + far, limits=near)
-
-
-def _required(design: Design, name: str) -> tuple[float, float] | None:
-    """The stated range of the joint that kinform names so, in its own sense (rad or m)."""
-    assert design.kinematics is not None
-    for intended in design.assembly.function.joints:
-        found = resolve_joint(design.assembly, design.kinematics, intended.name)
-        if found.joint is not None and found.joint.name == name and intended.range is not None:
-            low, high = sorted(found.sign * end for end in intended.range)
-            return low, high
-    return None
 
 
 def _efforts(run: Simulation, titles: dict[str, str]) -> list[Plot]:
@@ -181,63 +172,67 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
     low, high = ticks[0], ticks[-1]
     start, end = float(time[0]), float(time[-1])
 
-    def x(t: Array) -> Array:
-        return np.asarray(PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (PLOT_RIGHT - PLOT_LEFT))
+    def x(t: Any) -> Any:
+        return PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (PLOT_RIGHT - PLOT_LEFT)
 
-    def y(value: Array) -> Array:
-        return np.asarray(PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (PLOT_BOTTOM - PLOT_TOP))
+    def y(value: Any) -> Any:
+        return PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (PLOT_BOTTOM - PLOT_TOP)
 
-    parts = [
-        f'<line class="grid" x1="{PLOT_LEFT}" x2="{PLOT_RIGHT}" y1="{float(y(np.array(t))):.1f}" y2="{float(y(np.array(t))):.1f}"/>'
-        f'<text class="tick" x="{PLOT_LEFT - 6}" y="{float(y(np.array(t))) + 3.5:.1f}" text-anchor="end">{_number(t)}</text>'
-        for t in ticks
-    ]
+    across, upright = (PLOT_LEFT, PLOT_RIGHT), (PLOT_TOP, PLOT_BOTTOM)
+    parts = []
+    for tick in ticks:
+        parts += [_line("grid", across, (y(tick), y(tick))), _text(PLOT_LEFT - 6, y(tick) + 3.5, _number(tick), "end")]
     for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
-        at = PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT)
         text = _number(start + share * (end - start)) + (" s" if share == 1.0 else "")
-        parts.append(f'<text class="tick" x="{at:.1f}" y="{PLOT_BOTTOM + 16}" text-anchor="{anchor}">{text}</text>')
+        parts.append(_text(PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT), PLOT_BOTTOM + 16, text, anchor))
     for label, value in plot.limits:
-        at = float(y(np.array(value)))
-        parts.append(f'<line class="limit" x1="{PLOT_LEFT}" x2="{PLOT_RIGHT}" y1="{at:.1f}" y2="{at:.1f}"/>')
+        at = y(value)
         inside = at + (11.0 if at < (PLOT_TOP + PLOT_BOTTOM) / 2 else -4.0)
-        text = escape(f"{label} {_number(value)}{plot.unit}")
         side, anchor = (PLOT_LEFT + 4.0, "start") if label.startswith("found") else (PLOT_RIGHT, "end")
-        parts.append(f'<text class="tick" x="{side}" y="{inside:.1f}" text-anchor="{anchor}">{text}</text>')
-    for moment, text in events[:MOST_EVENTS]:
-        at = float(x(np.array(moment)))
-        parts.append(
-            f'<line class="event" x1="{at:.1f}" x2="{at:.1f}" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>'
-            f'<text class="tick event-sign" x="{at:.1f}" y="{PLOT_TOP - 2}" text-anchor="middle">✕'
-            f"<title>{escape(text)}</title></text>"
-        )
-    for k, series in enumerate(plot.series):
-        parts.append(f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>')
-    if len(plot.series) > 1:
-        for k, series in enumerate(plot.series):
-            at = PLOT_LEFT + 104.0 * k
-            parts.append(
-                f'<line class="curve curve-{k}" x1="{at}" x2="{at + 18}" y1="{PLOT_HEIGHT + 8}" y2="{PLOT_HEIGHT + 8}"/>'
-                f'<text class="tick" x="{at + 23}" y="{PLOT_HEIGHT + 12}">{escape(series.label)}</text>'
-            )
+        text = escape(f"{label} {_number(value)}{plot.unit}")
+        parts += [_line("limit", across, (at, at)), _text(side, inside, text, anchor)]
+    for moment, event in events[:MOST_EVENTS]:
+        sign = f"✕<title>{escape(event)}</title>"
+        parts.append(_line("event", (x(moment), x(moment)), upright))
+        parts.append(_text(x(moment), PLOT_TOP - 2, sign, "middle", "tick event-sign"))
+    parts += [
+        f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>'
+        for k, series in enumerate(plot.series)
+    ]
+    several, below = len(plot.series) > 1, PLOT_HEIGHT + 8
+    for k, series in enumerate(plot.series if several else ()):
+        at = PLOT_LEFT + 104.0 * k
+        parts.append(_line(f"curve curve-{k}", (at, at + 18), (below, below)))
+        parts.append(_text(at + 23, PLOT_HEIGHT + 12, escape(series.label)))
     parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>')
     spoken = escape(_spoken_text(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if len(plot.series) > 1 else 0):.0f}" role="img" aria-label="{spoken}" data-from="{start!r}" '
-        f'data-to="{end!r}" data-left="{PLOT_LEFT}" data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
+        f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
+        f'aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{PLOT_LEFT}" '
+        f'data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
     )
+
+
+def _line(kind: str, x: tuple[float, float], y: tuple[float, float]) -> str:
+    return f'<line class="{kind}" x1="{x[0]:.1f}" x2="{x[1]:.1f}" y1="{y[0]:.1f}" y2="{y[1]:.1f}"/>'
+
+
+def _text(x: float, y: float, text: str, anchor: str = "", kind: str = "tick") -> str:
+    anchored = f' text-anchor="{anchor}"' if anchor else ""
+    return f'<text class="{kind}" x="{x:.1f}" y="{y:.1f}"{anchored}>{text}</text>'
 
 
 def _spoken_text(plot: Plot, start: float, end: float, events: Sequence[tuple[float, str]]) -> str:
     texts = []
     for series in plot.series:
-        known = series.values[np.isfinite(series.values)]
-        if len(known):
+        finite = series.values[np.isfinite(series.values)]
+        if len(finite):
             name = f"{series.label}: " if series.label else ""
-            texts.append(f"{name}{_number(float(known.min()))} to {_number(float(known.max()))} {plot.unit}")
+            texts.append(f"{name}{_number(float(finite.min()))} to {_number(float(finite.max()))} {plot.unit}")
     limits = "".join(f", {label} {_number(value)} {plot.unit}" for label, value in plot.limits)
-    told = "".join(f", at {_number(moment)} s {text}" for moment, text in events[:MOST_EVENTS])
-    return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}{told}"
+    happens = "".join(f", at {_number(moment)} s {text}" for moment, text in events[:MOST_EVENTS])
+    return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}{happens}"
 
 
 def _ticks(plot: Plot) -> list[float]:

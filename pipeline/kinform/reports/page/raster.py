@@ -152,7 +152,8 @@ def _fill(
 
 
 def png(pixels: NDArray[np.uint8]) -> bytes:
-    """The image (height, width, 3 or 4) as a PNG; rows are stored as differences to the pixel at the left (ISO/IEC 15948)."""
+    """The image (height, width, 3 or 4) as a PNG; rows are stored as differences to the pixel at the left (ISO/IEC
+    15948)."""
     height, width, depth = pixels.shape
     rows = pixels.astype(np.int16)
     rows[:, 1:] -= pixels[:, :-1]

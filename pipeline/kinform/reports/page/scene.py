@@ -1,4 +1,5 @@
-"""The drawn side of a design: shapes, bodies with their colours, signs of joints, overlaps, movements, what findings show."""
+"""The drawn side of a design: shapes, bodies with their colours, signs of joints, overlaps, movements, what findings
+show."""
 
 from __future__ import annotations
 

@@ -22,7 +22,8 @@ def rgb(colour: str) -> tuple[float, float, float]:
 
 
 def strokes_of(joint: Joint, point: Array, size: float) -> list[Array]:
-    """The sign of a joint at a point (3,) m and so large (m), as lines (n, 3) in the world: axis, arc, arrows, rings."""
+    """The sign of a joint at a point (3,) m and so large (m), as lines (n, 3) in the world: axis, arc, arrows,
+    rings."""
     if joint.type == "spherical":
         return [_arc(point, axis, 0.8 * size, 0.0, 2.0 * np.pi) for axis in np.eye(3)]
     out = []

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from kinform.changes.change import Change, Said, freedoms, listed, quoted, signed
+from kinform.changes.behaviours import Snapshot
+from kinform.changes.change import Change, Lengths, freedoms_changed, quoted, signed
 from kinform.changes.joints import joint_changes
 from kinform.changes.masses import mass_changes
-from kinform.changes.matching import holder, matched, renamed, with_names
-from kinform.changes.snapshot import Snapshot
+from kinform.changes.matching import holder, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
 
 __all__ = ["Comparison", "compare"]
@@ -47,15 +47,13 @@ class Comparison:
 def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = None) -> Comparison:
     """What of `before` is otherwise in `after`, beyond the tolerance."""
     within = Tolerance() if tolerance is None else tolerance
-    known = {name: (getattr(before, name) is not None, getattr(after, name) is not None) for name in PARTS}
-    both = [name for name, (one, two) in known.items() if one and two]
-    missing = [
-        (name, "not computed " + ("before" if two else "after")) for name, (one, two) in known.items() if one != two
-    ]
-    other = renamed(before, after)
+    old, new = ({name for name in PARTS if getattr(side, name) is not None} for side in (before, after))
+    both = [name for name in PARTS if name in old & new]
+    missing = [(name, "not computed " + ("before" if name in new else "after")) for name in PARTS if name in old ^ new]
+    other = new_names(before, after)
     before = with_names(before, other)
-    now = matched(before, after)
-    say = Said(after.units)
+    now = same_bodies(before, after)
+    say = Lengths(after.units)
     ranged = before.ranges is not None and after.ranges is not None
     steps = {
         "bodies": lambda: _bodies(before, after, now, other),
@@ -81,29 +79,24 @@ def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Ma
                 yield Change("body-gone", (name,), "is gone", ", ".join(old[name]), None)
             else:
                 yield Change("body-merged", (name,), f"is part of {quoted(into)} now", name, into)
-    came_from = {found: name for name, found in now.items()}
+    came_from = {body: name for name, body in now.items()}
     for name in sorted(new):
         if name not in came_from:
             source = holder(new[name], old)
-            told = "is new" if source is None else f"was part of {quoted(source)}"
-            yield Change("body-new", (name,), told, source, ", ".join(new[name]))
+            message = "is new" if source is None else f"was part of {quoted(source)}"
+            yield Change("body-new", (name,), message, source, ", ".join(new[name]))
             continue
         was = came_from[name]
         if was != name and other.get(was) != name:
             yield Change("body-renamed", (name,), f"was named {quoted(was)}", was, name)
         added, lost = sorted(set(new[name]) - set(old[was])), sorted(set(old[was]) - set(new[name]))
         if added:
-            yield Change("body-parts", (name,), f"has {listed(added)} in addition", None, ", ".join(added))
+            yield Change("body-parts", (name,), f"has {quoted(*added)} in addition", None, ", ".join(added))
         if lost:
-            yield Change("body-parts", (name,), f"no longer has {listed(lost)}", ", ".join(lost), None)
+            yield Change("body-parts", (name,), f"no longer has {quoted(*lost)}", ", ".join(lost), None)
     if before.ground is not None and after.ground != now.get(before.ground, before.ground):
-        yield Change(
-            "ground",
-            (after.ground or "–",),
-            f"is the ground instead of {quoted(before.ground)}",
-            before.ground,
-            after.ground,
-        )
+        message = f"is the ground instead of {quoted(before.ground)}"
+        yield Change("ground", (after.ground or "–",), message, before.ground, after.ground)
 
 
 def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
@@ -114,16 +107,16 @@ def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
             continue
         label = name.replace("_", " ") + ("" if "mobility" in name else " mobility" if name in _FREEDOMS else "")
         amount = None if was is None or value is None else float(value - was)
-        told = f"{label} was {_or_unknown(was)}, is {_or_unknown(value)}"
+        message = f"{label} was {_or_unknown(was)}, is {_or_unknown(value)}"
         if amount is not None and name == "effective":
-            told += f": {freedoms(abs(int(amount)))} {'gained' if amount > 0 else 'lost'}"
-        yield Change("mobility", (name,), told, _or_unknown(was), _or_unknown(value), amount, "freedoms")
+            message += f": {freedoms_changed(int(amount))}"
+        yield Change("mobility", (name,), message, _or_unknown(was), _or_unknown(value), amount, "freedoms")
 
 
 _FREEDOMS = ("instantaneous", "finite", "effective")
 
 
-def _interferences(before: Snapshot, after: Snapshot, within: Tolerance, say: Said) -> Iterator[Change]:
+def _interferences(before: Snapshot, after: Snapshot, within: Tolerance, say: Lengths) -> Iterator[Change]:
     old, new = dict(before.interferences or ()), dict(after.interferences or ())
     for pair in sorted(set(old) | set(new)):
         one, two = old.get(pair), new.get(pair)

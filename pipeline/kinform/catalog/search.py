@@ -9,9 +9,9 @@ from pathlib import Path
 
 from kinform.catalog.build import digest_of
 from kinform.catalog.entry import Entry
-from kinform.catalog.store import entry_from, opened
+from kinform.catalog.store import entry_from, open_catalog
 
-__all__ = ["JOINT_TYPES", "Wanted", "find", "many", "stale"]
+__all__ = ["JOINT_TYPES", "Wanted", "find", "joint_count", "source_state"]
 
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general",
@@ -41,7 +41,7 @@ class Wanted:
     verified: bool = False
 
 
-def many(text: str) -> tuple[str, int, int | None]:
+def joint_count(text: str) -> tuple[str, int, int | None]:
     """(type, at least, at most) of "revolute" (one or more), "revolute:2" (two), "revolute:2+" (two or more).
 
     Raises ValueError that says what is wrong.
@@ -65,13 +65,13 @@ def find(path: str | Path, wanted: Wanted) -> tuple[tuple[Entry, ...], int]:
     """
     conditions, values = _conditions(wanted)
     where = f" WHERE {' AND '.join(conditions)}" if conditions else ""
-    with opened(path) as database:
+    with open_catalog(path) as database:
         rows = database.execute(f"SELECT * FROM designs{where} ORDER BY name, path", values).fetchall()
         total = database.execute("SELECT count(*) FROM designs").fetchone()[0]
         return tuple(entry_from(database, row) for row in rows), int(total)
 
 
-def stale(entry: Entry, folder: str | Path) -> str:
+def source_state(entry: Entry, folder: str | Path) -> str:
     """What has become of the results file since: "", "changed" or "gone"; `folder` is that of the catalog."""
     path = Path(folder) / entry.path
     try:
@@ -85,9 +85,9 @@ def _conditions(wanted: Wanted) -> tuple[list[str], list[object]]:
     conditions: list[str] = []
     values: list[object] = []
 
-    def ask(condition: str, *given: object) -> None:
+    def ask(condition: str, *parameters: object) -> None:
         conditions.append(condition)
-        values.extend(given)
+        values.extend(parameters)
 
     for kind, least, most in wanted.joints:
         ask(f"{joints.format(' AND type = ?')} >= ?", kind, least)
@@ -111,9 +111,9 @@ def _conditions(wanted: Wanted) -> tuple[list[str], list[object]]:
                  named.format("joints", "intended"))  # fmt: skip
         ask(f"({' OR '.join(where)})", *[text.casefold()] * len(where))
     for requirement in wanted.meets:
-        own = "SELECT 1 FROM requirements WHERE design = designs.path AND ? IN (kind, name)"
-        ask(f"EXISTS ({own} AND met = 1)", requirement)
-        ask(f"NOT EXISTS ({own} AND met IS NOT 1)", requirement)
+        rows = "SELECT 1 FROM requirements WHERE design = designs.path AND ? IN (kind, name)"
+        ask(f"EXISTS ({rows} AND met = 1)", requirement)
+        ask(f"NOT EXISTS ({rows} AND met IS NOT 1)", requirement)
     if wanted.verified:
         ask("verdict = 'verified'")
     return conditions, values

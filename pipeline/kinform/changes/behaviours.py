@@ -43,8 +43,8 @@ class JointState:
     centre: Vector | None
     """Of a spherical joint."""
     pitch: float | None
-    lower: float | None
-    upper: float | None
+    range_lower: float | None
+    range_upper: float | None
     """rad, or m of a prismatic joint; infinite where nothing stops it, None where that is not known."""
     range_status: str
 
@@ -60,11 +60,12 @@ class BodyMass:
 
     name: str
     mass: float | None
-    centre: Vector | None
-    moments: Vector | None
+    centre_of_mass: Vector | None
+    principal_moments: Vector | None
     """Principal."""
-    tensor: tuple[float, ...] | None = None
-    """xx, yy, zz, xy, xz, yz about the centre of mass, in the world: with the moments it says how the body is turned."""
+    inertia: tuple[float, ...] | None = None
+    """xx, yy, zz, xy, xz, yz about the centre of mass, in the world: with the moments it says how the body is
+    turned."""
 
 
 @dataclass(frozen=True)
@@ -137,8 +138,8 @@ def _joint(joint: Joint, limits: JointRange | None) -> JointState:
         axis2=_axis(joint.axis2, None),
         centre=point if joint.type in ("spherical", "universal") else None,
         pitch=joint.pitch,
-        lower=None if limits is None else _end(limits.lower, -math.inf),
-        upper=None if limits is None else _end(limits.upper, math.inf),
+        range_lower=None if limits is None else _end(limits.lower, -math.inf),
+        range_upper=None if limits is None else _end(limits.upper, math.inf),
         range_status="unknown" if limits is None else limits.status,
     )
 
