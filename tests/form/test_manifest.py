@@ -130,7 +130,8 @@ WRONG = {
         TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "planar"\naxis = [0, 0, 0]\n', 13, "zero",
     ),
     "reversed range": (
-        TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\ntype = "prismatic"\naxis = [0, 0, 1]\nrange = [2, 1]\n',
+        TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\n'
+        'type = "prismatic"\naxis = [0, 0, 1]\nrange = [2, 1]\n',
         14, "range",
     ),
     "drive on nothing": (

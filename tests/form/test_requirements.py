@@ -23,19 +23,23 @@ name = "b"
 name = "r"
 """
 )
-REACH = 'kind = "reach"\npart = "b"\n'
+POINT, DIRECTION = (f'kind = "reach"\npart = "b"\n{key}\n' for key in ("point = [0, 0, 0]", "direction = [1, 0, 0]"))
+CONE = "region = {type = 'cone', axis = [1, 0, 0], half_angle = 5}"
+ORIGIN = "points = [[0, 0, 0]]"
 WRONG = {
     "bounds the wrong way round": ('kind = "mass"\nminimum = 2\nmaximum = 1', "minimum, 2, is above", 2),
     "fit the wrong way round": ('kind = "fit"\nbetween = ["a", "b"]\nminimum = 0.2\nmaximum = -0.1', "is above", 3),
     "no bounds": ('kind = "inertia"\naxis = [0, 0, 1]', "neither minimum nor maximum", 0),
-    "point and direction": (REACH + "point = [0, 0, 0]\ndirection = [1, 0, 0]\nregion = {type = 'poses', points = [[0, 0, 0]]}", "either a point or a direction", 0),
-    "neither point nor direction": (REACH + "region = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "either a point or a direction", 0),
-    "cone of points": (REACH + "point = [0, 0, 0]\nregion = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "region of directions", 4),
-    "box of directions": (REACH + "direction = [1, 0, 0]\nregion = {type = 'box', lower = [0, 0, 0], upper = [1, 1, 1]}", "region of points", 4),
-    "box inside out": (REACH + "point = [0, 0, 0]\nregion = {type = 'box', lower = [0, 2, 0], upper = [1, 1, 1]}", "lower corner", 4),
-    "no poses": (REACH + "point = [0, 0, 0]\nregion = {type = 'poses', points = []}", "list no points", 4),
-    "poses that would not be looked at": (REACH + "point = [0, 0, 0]\nregion = {type = 'poses', points = [[0, 0, 0]], directions = [[1, 0, 0]]}", "list directions", 4),
-    "tolerance that says nothing": (REACH + "direction = [1, 0, 0]\ntolerance = 1\nregion = {type = 'cone', axis = [1, 0, 0], half_angle = 5}", "says nothing", 4),
+    "point and direction": (POINT + "direction = [1, 0, 0]\nregion = {type = 'poses', " + ORIGIN + "}", "either a point or a direction", 0),
+    "neither point nor direction": ('kind = "reach"\npart = "b"\n' + CONE, "either a point or a direction", 0),
+    "cone of points": (POINT + CONE, "region of directions", 4),
+    "box of directions": (DIRECTION + "region = {type = 'box', lower = [0, 0, 0], upper = [1, 1, 1]}", "region of points", 4),
+    "box inside out": (POINT + "region = {type = 'box', lower = [0, 2, 0], upper = [1, 1, 1]}", "lower corner", 4),
+    "no poses": (POINT + "region = {type = 'poses', points = []}", "list no points", 4),
+    "poses that would not be looked at": (
+        POINT + "region = {type = 'poses', directions = [[1, 0, 0]], " + ORIGIN + "}", "list directions", 4,
+    ),
+    "tolerance that says nothing": (DIRECTION + "tolerance = 1\n" + CONE, "says nothing", 4),
     "reaction without limit": ('kind = "reaction"\njoint = "j"', "neither force nor torque", 0),
     "balance without axis": ('kind = "balance"\nof = "b"\naxis = [0, 0, 1]\nlimit = 1', "neither a joint nor axis and point", 0),
     "balance with two axes": ('kind = "balance"\nof = "b"\njoint = "j"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\nlimit = 1', "too", 3),

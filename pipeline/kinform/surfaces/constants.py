@@ -1,7 +1,7 @@
 """The numbers that decide how surfaces are recovered, by the module that uses them.
 
-Lengths are shares of the mesh's diagonal, angles radians. What users may set is in `Tolerances`. Where no measurement is
-named, a number is a choice: the meshes of the fixtures and of real robots give the same surfaces well around it.
+Lengths are shares of the mesh's diagonal, angles radians. What users may set is in `Tolerances`. Where no measurement
+is named, a number is a choice: the meshes of the fixtures and of real robots give the same surfaces well around it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ FACET_ROUNDING = 1e-3
 # ---- polygons.noise
 
 FITS_PER_NOISE = 10
-"""The tolerance of fits is this many times the noise that is expected of vertices, and the noise so small a part of it."""
+"""The tolerance of fits in noises that are expected of vertices, and the noise as such a part of the tolerance."""
 
 NOISE_ROUNDINGS = 1.5
 """Noise in roundings of the largest coordinate: a vertex is off by half of one in each of three directions."""
@@ -130,8 +130,8 @@ ALIKE_WIDTHS = 3.0
 """Ratio of widths up to which neighbours look like facets of one surface."""
 
 ALIKE_STRONG = 0.35
-"""Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse facets
-of unequal width make of equal ones."""
+"""Difference of the larger principal curvatures of neighbours on one surface, as a share of the largest: what coarse
+facets of unequal width make of equal ones."""
 
 ALIKE_WEAK = 0.3
 """The same of the smaller principal curvatures."""
@@ -203,7 +203,7 @@ EQUAL_STEPS = 1.02
 """Ratio of the angles of strips and ridges up to which their steps are equal."""
 
 CIRCLE_OF_NORMALS = 1e-2
-"""Variance of the normals along the axis, as a share of the next, below which they lie on the small circle of a cone."""
+"""Variance of the normals along the axis, as a share of the next, below which they lie on the circle of a cone."""
 
 LEAST_TAPER = 2
 """Fits by which the ends of a cone differ in radius, at least: less is a cylinder."""
@@ -232,7 +232,7 @@ STEPS = 3
 """Places around the axis that a torus is known at, at least."""
 
 STEP_APART = 0.3
-"""Share of what tells rings apart that tells places around the axis apart, whose facets are narrower than the tube's."""
+"""Share of what tells rings apart that tells places around the axis apart, where facets are narrower."""
 
 LEAST_MAJOR = 0.02
 """Radius of the circle in the tube's middle, in radii of the tube, at least: less is a sphere."""

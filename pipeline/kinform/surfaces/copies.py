@@ -57,7 +57,7 @@ def rigid_copies(meshes: Mapping[str, Mesh]) -> dict[str, Copy]:
 
 def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
     """Those of a group that could be copies by the scatter of their vertices alone, in sets of at least two: what
-    `_fitted` asks first, which settles most."""
+    `_rigid_fit` asks first, which settles most."""
     sizes = {}
     for digest in group:
         mesh = meshes[digest]
@@ -75,27 +75,27 @@ def _alike(meshes: Mapping[str, Mesh], group: list[str]) -> list[list[str]]:
         if sizes[digest][0] - sizes[before][0] > allowed:
             sets.append([])
         sets[-1].append(digest)
-    return [sorted(one) for one in sets if len(one) > 1]
+    return [sorted(alike) for alike in sets if len(alike) > 1]
 
 
 def _copies(meshes: Mapping[str, Mesh], group: list[str]) -> dict[str, Copy]:
     out: dict[str, Copy] = {}
     shapes: dict[str, list[tuple[str, Array]]] = {}
     for digest in group:
-        order, form = _first_named(meshes[digest])
+        order, form = _naming_order(meshes[digest])
         points = meshes[digest].vertices[order]
-        known = shapes.setdefault(form, [])
-        for other, reference in known:
-            copy = _fitted(other, reference, points)
+        originals = shapes.setdefault(form, [])
+        for other, reference in originals:
+            copy = _rigid_fit(other, reference, points)
             if copy is not None:
                 out[digest] = copy
                 break
         else:
-            known.append((digest, points))
+            originals.append((digest, points))
     return out
 
 
-def _first_named(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
+def _naming_order(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
     """Vertices in the order in which facets first name them, and a digest of the facets under those numbers."""
     corners = mesh.faces.ravel()
     first = np.full(len(mesh.vertices), len(corners), np.int64)
@@ -106,7 +106,7 @@ def _first_named(mesh: Mesh) -> tuple[NDArray[np.int64], str]:
     return order, hashlib.sha256(number[corners].tobytes()).hexdigest()
 
 
-def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
+def _rigid_fit(other: str, reference: Array, points: Array) -> Copy | None:
     """The rigid motion from `reference` to `points`, if it explains them to within their rounding."""
     allowed = COPY_ROUNDINGS * EPS32 * max(float(np.abs(reference).max()), float(np.abs(points).max()))
     from_, to = reference.mean(axis=0), points.mean(axis=0)
@@ -133,11 +133,11 @@ def _fitted(other: str, reference: Array, points: Array) -> Copy | None:
 def surfaces_of_copy(surfaces: MeshSurfaces, digest: str, copy: Copy) -> MeshSurfaces:
     """The surfaces of a mesh as those of its copy, which has this digest."""
     return MeshSurfaces(
-        digest, tuple(_moved(surface, copy) for surface in surfaces.surfaces), surfaces.labels, surfaces.noise
+        digest, tuple(_surface_of_copy(surface, copy) for surface in surfaces.surfaces), surfaces.labels, surfaces.noise
     )
 
 
-def _moved(surface: Surface, copy: Copy) -> Surface:
+def _surface_of_copy(surface: Surface, copy: Copy) -> Surface:
     if not surface.axis.any() and not surface.point.any() and surface.kind == "freeform":
         return surface
     R_CO = copy.X_CO[:3, :3]

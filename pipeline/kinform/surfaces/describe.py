@@ -112,10 +112,10 @@ def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
 def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description]:
     """Every region of one kind, with its final fit."""
     work, count, kind = batch.patchwork, batch.count, surfaces.kind
-    params = surfaces.refined(batch, 6).params
+    params = surfaces.refine(batch, 6).params
     region = batch.region[batch.corners[0]]
     low, high = group_range(region, dot(batch.points - params[region, 3:6], params[region, :3]), count)
-    placed = _placed(kind.name, params, low, high)
+    placed = _reference_points(kind.name, params, low, high)
     region, vertex = kind.defining(batch, params, surfaces.tolerance)
     points = work.vertices[vertex]
     distance = kind.probe(params[region], points).distance
@@ -131,7 +131,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description
     sweeps = _sweeps(placed, batch, width) if has_axis else np.zeros(count)
     out = []
     for k, polygons in enumerate(members(batch.region)):
-        axis, point, radius, half_angle, extent = _oriented(kind.name, placed[k], params[k], low[k], high[k])
+        axis, point, radius, half_angle, extent = _in_senses(kind.name, placed[k], params[k], low[k], high[k])
         out.append(
             Description(
                 kind.name, batch.polygon[polygons], axis, point, radius=radius, half_angle=half_angle,
@@ -144,7 +144,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description
     return out
 
 
-def _placed(name: str, params: Params, low: Array, high: Array) -> Params:
+def _reference_points(name: str, params: Params, low: Array, high: Array) -> Params:
     """Parameters with the reference point where the surface's `point` will be."""
     out = params.copy()
     if name == "cylinder":
@@ -155,7 +155,7 @@ def _placed(name: str, params: Params, low: Array, high: Array) -> Params:
     return out
 
 
-def _oriented(
+def _in_senses(
     name: str, placed: Array, params: Array, low: float, high: float
 ) -> tuple[Array, Array, float, float, tuple[float, float]]:
     """(axis, point, radius, half-angle, extent from the point) in the senses that `Surface` promises."""

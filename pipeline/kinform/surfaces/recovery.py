@@ -1,4 +1,4 @@
-"""The method, from a mesh to its surfaces.
+"""The method, from a mesh to its surfaces; `kinform.surfaces` explains it.
 
 Works in unit coordinates (centred, diagonal 1) and in a canonical order of vertices and facets, so that
 neither the size of a part nor the order in its file changes what is found.
@@ -36,7 +36,7 @@ NUMBERS = ("kind", "half_angle", "side", "sweep", "axis_uncertainty")
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
-    """Planes, cylinders, cones and spheres of a welded mesh; the rest is freeform.
+    """The surfaces of a welded mesh; what no analytic surface explains is freeform.
 
     Every facet belongs to exactly one surface. The mesh need not be closed. Results are in the part
     frame (m, rad), by descending area, then lowest facet index.
@@ -74,7 +74,7 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
     for kind in CURVED:
         regions = [region for region in parts.regions if region.kind is kind]
         if regions:
-            out += _merged(work, regions, scale)
+            out += _surfaces_of_kind(work, regions, scale)
     rest, alone = parts.freeform.copy(), parts.planes.copy()
     small = (alone >= 0) & (work.area < THREAD_FACET * work.area.sum())
     for thread in threads(work, (rest >= 0) | small, out, scale):
@@ -89,7 +89,7 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
     return out + [freeform(work, patch, _inner(work, rest, patch)) for patch in members(rest)]
 
 
-def _merged(work: Patchwork, regions: list[Region], scale: Scale) -> list[Description]:
+def _surfaces_of_kind(work: Patchwork, regions: list[Region], scale: Scale) -> list[Description]:
     """The surfaces of regions of one kind, those that are one surface put together."""
     polygons = [region.polygons for region in regions]
     surfaces = Candidates(

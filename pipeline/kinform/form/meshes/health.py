@@ -71,6 +71,7 @@ def _thickness(vertices: Array) -> float:
 
 
 def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distance: float) -> MeshHealth:
+    """The facts about a mesh of these vertices and faces, which were welded within the distance (m)."""
     corners = vertices[faces] - vertices.mean(axis=0)
     sides = [corners[:, k] - corners[:, k - 1] for k in range(3)]
     doubled = np.cross(sides[1], sides[2])

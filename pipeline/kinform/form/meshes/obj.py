@@ -104,6 +104,7 @@ def _logical_lines(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _sorted_lines(text: str) -> _Lines:
+    """The lines by keyword; what cannot be read is among their faults."""
     lines = _Lines()
     current_object = current_group = 0
     for number, line in _logical_lines(text.lstrip("\ufeff")):
@@ -134,6 +135,7 @@ def _sorted_lines(text: str) -> _Lines:
 
 
 def _vertices(lines: _Lines) -> NDArray[np.float64]:
+    """(n, 3) coordinates, all at once where nothing is wrong; else line by line, and faults are noted."""
     rows = [rest.split() for rest in lines.vertices]
     widths = set(map(len, rows))
     if len(widths) == 1 and widths <= {3, 4, 6, 7}:

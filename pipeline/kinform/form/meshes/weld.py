@@ -91,18 +91,18 @@ def merge_close(vertices: Array, distance: float) -> tuple[Ints, Ints]:
 
 
 def _close_pairs(vertices: Array, distance: float) -> Ints:
-    some = _crowded(vertices, distance)
-    if len(some) < 2:
+    crowded = _crowded(vertices, distance)
+    if len(crowded) < 2:
         return np.zeros((0, 2), np.int64)
-    near = Near(vertices[some], distance)
-    crowd = near.about(np.arange(0, len(some), max(1, len(some) // SAMPLED_CROWDS))).mean()
+    near = Near(vertices[crowded], distance)
+    crowd = near.about(np.arange(0, len(crowded), max(1, len(crowded) // SAMPLED_CROWDS))).mean()
     if crowd > CROWD:
         raise MeshError([Fault(
             f"would collapse: within the welding distance ({distance:.3g} m) of a vertex lie {crowd:.0f} "
             "others on average",
             "state a smaller [tolerances] weld, and look for a stray vertex far from the part",
         )])  # fmt: skip
-    return some[near.pairs]
+    return crowded[near.pairs]
 
 
 def _crowded(vertices: Array, distance: float) -> Ints:
@@ -110,15 +110,15 @@ def _crowded(vertices: Array, distance: float) -> Ints:
 
     Most vertices of a mesh are alone on a line in no direction of the design, which takes a sort to see.
     """
-    some = np.arange(len(vertices))
+    crowded = np.arange(len(vertices))
     for line in _LINES:
-        place = vertices[some] @ line
+        place = vertices[crowded] @ line
         order = np.argsort(place)
         near = np.diff(place[order]) <= distance * (1 + 1e-9)
-        kept = np.zeros(len(some), bool)
+        kept = np.zeros(len(crowded), bool)
         kept[order[1:][near]] = kept[order[:-1][near]] = True
-        some = some[kept]
-    return some
+        crowded = crowded[kept]
+    return crowded
 
 
 def _leaders(count: int, pairs: Ints) -> Ints:
@@ -129,10 +129,10 @@ def _leaders(count: int, pairs: Ints) -> Ints:
         follows = np.zeros(count, dtype=bool)
         follows[high] = True
         settled = ~follows[low]
-        found = np.full(count, count)
-        np.minimum.at(found, high[settled], low[settled])
-        led = found < count
-        leader[led] = found[led]
+        first = np.full(count, count)
+        np.minimum.at(first, high[settled], low[settled])
+        led = first < count
+        leader[led] = first[led]
         keep = ~(settled | led[low] | led[high])
         low, high = low[keep], high[keep]
     return leader

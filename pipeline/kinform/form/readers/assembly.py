@@ -207,6 +207,7 @@ class _AssemblyReader:
         return groups
 
     def _part(self, scope: Scope, table: PartTable, tolerances: Tolerances, *path: str | int) -> Part:
+        """The part of a `[[part]]`, with its mesh read."""
         what = f"part {in_quotes(table.name)}"
         units = table.units or scope.manifest.assembly.units
         mesh = None

@@ -32,6 +32,8 @@ def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: 
 
 
 def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[str, Any]) -> tuple[str, str]:
+    """Message and remedy of an error at a path in the table `where`; `node` and `owner` are what the schema says of
+    the key and of its table."""
     kind, context = item["type"], item.get("ctx", {})
     key = str(item["loc"][-1]) if item["loc"] else ""
     expected = node.get("description", "")
@@ -41,8 +43,7 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
             remedy = "write schema = 1 as the first line"
         return f"{where}: {key} is missing", remedy
     if kind == "extra_forbidden":
-        known = sorted(owner.get("properties", {}))
-        return f"{where}: unknown key {in_quotes(key)}", did_you_mean(key, known, "the keys here")
+        return f"{where}: unknown key {in_quotes(key)}", did_you_mean(key, owner.get("properties", {}), "the keys here")
     name = _shown_key(path)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = context["discriminator"].strip("'")
@@ -62,8 +63,8 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
         )
     if key == "schema":
         return f"schema {_value(item['input'])} is not one that this version reads", "write schema = 1"
-    told = item["msg"].replace("Input should be", "must be").replace(" after validation", "")
-    message = f"{where}: {name} {told[:1].lower()}{told[1:]}, not {_value(item['input'])}"
+    wrong = item["msg"].replace("Input should be", "must be").replace(" after validation", "")
+    message = f"{where}: {name} {wrong[:1].lower()}{wrong[1:]}, not {_value(item['input'])}"
     if kind in ("too_short", "too_long"):
         bound = context.get("min_length", context.get("max_length"))
         exact = node.get("minItems") == node.get("maxItems")
@@ -219,10 +220,10 @@ def _below(node: dict[str, Any], step: str | int, schema: dict[str, Any]) -> dic
 def _resolved(node: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
     """The node without $ref and without the null alternative of an optional key."""
     follow: Callable[[dict[str, Any]], dict[str, Any]] = lambda n: schema["$defs"][n["$ref"].rpartition("/")[2]]
-    own = {k: v for k, v in node.items() if k not in ("anyOf", "$ref")}
+    direct = {k: v for k, v in node.items() if k not in ("anyOf", "$ref")}
     if "$ref" in node:
-        return {**_resolved(follow(node), schema), **own}
+        return {**_resolved(follow(node), schema), **direct}
     options = [o for o in node.get("anyOf", []) if o.get("type") != "null"]
     if len(options) == 1:
-        return {**_resolved(options[0], schema), **own}
+        return {**_resolved(options[0], schema), **direct}
     return node

@@ -1,1 +1,1 @@
-"""Kinds of surfaces, one a file."""
+"""Kinds of curved surfaces, one a file, with what ruled and what doubly curved ones share in files of their own."""

@@ -50,7 +50,7 @@ class Ruled(Kind, Protocol):
                 return params
             points = work.vertices[vertex]
             at = cylindrical(params[region], points)
-            params, middle = _recentred(params, region, at.t, count)
+            params, middle = _recentre(params, region, at.t, count)
             at.t[:] -= middle[region]
             radius, angle = params[region, 6], params[region, 7]
             x, y = frames(params[:, :3])
@@ -61,7 +61,7 @@ class Ruled(Kind, Protocol):
                 group, columns, residual = with_apices(params[region], points, region, columns, residual, tips)
             matrix, right = normal_equations(group, columns, residual, count)
             change = -solve_normal(matrix, right, DAMPING)
-            params = self._stepped(params, change)
+            params = self.step(params, change)
             if np.abs(change).max(initial=0.0) < CONVERGED:
                 break
         return params
@@ -131,7 +131,7 @@ class Ruled(Kind, Protocol):
         np.multiply(-lever, ry, out=out[:, 3])
         return out
 
-    def _stepped(self, params: Params, change: Array) -> Params:
+    def step(self, params: Params, change: Array) -> Params:
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite."""
         x, y = frames(params[:, :3])
         limit = np.abs(params[:, 6])[:, None] + SHIFT_LIMIT
@@ -210,7 +210,7 @@ def with_apices(
     )
 
 
-def _recentred(params: Params, region: Ints, t: Array, count: int) -> tuple[Params, Array]:
+def _recentre(params: Params, region: Ints, t: Array, count: int) -> tuple[Params, Array]:
     """Moves each reference point along its axis beside the mean of the points; by how much (R,)."""
     size = np.maximum(np.bincount(region, minlength=count), 1)
     middle = np.bincount(region, t, count) / size

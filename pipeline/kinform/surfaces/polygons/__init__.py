@@ -1,1 +1,1 @@
-"""Facets, edges and coplanar polygons of a mesh."""
+"""Facets, edges, noise, and the coplanar polygons that surfaces are recovered over."""

@@ -42,7 +42,7 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> Ints:
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
     label = components(f0[flat], f1[flat], len(mesh.faces))
     if scale.scatter > 0:
-        label = _peeled(mesh, label, f0[flat], f1[flat], scale)
+        label = _peel(mesh, label, f0[flat], f1[flat], scale)
         flat = flat & (label[f0] == label[f1])
     for stricter, limit in ((strict, THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
         bent = _flatness(mesh, label) > limit
@@ -117,7 +117,7 @@ def moments(mesh: Facets, polygon: Ints) -> tuple[Array, Array, Array]:
     return total, normalised(mean), group_mean(polygon, mesh.middle, count, weight)
 
 
-def _peeled(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
+def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
     """Labels of clusters that scattered vertices let run on into their neighbours, one plane after the other
     taken off from the largest facet of each; `f0`, `f1` are the links between facets."""
     corners = mesh.vertices[mesh.faces]

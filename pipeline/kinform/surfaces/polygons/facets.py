@@ -28,8 +28,7 @@ class Facets:
     """(F,) the least."""
     f0: Ints
     f1: Ints
-    """(E,) facets of each edge; f1 is -1 at open edges and where more than two facets meet, which are given as open edges,
-    one for each facet."""
+    """(E,) facets of each edge; f1 is -1 at open edges. Where more than two facets meet each has an open edge."""
     ends: Ints
     """(E, 2) vertices as f0 runs them."""
     length: Array

@@ -81,7 +81,7 @@ class Patchwork:
         allowed = tolerances.smooth_edge + np.minimum(np.where(inner, slack[a] + slack[b], 0.0), MOST_SLACK)
         vertex_key = np.unique(np.repeat(polygon, 3) * np.int64(len(vertices)) + mesh.faces.ravel())
         numbers = np.arange(len(a))
-        two = np.flatnonzero(b >= 0)
+        closed = np.flatnonzero(b >= 0)
         return cls(
             vertices=vertices,
             facet_area=mesh.area,
@@ -92,7 +92,7 @@ class Patchwork:
             centre=centre,
             slack=slack,
             corners=Ragged(vertex_key // max(len(vertices), 1), vertex_key % max(len(vertices), 1), count),
-            sides=Ragged(np.r_[a, b[two]], np.r_[numbers, two], count),
+            sides=Ragged(np.r_[a, b[closed]], np.r_[numbers, closed], count),
             a=a,
             b=b,
             ends=ends,

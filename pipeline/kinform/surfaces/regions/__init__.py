@@ -1,1 +1,1 @@
-"""Which polygons belong to which surface."""
+"""Which polygons are one surface: candidates, growth, partition, merging."""

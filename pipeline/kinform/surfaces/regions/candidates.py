@@ -35,7 +35,7 @@ class Candidates:
         """The same surfaces, held to another tolerance."""
         return replace(self, tolerance=tolerance)
 
-    def refined(self, batch: Batch, steps: int) -> Candidates:
+    def refine(self, batch: Batch, steps: int) -> Candidates:
         """Fitted again to their regions."""
         return replace(self, params=self.kind.refine(batch, self.params, self.tolerance, steps))
 

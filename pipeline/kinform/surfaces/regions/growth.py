@@ -50,14 +50,14 @@ def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
     pieces = batch.select(usable[batch.region])
     side = _facing(kind, pieces, params) if kind.saddle else side
     fit = np.full(batch.count, ground.scale.fit)
-    surfaces = Candidates(kind, params, side, LOOSE * fit).refined(pieces, 2)
+    surfaces = Candidates(kind, params, side, LOOSE * fit).refine(pieces, 2)
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
     share = np.bincount(pieces.region, fits, batch.count) / np.maximum(batch.size, 1)
     pieces, number = _compact(pieces.select(fits & (share >= MAJORITY)[pieces.region]))
-    kept = surfaces.of(number).within(fit[number]).refined(pieces, 2)
-    kept = kept.within(_justified(kept, pieces, ground.scale))
+    kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
+    kept = kept.within(_justify(kept, pieces, ground.scale))
     pieces = _large(kind, ground.connected(_conforming(kept, pieces)))
-    return _credible(ground, surfaces, pieces, kept.refined(pieces, 1), number)
+    return _credible(ground, surfaces, pieces, kept.refine(pieces, 1), number)
 
 
 def absorb(ground: Ground, growth: Growth) -> Growth:
@@ -77,9 +77,9 @@ def absorb(ground: Ground, growth: Growth) -> Growth:
         finished.append(_keys(batch.select(~gained[batch.region]), number))
         batch, kept = _compact(larger.select(gained[larger.region]))
         number = number[kept]
-        surfaces = surfaces.of(kept).refined(batch, 1)
+        surfaces = surfaces.of(kept).refine(batch, 1)
         params[number] = surfaces.params
-        batch = _settled(ground, surfaces, batch)
+        batch = _settle(ground, surfaces, batch)
     finished.append(_keys(batch, number))
     grown = Batch.of_keys(ground.patchwork, np.sort(np.concatenate(finished)), growth.batch.count)
     return Growth(Candidates(kind, params, growth.surfaces.side, growth.surfaces.tolerance), grown)
@@ -93,16 +93,16 @@ def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
     fit = np.full(batch.count, ground.scale.fit)
     params, usable = kind.propose(batch)
     batch = batch.select(usable[batch.region])
-    surfaces = Candidates(kind, params, side, LOOSE * fit).refined(batch, 2)
-    batch, surfaces = _grown(ground, surfaces, _settled(ground, surfaces, batch))
+    surfaces = Candidates(kind, params, side, LOOSE * fit).refine(batch, 2)
+    batch, surfaces = _grow(ground, surfaces, _settle(ground, surfaces, batch))
     batch, number = _compact(batch)
-    kept = surfaces.of(number).refined(batch, 2)
-    kept = kept.within(_justified(kept, batch, ground.scale))
-    batch = _settled(ground, kept, batch)
-    return _credible(ground, surfaces, batch, kept.refined(batch, 2), number)
+    kept = surfaces.of(number).refine(batch, 2)
+    kept = kept.within(_justify(kept, batch, ground.scale))
+    batch = _settle(ground, kept, batch)
+    return _credible(ground, surfaces, batch, kept.refine(batch, 2), number)
 
 
-def _grown(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Candidates]:
+def _grow(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Candidates]:
     """Rounds of fitting and growing. A region that did not change in a round is finished and leaves, so
     that the later rounds work on the few that still grow."""
     count, params = batch.count, surfaces.params.copy()
@@ -114,8 +114,8 @@ def _grown(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, C
         if not len(batch.region):
             break
         before = batch.size
-        growing = growing.refined(batch, 2).within(fit[number])
-        batch = _thinned(_settled(ground, growing, batch))
+        growing = growing.refine(batch, 2).within(fit[number])
+        batch = _drop_shared(_settle(ground, growing, batch))
         batch = ground.spread(growing, batch, growing.reach(batch), min(FIRST_LAYERS << stage, MOST_LAYERS))
         params[number] = growing.params
         still = batch.size == before if stage else np.zeros(batch.count, bool)
@@ -156,7 +156,7 @@ def _keys(batch: Batch, number: Ints) -> Ints:
     return number[batch.region] * np.int64(batch.patchwork.count) + batch.polygon
 
 
-def _thinned(batch: Batch) -> Batch:
+def _drop_shared(batch: Batch) -> Batch:
     """The batch with regions emptied most of whose polygons belong to a larger region as well."""
     if not len(batch.region):
         return batch
@@ -175,7 +175,7 @@ def _large(kind: Kind, batch: Batch) -> Batch:
     return batch.select((batch.size >= kind.least)[batch.region])
 
 
-def _settled(ground: Ground, surfaces: Candidates, batch: Batch) -> Batch:
+def _settle(ground: Ground, surfaces: Candidates, batch: Batch) -> Batch:
     """The batch, whose regions are connected, without polygons that do not conform, and without regions that fell
     apart and became too small."""
     kept = _conforming(surfaces, batch)
@@ -187,7 +187,7 @@ def _settled(ground: Ground, surfaces: Candidates, batch: Batch) -> Batch:
     return _large(surfaces.kind, kept)
 
 
-def _justified(surfaces: Candidates, batch: Batch, scale: Scale) -> Array:
+def _justify(surfaces: Candidates, batch: Batch, scale: Scale) -> Array:
     """The tolerance that each region's own vertices justify, between the noise and the fit."""
     return np.clip(TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 

@@ -144,7 +144,7 @@ def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Fla
     if not families:
         return np.zeros(0, bool)
     batch, fit = _batch(work, families), surfaces.tolerance
-    fitted = surfaces.within(MERGING_FITS * fit).refined(batch, 2).within(fit).refined(batch, 3)
+    fitted = surfaces.within(MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, widths(fitted.kind, batch, fitted.params))
     good = fitted.conforms(batch, MERGED_REACH * reach + FACET_ROUNDING)

@@ -80,7 +80,7 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     like = link.alike & continues(work, bent, link)
     for kinds, both_ways in ((CURVED, True), (SIMPLE, False)):
         batch, side = _blends(ground, link, like, bent) if both_ways else _pieces(ground, link, link.alike)
-        growths = [absorb(ground, growth) for growth in _explained(ground, batch, side, bent, kinds)]
+        growths = [absorb(ground, growth) for growth in _whole_pieces(ground, batch, side, bent, kinds)]
         regions += _choose(growths, ground)
     tried = np.zeros(len(work.a), bool)
     total = work.area.sum()
@@ -128,7 +128,7 @@ def _blends(ground: Ground, link: Links, joined: Flags, bent: Curvature) -> tupl
     return Batch.of_keys(work, keys, len(names)), np.where(lean >= 0, 1, -1).astype(np.int64)
 
 
-def _explained(
+def _whole_pieces(
     ground: Ground, batch: Batch, side: Ints, bent: Curvature, kinds: tuple[Kind, ...]
 ) -> list[Growth]:  # fmt: skip
     """Each kind on the pieces that bend as it does; what one kind explains whole, the later are not tried on."""

@@ -1,1 +1,1 @@
-"""Surfaces that a motion sweeps: helicoids, revolutions, extrusions."""
+"""Surfaces that one motion sweeps: threads, revolutions, extrusions."""

@@ -73,7 +73,7 @@ def _turning(work: Patchwork, patches: list[Ints], scale: Scale) -> list[Descrip
     motion = slippage(work, patch, np.concatenate(patches), len(patches))
     unique = (motion.speed < STILL) & (motion.next_speed > UNIQUE * np.maximum(motion.speed, STILL / 2))
     return [
-        _turned_surface(work, polygons, motion, k, scale) if unique[k] else None for k, polygons in enumerate(patches)
+        _surface_of_turn(work, polygons, motion, k, scale) if unique[k] else None for k, polygons in enumerate(patches)
     ]
 
 
@@ -90,7 +90,7 @@ def _together(work: Patchwork, patches: list[Ints]) -> list[list[int]]:
     return [group.tolist() for group in members(components(a, b, len(patches))) if len(group) > 1]
 
 
-def _turned_surface(work: Patchwork, polygons: Ints, motion: Slippage, k: int, scale: Scale) -> Description | None:
+def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, scale: Scale) -> Description | None:
     """What the k-th motion makes of its patch: its kind with axis, point, pitch, and uncertainty."""
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
     if turning < TURNS:

@@ -4,7 +4,7 @@ Facets of a thread are too coarse to say what their pitch is, and its flanks fal
 planes or nothing. But whatever the tessellation, the borders of its flanks are polylines with every vertex on a true
 helix: edges along which the distance from the axis stays and the height grows with the angle, all by one amount.
 Candidates for the axis are those of coaxial cylinders (crests, roots, shanks) and of the linear line complex of
-what is left (Pottmann and Randrup 1998); a least squares over the polylines then gives axis and pitch.
+what is left (see `slippage`); a least squares over the polylines then gives axis and pitch.
 """
 
 from __future__ import annotations
@@ -95,27 +95,27 @@ class _Helices:
     """(m,) rad."""
 
 
-def threads(work: Patchwork, loose: Flags, known: Sequence[Description], scale: Scale) -> list[Description]:
-    """Helicoids among the loose polygons (P,), each with all its flanks; `known` surfaces suggest axes."""
+def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale: Scale) -> list[Description]:
+    """Helicoids among the loose polygons (P,), each with all its flanks; `others` suggest axes."""
     free = loose.copy()
     out: list[Description] = []
     if int(free.sum()) < THREAD_POLYGONS:
         return out
-    for axis, point in _lines(work, free, known):
+    for axis, point in _lines(work, free, others):
         if int(free.sum()) < THREAD_POLYGONS:
             break
-        found = _about(work, free, axis, point, scale)
-        if found is not None:
-            out.append(found)
-            free[found.polygons] = False
+        thread = _about(work, free, axis, point, scale)
+        if thread is not None:
+            out.append(thread)
+            free[thread.polygons] = False
     return out
 
 
-def _lines(work: Patchwork, free: Flags, known: Sequence[Description]) -> list[tuple[Array, Array]]:
+def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[tuple[Array, Array]]:
     """Axes and points on them: of cylinders, the largest first, and those about which pieces of what is free turn."""
-    cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(known) if item.kind == "cylinder"]
+    cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
     largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * MOST_LINES]
-    lines = _distinct([(known[k].axis, known[k].point) for _, k in largest])[:MOST_LINES]
+    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest])[:MOST_LINES]
     return _distinct([*lines, *_turning(work, free)])
 
 
@@ -144,16 +144,16 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
     for piece in np.argsort(-area, kind="stable")[:MOST_PIECES]:
         if size[piece] < THREAD_POLYGONS:
             continue
-        own = np.flatnonzero(free & (label == piece))
-        weight = work.area[own]
+        members = np.flatnonzero(free & (label == piece))
+        weight = work.area[members]
         for _ in range(REWEIGHINGS):
-            middle = weight @ work.centre[own] / weight.sum()
-            arm = work.centre[own] - middle
+            middle = weight @ work.centre[members] / weight.sum()
+            arm = work.centre[members] - middle
             reach = max(float(np.sqrt(weight @ dot(arm, arm) / weight.sum())), 1e-12)
-            rows = np.concatenate([cross(arm / reach, work.normal[own]), work.normal[own]], axis=1)
+            rows = np.concatenate([cross(arm / reach, work.normal[members]), work.normal[members]], axis=1)
             twist = np.linalg.eigh((rows * weight[:, None]).T @ rows / weight.sum())[1][:, 0]
             speed = np.abs(rows @ twist)
-            weight = work.area[own] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
+            weight = work.area[members] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
         turn = float(np.linalg.norm(twist[:3]))
         if turn > PIECE_TURNS:
             axis = twist[:3] / turn
@@ -169,7 +169,7 @@ def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale
     start = _Screw(axis, point, 0.0)
     best: tuple[float, _Screw, Ints] | None = None
     for advance in _advances(work, edges, start, scale):
-        screw = _refined(work, edges, _Screw(axis, point, advance), scale)
+        screw = _refine(work, edges, _Screw(axis, point, advance), scale)
         if screw is None:
             continue
         helices = _helices(work, edges, screw, scale)
@@ -182,7 +182,7 @@ def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale
             best = (score, screw, members)
     if best is None:
         return None
-    return _described(work, edges, best[1], best[2], scale)
+    return _description(work, edges, best[1], best[2], scale)
 
 
 def _slopes(
@@ -259,14 +259,14 @@ def _residuals(work: Patchwork, helices: _Helices, screw: _Screw, vertex: Ints, 
     return np.concatenate([above, distance])
 
 
-def _changed(screw: _Screw, change: Array) -> _Screw:
+def _step(screw: _Screw, change: Array) -> _Screw:
     """The screw with its axis tilted and shifted, and its advance changed, by (5,)."""
     u, v = screw.frame
     axis = screw.axis + change[0] * u + change[1] * v
     return _Screw(axis / np.linalg.norm(axis), screw.point + change[2] * u + change[3] * v, screw.advance + change[4])
 
 
-def _solved(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> tuple[_Screw, Array, float, float]:
+def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> tuple[_Screw, Array, float, float]:
     """One robust step: the screw, the covariance factors (5, 5), the scatter and the extent along the axis."""
     key = np.unique(np.repeat(helices.polyline, 2) * np.int64(len(work.vertices)) + helices.ends.ravel())
     group, vertex = key // len(work.vertices), key % len(work.vertices)
@@ -276,7 +276,7 @@ def _solved(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> 
     step = 1e-6
     base = _residuals(work, helices, screw, vertex, group)
     columns = np.stack(
-        [(_residuals(work, helices, _changed(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
+        [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
     scatter = max(HELIX_MEDIANS * float(np.median(np.abs(base))), scale.rounding)
     weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
@@ -284,16 +284,16 @@ def _solved(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> 
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
     inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
     change = -inverse @ (columns.T @ (weight * base))
-    return _changed(screw, change), inverse, scatter, float(np.ptp(height))
+    return _step(screw, change), inverse, scatter, float(np.ptp(height))
 
 
-def _refined(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
+def _refine(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
     """The screw through the polylines of its helices."""
     for wide in WIDE:
         helices = _helices(work, edges, screw, scale, wide)
         if helices is None:
             return None
-        moved = _solved(work, helices, screw, scale)[0]
+        moved = _solve(work, helices, screw, scale)[0]
         if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > ADVANCE_STEP * abs(screw.advance):
             return None
         screw = moved
@@ -312,9 +312,7 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     key = np.unique(owner * (total + 1) + line[vertex] + 1)
     lines = np.bincount(key // (total + 1), key % (total + 1) > 0, work.count)
     off = np.bincount(owner, line[vertex] < 0, work.count)
-    low, high = np.sort(helices.ends, axis=1).T
-    own = np.sort(work.ends, axis=1)
-    along = np.isin(own[:, 0] * total + own[:, 1], low * total + high)
+    along = _are_edges(work, helices)
     sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
     between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
     fitting = free & (np.abs(share) < TILTS * TILT)
@@ -331,23 +329,29 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     return np.flatnonzero(between | (fitting & good[label]))
 
 
+def _are_edges(work: Patchwork, helices: _Helices) -> Flags:
+    """(E,) which edges run along the helices."""
+    total = np.int64(len(work.vertices))
+    edges, along = np.sort(work.ends, axis=1), np.sort(helices.ends, axis=1)
+    return np.isin(edges[:, 0] * total + edges[:, 1], along[:, 0] * total + along[:, 1])
+
+
 def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
     """How far facets may stand off the thread, from the angles between them where they are not its corners."""
-    total = np.int64(len(work.vertices))
-    own, corner = np.sort(work.ends, axis=1), np.sort(helices.ends, axis=1)
     inside = np.zeros(work.count, bool)
     inside[members] = True
     use = (work.b >= 0) & inside[work.a] & (work.angle < BENT)
     use[use] &= inside[work.b[use]]
-    use &= ~np.isin(own[:, 0] * total + own[:, 1], corner[:, 0] * total + corner[:, 1])
+    use &= ~_are_edges(work, helices)
     return freeform(work, members, np.flatnonzero(use)).chord
 
 
-def _described(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, scale: Scale) -> Description | None:
+def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, scale: Scale) -> Description | None:
+    """The thread that these members make, with the uncertainty of its screw."""
     helices = _helices(work, edges, screw, scale)
     if helices is None:
         return None
-    _, inverse, scatter, _ = _solved(work, helices, screw, scale)
+    _, inverse, scatter, _ = _solve(work, helices, screw, scale)
     spread = COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
     weight, normal = work.area[members], work.normal[members]
     height, _, _ = screw.polar(work.vertices[helices.ends.ravel()])
