@@ -79,7 +79,7 @@ def test_unbounded_ranges_survive(four_bar):
     behaviour = replace(behaviour, joints=(joint, other, *behaviour.joints[2:]))
     lock = read_lock(write_lock(behaviour), "b.json")
     assert compare(lock.behaviour, behaviour, lock.tolerance).changes == ()
-    assert lock.behaviour.joints[0].upper == math.inf
+    assert lock.behaviour.joints[0].range_upper == math.inf
 
 
 @pytest.mark.parametrize(
