@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from support.places import FIXTURES
@@ -9,7 +11,10 @@ from support.places import FIXTURES
 from kinform import form
 from kinform.consistency.comparisons.plausibility import _rests
 
-MESH = form.load(FIXTURES / "mechanisms/four_bar/four_bar.toml").part("coupler").mesh
+
+@cache
+def coupler():
+    return form.load(FIXTURES / "mechanisms/four_bar/four_bar.toml").part("coupler").mesh
 
 
 def pose(turn, place):
@@ -24,15 +29,15 @@ def pose(turn, place):
     ids=["none", "quarter", "any"],
 )
 def test_the_box_of_a_placed_mesh_is_that_of_its_placed_vertices(turn):
-    assert MESH is not None
+    assert coupler() is not None
     X = pose(turn, [0.3, -1e-7, 12.5])
-    placed = MESH.vertices @ X[:3, :3].T + X[:3, 3]
-    low, high = MESH.placed_box(X)
+    placed = coupler().vertices @ X[:3, :3].T + X[:3, 3]
+    low, high = coupler().placed_box(X)
     assert (low == placed.min(axis=0)).all()
     assert (high == placed.max(axis=0)).all()
     moved = pose(turn, [0.4, -1e-7, 12.5])
-    assert MESH.placed_box(moved)[0][0] != low[0]
-    assert (MESH.bare.placed_box(X)[0] == low).all()
+    assert coupler().placed_box(moved)[0][0] != low[0]
+    assert (coupler().bare.placed_box(X)[0] == low).all()
 
 
 def test_what_is_left_without_each_box():

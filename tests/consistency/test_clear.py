@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support.devices import intended, sine
 from support.places import FIXTURES
-from support.requirements import ORIGIN, THIN, WALL, bar, state
+from support.requirements import ORIGIN, bar, state, thin_wall, wall
 
 from kinform.model.assembly import Group
 from kinform.model.function import Function
@@ -25,15 +25,15 @@ def nearest(degrees):
 
 def test_the_clearance_over_a_range():
     between = {"between": ["bar", "base"], "over": "ranges"}
-    assert state(bar(WALL), "clear", distance=nearest(30) - 2e-5, **between)[0] == "met"
-    assert state(bar(WALL), "clear", distance=nearest(30) + 2e-5, **between)[0] == "violated"
-    assert state(bar(WALL, reach=60), "clear", distance=0.0, **between)[0] == "violated"
-    assert state(bar(WALL, reach=40), "clear", distance=0.0, **between)[0] == "met"
-    assert state(bar(WALL, reach=None), "clear", distance=0.0, **between)[0] == "undecided"
+    assert state(bar(wall()), "clear", distance=nearest(30) - 2e-5, **between)[0] == "met"
+    assert state(bar(wall()), "clear", distance=nearest(30) + 2e-5, **between)[0] == "violated"
+    assert state(bar(wall(), reach=60), "clear", distance=0.0, **between)[0] == "violated"
+    assert state(bar(wall(), reach=40), "clear", distance=0.0, **between)[0] == "met"
+    assert state(bar(wall(), reach=None), "clear", distance=0.0, **between)[0] == "undecided"
 
 
 def test_the_clearance_along_a_motion_and_where_it_is_lost():
-    swing = lambda amplitude: bar(WALL, law=sine(amplitude, 1.0), duration=1.0, step=0.05, level="kinematic")
+    swing = lambda amplitude: bar(wall(), law=sine(amplitude, 1.0), duration=1.0, step=0.05, level="kinematic")
     between = {"between": ["bar", "base"]}
     assert state(swing(30.0), "clear", distance=nearest(30) - 2e-5, **between)[0] == "met"
     found, finding = state(swing(30.0), "clear", distance=nearest(30) + 2e-5, **between)
@@ -49,7 +49,7 @@ def test_the_clearance_along_a_motion_and_where_it_is_lost():
 def test_no_thin_wall_is_jumped_over():
     # samples 120° apart, on either side of a foil of 0.05 mm
     law = sine(60.0, 1.0, phase=-90.0)
-    made = bar(THIN, law=law, duration=0.5, step=0.5, level="kinematic")
+    made = bar(thin_wall(), law=law, duration=0.5, step=0.5, level="kinematic")
     ends = np.degrees(made.simulation.joint_position[:, 0])
     assert np.allclose(np.abs(ends), 60.0)
     assert state(made, "clear", between=["bar", "base"])[0] == "violated"
@@ -79,7 +79,7 @@ def test_no_part_of_the_seeker_collides_and_a_twin_that_overlaps_does(derive_des
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("turned", [False, True])
 def test_where_a_clearance_is_lost_is_told_by_the_designers_name_and_sign(sign, turned):
-    made, limits = bar(WALL, reach=60), (-math.radians(60), math.radians(60))
+    made, limits = bar(wall(), reach=60), (-math.radians(60), math.radians(60))
     between = ("bar", "base") if turned else ("base", "bar")
     wanted = intended("swing", *between, "revolute", (0, 0, sign), ORIGIN, range=limits)
     made = replace(made, assembly=replace(made.assembly, function=Function(joints=(wanted,))))
@@ -92,7 +92,7 @@ def test_where_a_clearance_is_lost_is_told_by_the_designers_name_and_sign(sign, 
 
 
 def test_parts_that_would_be_on_both_sides_are_no_clearance():
-    made = bar(WALL)
+    made = bar(wall())
     groups = (Group("both", ("bar", "base"), made.assembly.source),)
     made = replace(made, assembly=replace(made.assembly, groups=groups))
     found, finding = state(made, "clear", between=["both", "bar"], over="ranges")

@@ -8,7 +8,7 @@ import pytest
 from generators.solids import box, join
 from support.manifests import manifest
 from support.places import FIXTURES
-from support.requirements import WALL, bar, requiring, state
+from support.requirements import bar, requiring, state, wall
 
 from kinform import stages
 from kinform.consistency import check
@@ -77,7 +77,7 @@ def test_a_slide_with_stops_holds_its_part(derive_design):
 
 
 def test_answers_do_not_depend_on_the_order_of_parts(derive_design):
-    made = requiring(bar(WALL, reach=60), "clear", between=["bar", "base"], over="ranges")
+    made = requiring(bar(wall(), reach=60), "clear", between=["bar", "base"], over="ranges")
     turned = replace(made, assembly=replace(made.assembly, parts=made.assembly.parts[::-1]))
     assert check(made).findings == check(turned).findings
 

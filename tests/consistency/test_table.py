@@ -12,8 +12,6 @@ from support.places import FIXTURES
 from support.requirements import (
     CODES,
     ORIGIN,
-    THIN,
-    WALL,
     X,
     Y,
     Z,
@@ -23,6 +21,8 @@ from support.requirements import (
     design,
     gimbal,
     requiring,
+    thin_wall,
+    wall,
     wheel,
 )
 
@@ -187,8 +187,8 @@ OF_THEIR_OWN = {
     ),
     "KF422": (lambda _: requiring(wheel(RUN), "follow", rows=circle(shift=0.002), **POINT),
               lambda _: requiring(wheel(RUN), "follow", rows=circle(shift=0.0005), **POINT)),
-    "KF423": (lambda _: requiring(bar(THIN, reach=60), "clear", between=["bar", "base"], over="ranges"),
-              lambda _: requiring(bar(WALL, reach=30), "clear", between=["bar", "base"], over="ranges")),
+    "KF423": (lambda _: requiring(bar(thin_wall(), reach=60), "clear", between=["bar", "base"], over="ranges"),
+              lambda _: requiring(bar(wall(), reach=30), "clear", between=["bar", "base"], over="ranges")),
     "KF424": (lambda _: requiring(arm(), "hold", joint="shoulder", limit=1.0),
               lambda _: requiring(arm(), "hold", joint="shoulder", limit=10.0)),
     "KF425": (lambda _: requiring(wheel(RUN), "torque", joint="spin", limit=1e-3),

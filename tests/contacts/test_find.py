@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,14 +14,21 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, rou
 from kinform.contacts import find
 from kinform.contacts.search.candidates import candidate_pairs
 
-CUBE = extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
-PIN = extrusion(round_loop(3 * MM, 24, centre=(5 * MM, 5 * MM)), z0=0.0, z1=10 * MM)
+
+@cache
+def cube():
+    return extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
+
+
+@cache
+def pin():
+    return extrusion(round_loop(3 * MM, 24, centre=(5 * MM, 5 * MM)), z0=0.0, z1=10 * MM)
 
 
 def row(**options):
     """Four cubes in a row, each touching the next, and a pin on the last."""
-    parts = {name: (CUBE, pose(translation=(10 * MM * k, 0, 0))) for k, name in enumerate("abcd")}
-    parts["pin"] = (PIN, pose(translation=(30 * MM, 0, 10 * MM)))
+    parts = {name: (cube(), pose(translation=(10 * MM * k, 0, 0))) for k, name in enumerate("abcd")}
+    parts["pin"] = (pin(), pose(translation=(30 * MM, 0, 10 * MM)))
     return assembly(parts, **options)
 
 
@@ -75,7 +83,7 @@ def test_parts_without_a_mesh_are_skipped():
 
 
 def test_an_assembly_of_one_part_has_no_contacts():
-    found = find(*assembly({"only": (CUBE, pose())}))
+    found = find(*assembly({"only": (cube(), pose())}))
     assert (found.candidates, found.patches, found.interferences) == ((), (), ())
 
 
@@ -120,7 +128,7 @@ def test_pairs_that_no_longer_meet_are_not_reused():
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.tuples(*[st.integers(-30, 30)] * 3), min_size=2, max_size=9, unique=True))
 def test_the_broad_phase_keeps_exactly_the_pairs_whose_boxes_come_within_the_tolerance(corners):
-    parts = {f"p{k}": (CUBE, pose(translation=np.array(corner) * 0.7 * MM)) for k, corner in enumerate(corners)}
+    parts = {f"p{k}": (cube(), pose(translation=np.array(corner) * 0.7 * MM)) for k, corner in enumerate(corners)}
     design, _ = assembly(parts)
     tolerance = design.tolerances.contact_of(*[np.sqrt(300) * MM] * 2)
     expected = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,7 +12,10 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, pose, rou
 
 from kinform.contacts import find
 
-CUBE = extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
+
+@cache
+def cube():
+    return extrusion(box_loop(0, 0, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
 
 
 def interferences(first, second, X_second, X_first=None):
@@ -29,7 +33,7 @@ def opened(solid):
 
 
 def test_overlap_of_two_boxes_has_the_volume_depth_and_place_of_arithmetic():
-    (found,) = interferences(CUBE, CUBE, pose(translation=(8 * MM, 3 * MM, 1 * MM)))
+    (found,) = interferences(cube(), cube(), pose(translation=(8 * MM, 3 * MM, 1 * MM)))
     assert found.volume == pytest.approx(2 * 7 * 9 * MM**3, rel=1e-9)
     assert found.depth == pytest.approx(2 * MM, rel=0.05)
     np.testing.assert_allclose(found.place, np.array([9, 6.5, 5.5]) * MM, atol=1e-9)
@@ -40,38 +44,38 @@ def test_overlap_of_two_boxes_has_the_volume_depth_and_place_of_arithmetic():
 
 def test_overlap_does_not_depend_on_the_pose_of_the_whole():
     X = pose(turned((1, -2, 0.5), 73.0), (2.0, -1.0, 0.4))
-    (found,) = interferences(CUBE, CUBE, X @ pose(translation=(8 * MM, 3 * MM, 1 * MM)), X)
+    (found,) = interferences(cube(), cube(), X @ pose(translation=(8 * MM, 3 * MM, 1 * MM)), X)
     assert found.volume == pytest.approx(2 * 7 * 9 * MM**3, rel=1e-9)
     np.testing.assert_allclose(found.place, X[:3, :3] @ np.array([9, 6.5, 5.5]) * MM + X[:3, 3], atol=1e-9)
 
 
 @pytest.mark.parametrize("shift", [(10, 0, 0), (10, 10, 0), (10, 3, 2), (10.01, 0, 0)])
 def test_boxes_that_only_touch_do_not_interfere(shift):
-    assert interferences(CUBE, CUBE, pose(translation=np.array(shift) * MM)) == ()
+    assert interferences(cube(), cube(), pose(translation=np.array(shift) * MM)) == ()
 
 
 def test_a_part_inside_another_interferes_with_all_its_volume():
     small = extrusion(box_loop(4 * MM, 4 * MM, 6 * MM, 6 * MM), z0=4 * MM, z1=6 * MM)
-    (found,) = interferences(CUBE, small, pose())
+    (found,) = interferences(cube(), small, pose())
     assert found.volume == pytest.approx(8 * MM**3, rel=1e-9)
     assert not found.mated
-    (swapped,) = interferences(small, CUBE, pose())
+    (swapped,) = interferences(small, cube(), pose())
     assert swapped.volume == pytest.approx(8 * MM**3, rel=1e-9)
 
 
 def test_a_part_in_a_cavity_does_not_interfere():
     ring = extrusion(box_loop(-20 * MM, -20 * MM, 20 * MM, 20 * MM), [round_loop(15 * MM, 32)], z1=10 * MM)
-    assert interferences(ring, CUBE, pose(translation=(-5 * MM, -5 * MM, 0))) == ()
+    assert interferences(ring, cube(), pose(translation=(-5 * MM, -5 * MM, 0))) == ()
 
 
 def test_a_part_placed_twice_interferes_with_all_its_volume():
-    (found,) = interferences(CUBE, CUBE, pose())
+    (found,) = interferences(cube(), cube(), pose())
     assert found.volume == pytest.approx(1000 * MM**3, rel=1e-6)
     assert not found.mated
 
 
 def test_flush_bars_that_run_into_each_other_interfere():
-    (found,) = interferences(CUBE, CUBE, pose(translation=(4 * MM, 0, 0)))
+    (found,) = interferences(cube(), cube(), pose(translation=(4 * MM, 0, 0)))
     assert found.volume == pytest.approx(600 * MM**3, rel=1e-6)
 
 
@@ -98,22 +102,22 @@ def test_a_press_fit_beyond_the_chord_errors_is_a_mated_interference():
 
 
 def test_an_overlap_beyond_the_tolerance_is_no_fit():
-    (found,) = interferences(CUBE, CUBE, pose(translation=(9.2 * MM, 0, 0)))
+    (found,) = interferences(cube(), cube(), pose(translation=(9.2 * MM, 0, 0)))
     assert found.depth == pytest.approx(0.8 * MM, rel=0.05)
     assert not found.mated
-    (found,) = interferences(CUBE, CUBE, pose(translation=(9.8 * MM, 0, 0)))
+    (found,) = interferences(cube(), cube(), pose(translation=(9.8 * MM, 0, 0)))
     assert found.mated
 
 
 def test_overlap_of_an_open_mesh_has_a_depth_and_no_volume():
-    (found,) = interferences(opened(CUBE), CUBE, pose(translation=(8 * MM, 0.1 * MM, 0.2 * MM)))
+    (found,) = interferences(opened(cube()), cube(), pose(translation=(8 * MM, 0.1 * MM, 0.2 * MM)))
     assert found.method == "facets"
     assert math.isnan(found.volume)
     assert found.depth == pytest.approx(2 * MM, rel=0.05)
 
 
 def test_surfaces_without_a_solid_have_contacts_and_no_interference():
-    first, surfaces = assembly({"a": (CUBE, pose()), "b": (CUBE, pose(translation=(9.8 * MM, 0, 0)))})
+    first, surfaces = assembly({"a": (cube(), pose()), "b": (cube(), pose(translation=(9.8 * MM, 0, 0)))})
     hollow = dataclasses.replace(first, parts=(first.parts[0], dataclasses.replace(first.parts[1], solid=False)))
     found = find(hollow, surfaces)
     assert found.patches

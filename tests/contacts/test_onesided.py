@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,8 +12,17 @@ from support.analytic_solids import MM, assembly, box_loop, extrusion, flat_loop
 
 from kinform.contacts import find
 
-BLOCK = extrusion(box_loop(-10 * MM, -10 * MM, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
-TABLE = extrusion(box_loop(-30 * MM, -30 * MM, 30 * MM, 30 * MM), z0=-10 * MM, z1=0.0)
+
+@cache
+def block():
+    return extrusion(box_loop(-10 * MM, -10 * MM, 10 * MM, 10 * MM), z0=0.0, z1=10 * MM)
+
+
+@cache
+def table():
+    return extrusion(box_loop(-30 * MM, -30 * MM, 30 * MM, 30 * MM), z0=-10 * MM, z1=0.0)
+
+
 LYING = turned((0, 1, 0), 90.0)
 
 
@@ -38,12 +48,12 @@ def patches(first, second, X_first=None, X_second=None):
 @pytest.mark.parametrize("gap", [-0.1, 0.0, 0.2])
 def test_facets_of_no_known_surface_rest_on_a_plane_with_its_normal(gap):
     X = pose(translation=(0, 0, gap * MM))
-    (patch,) = patches(freeform(BLOCK), TABLE, X_first=X)
+    (patch,) = patches(freeform(block()), table(), X_first=X)
     assert (patch.kind, patch.one_sided) == ("plane", True)
     assert patch.area == pytest.approx(400 * MM**2, rel=1e-6)
     np.testing.assert_allclose(patch.gaps, gap * MM, atol=1e-9)
     np.testing.assert_allclose(patch.normals, [[0, 0, -1]] * len(patch.normals), atol=1e-12)
-    (patch,) = patches(TABLE, freeform(BLOCK), X_second=X)
+    (patch,) = patches(table(), freeform(block()), X_second=X)
     np.testing.assert_allclose(patch.axis, [0, 0, 1], atol=1e-12)
 
 
@@ -64,14 +74,14 @@ def test_facets_beside_a_mating_face_do_not_repeat_it():
     outline = [(-10, 0), (10, 0), (16, rise), (16, 10), (-16, 10), (-16, rise)]
     foot = extrusion(flat_loop(np.array(outline) * MM), z0=-10 * MM, z1=10 * MM)
     upright = pose(turned((1, 0, 0), 90.0))
-    (patch,) = patches(freeform(foot, 3, 7), TABLE, X_first=upright)
+    (patch,) = patches(freeform(foot, 3, 7), table(), X_first=upright)
     assert not patch.one_sided
     assert patch.area == pytest.approx(400 * MM**2, rel=1e-6)
 
 
 def test_a_round_of_no_known_surface_does_not_rest_on_a_plane():
     barrel = freeform(extrusion(round_loop(10 * MM, 64), z0=-10 * MM, z1=10 * MM))
-    assert patches(barrel, TABLE, X_first=pose(LYING, (0, 0, 10 * MM))) == ()
+    assert patches(barrel, table(), X_first=pose(LYING, (0, 0, 10 * MM))) == ()
 
 
 def test_two_unknown_faces_touch_as_freeform_with_the_normals_of_their_facets():
@@ -92,7 +102,7 @@ def ball(radius=10 * MM):
 
 
 def test_a_ball_on_a_table_touches_it_in_one_point():
-    (patch,) = patches(ball(), TABLE, X_first=pose(turned((1, 2, 3), 20.0), (2 * MM, 3 * MM, 10 * MM)))
+    (patch,) = patches(ball(), table(), X_first=pose(turned((1, 2, 3), 20.0), (2 * MM, 3 * MM, 10 * MM)))
     assert patch.kind == "point"
     np.testing.assert_allclose(patch.points, [[2 * MM, 3 * MM, 0]], atol=1e-9)
     np.testing.assert_allclose(patch.normals, [[0, 0, -1]], atol=1e-12)
@@ -101,12 +111,12 @@ def test_a_ball_on_a_table_touches_it_in_one_point():
 
 @pytest.mark.parametrize("place", [(0, 0, 10.2), (31, 0, 10.0)])
 def test_a_ball_above_or_beside_the_table_does_not_touch_it(place):
-    assert patches(ball(), TABLE, X_first=pose(translation=np.array(place) * MM)) == ()
+    assert patches(ball(), table(), X_first=pose(translation=np.array(place) * MM)) == ()
 
 
 def test_a_roller_touches_a_table_along_the_line_that_both_have():
     roller = extrusion(round_loop(10 * MM, 40, 0.03), z0=-15 * MM, z1=15 * MM)
-    (patch,) = patches(TABLE, roller, X_second=pose(LYING, (20 * MM, 0, 10 * MM)))
+    (patch,) = patches(table(), roller, X_second=pose(LYING, (20 * MM, 0, 10 * MM)))
     assert patch.kind == "line"
     np.testing.assert_allclose(patch.normals, [[0, 0, 1]] * len(patch.normals), atol=1e-12)
     np.testing.assert_allclose(patch.points[:, 1:], 0.0, atol=1e-9)

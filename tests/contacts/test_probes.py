@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from support.analytic_solids import MM, box_loop, extrusion, revolution, round_l
 
 from kinform.foundation.meshes.index import MeshIndex
 
-PLATE = MeshIndex(extrusion(round_loop(50 * MM, 90), z0=-5 * MM, z1=0.0)[0])
+
+@cache
+def plate():
+    return MeshIndex(extrusion(round_loop(50 * MM, 90), z0=-5 * MM, z1=0.0)[0])
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-12, -0.05, 0.15, 0.499, -0.499])
@@ -18,7 +22,7 @@ def test_slivers_miss_no_sample_within_their_reach(gap):
     angles, radii = np.random.default_rng(1).random((2, 500)) * [[2 * math.pi], [49 * MM]]
     points = np.stack([radii * np.cos(angles), radii * np.sin(angles), np.full(500, gap * MM)], axis=1)
     down = np.tile([0.0, 0.0, -1.0], (500, 1))
-    hits = PLATE.whole().cast(points, down, np.full(500, 0.5 * MM))
+    hits = plate().whole().cast(points, down, np.full(500, 0.5 * MM))
     assert set(hits.probe) == set(range(500))
     np.testing.assert_allclose(hits.along, gap * MM, atol=1e-12)
     np.testing.assert_allclose(hits.facing, -1.0)
@@ -26,7 +30,7 @@ def test_slivers_miss_no_sample_within_their_reach(gap):
 
 def test_slivers_do_not_hit_what_is_beyond_their_reach():
     points = np.array([[0.0, 0.0, 0.6 * MM], [0.0, 0.0, 0.4 * MM]])
-    hits = PLATE.whole().cast(points, np.tile([0.0, 0.0, 1.0], (2, 1)), np.full(2, 0.5 * MM))
+    hits = plate().whole().cast(points, np.tile([0.0, 0.0, 1.0], (2, 1)), np.full(2, 0.5 * MM))
     assert set(hits.probe) == {1}
 
 

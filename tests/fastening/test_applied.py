@@ -16,8 +16,15 @@ from kinform.design import Design
 from kinform.model.assembly import Assumption
 from kinform.reuse.ledger import Ledger
 
-PLATES = {"upper": drilled(0, 5, CORNERS), "lower": drilled(-5, 0, CORNERS)}
-HORN = {"horn": rod(12, 0, 4, 72) - rod(3, -1, 6), "bracket": box(-20, 20, -20, 20, -5, 0) - rod(4, -6, 1)}
+
+def plates():
+    return {"upper": drilled(0, 5, CORNERS), "lower": drilled(-5, 0, CORNERS)}
+
+
+def horn_and_bracket():
+    return {"horn": rod(12, 0, 4, 72) - rod(3, -1, 6), "bracket": box(-20, 20, -20, 20, -5, 0) - rod(4, -6, 1)}
+
+
 SHAFT = np.array([0.0, 0.0, 1.0])
 
 
@@ -34,9 +41,9 @@ def notes(design):
     return [(f.subject, f.message) for f in check(done).findings if f.code == "KF906"]
 
 
-@pytest.mark.parametrize("solids", [PLATES, HORN])
+@pytest.mark.parametrize("solids", [plates, horn_and_bracket])
 def test_without_infer_suggestions_change_nothing(solids):
-    made = made_of(np.eye(4), **solids)
+    made = made_of(np.eye(4), **solids())
     recovered = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in made.parts}
     touching = contacts.find(made, recovered)
     assert touching.suggestions
@@ -47,25 +54,25 @@ def test_without_infer_suggestions_change_nothing(solids):
 
 
 def test_a_joint_that_is_assumed_outweighs_a_suggestion():
-    _, derived = found(np.eye(4), infer=True, assume=[assumed("revolute")], **PLATES)
+    _, derived = found(np.eye(4), infer=True, assume=[assumed("revolute")], **plates())
     (joint,) = derived.joints
     assert (joint.type, joint.evidence) == ("revolute", ("assumption",))
     assert len(derived.bodies) == 2
 
 
 def test_a_joint_that_the_function_states_outweighs_a_suggestion():
-    _, derived = found(np.eye(4), infer=True, joints=[intended("swing", "lower", "upper")], **PLATES)
+    _, derived = found(np.eye(4), infer=True, joints=[intended("swing", "lower", "upper")], **plates())
     assert [(joint.type, joint.status) for joint in derived.joints] == [("planar", "determined")]
 
 
 def test_a_stated_joint_is_kept_even_if_suggestions_meet_round_a_third_part():
     strap = {"strap": box(19, 25, -15, 15, -5, 5) - box(19, 20, -15, 15, -5, 5)}
-    plain = made_of(np.eye(4), **PLATES, **strap)
+    plain = made_of(np.eye(4), **plates(), **strap)
     recovered = {p.mesh.digest: surfaces.recover(p.mesh, plain.tolerances) for p in plain.parts}
     touching = contacts.find(plain, recovered)
     (hint,) = touching.suggestions
     chain = tuple(replace(hint, parts=pair) for pair in (("lower", "strap"), ("strap", "upper")))
-    made = replace(made_of(np.eye(4), infer=True, assume=[assumed("revolute")], **PLATES, **strap))
+    made = replace(made_of(np.eye(4), infer=True, assume=[assumed("revolute")], **plates(), **strap))
     derived = kinematics.derive(made, recovered, replace(touching, suggestions=chain))
     assert "revolute" in [joint.type for joint in derived.joints]
     assert derived.body_of("lower") is not derived.body_of("upper")
@@ -73,7 +80,7 @@ def test_a_stated_joint_is_kept_even_if_suggestions_meet_round_a_third_part():
 
 
 def test_a_stated_fixed_joint_needs_no_suggestion():
-    _, derived = found(np.eye(4), infer=True, assume=[assumed("fixed")], **PLATES)
+    _, derived = found(np.eye(4), infer=True, assume=[assumed("fixed")], **plates())
     (body,) = derived.bodies
     assert body.merged == ("assumed fixed: seen on the bench",)
 
@@ -97,33 +104,33 @@ def test_what_contact_holds_by_itself_is_not_called_inferred():
 
 
 def test_a_joint_that_follows_says_from_which_suggestion():
-    lower = PLATES["lower"] - rod(3, -6, 1, 48)
-    _, derived = found(np.eye(4), infer=True, upper=PLATES["upper"], lower=lower, pin=rod(3, -4.9, -0.1, 48))
+    lower = plates()["lower"] - rod(3, -6, 1, 48)
+    _, derived = found(np.eye(4), infer=True, upper=plates()["upper"], lower=lower, pin=rod(3, -4.9, -0.1, 48))
     (joint,) = derived.joints
     assert joint.status == "inferred"
     assert "lower~upper: 4 aligned empty holes" in joint.reason
 
 
 def test_what_was_applied_is_reported_with_its_confidence():
-    assert notes(designed(infer=False, **PLATES)) == []
-    ((_, message),) = notes(designed(infer=True, **PLATES))
+    assert notes(designed(infer=False, **plates())) == []
+    ((_, message),) = notes(designed(infer=True, **plates()))
     assert "taken for one body: 4 aligned empty holes (fair confidence)" in message
-    ((_, message),) = notes(designed(infer=True, **HORN))
+    ((_, message),) = notes(designed(infer=True, **horn_and_bracket()))
     assert "taken to turn about an axis: coaxial rims" in message
     assert "low confidence" in message
 
 
 def test_what_a_stated_joint_outweighs_is_reported():
-    ((_, message),) = notes(designed(infer=True, assume=[assumed("revolute")], **PLATES))
+    ((_, message),) = notes(designed(infer=True, assume=[assumed("revolute")], **plates()))
     assert "are not made one body, because a joint is stated" in message
 
 
 def test_bolts_in_the_holes_change_the_suggestion_of_a_pair_that_is_reused():
     bolts = {f"bolt{k}": rod(1.8, -7, 7, 48).translate((x, y, 0)) for k, (x, y) in enumerate(CORNERS)}
-    first = designed(**PLATES)
+    first = designed(**plates())
     ledger = Ledger(previous=first)
-    again = stages.contacts(Design(made_of(np.eye(4), **PLATES, **bolts)), ledger=ledger)
-    fresh = stages.contacts(Design(made_of(np.eye(4), **PLATES, **bolts)))
+    again = stages.contacts(Design(made_of(np.eye(4), **plates(), **bolts)), ledger=ledger)
+    fresh = stages.contacts(Design(made_of(np.eye(4), **plates(), **bolts)))
     assert "contacts of 1 pair of parts" in ledger.reused
     assert [h.kind for h in first.contacts.suggestions if h.parts == ("lower", "upper")] == ["holes"]
     assert [h.kind for h in again.contacts.suggestions if h.parts == ("lower", "upper")] == []
@@ -133,9 +140,9 @@ def test_bolts_in_the_holes_change_the_suggestion_of_a_pair_that_is_reused():
 
 
 def test_asking_to_infer_recomputes_joints_and_no_contacts():
-    first = designed(**PLATES)
+    first = designed(**plates())
     ledger = Ledger(previous=first)
-    start = Design(made_of(np.eye(4), infer=True, **PLATES))
+    start = Design(made_of(np.eye(4), infer=True, **plates()))
     second = stages.joints(stages.contacts(start, ledger=ledger), ledger=ledger)
     assert second.contacts is first.contacts
     assert len(second.kinematics.bodies) == 1

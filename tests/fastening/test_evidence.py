@@ -26,13 +26,14 @@ def plate(z0, z1, places, hole=1.5):
     return solid
 
 
-BRACKET = box(-20, 20, -20, 20, -5, 0) - rod(4, -6, 1, 48)
+def bracket_with_bore():
+    return box(-20, 20, -20, 20, -5, 0) - rod(4, -6, 1, 48)
 
 
 @pytest.mark.parametrize("X", [np.eye(4), random_pose(np.random.default_rng(8))])
 def test_the_rim_of_a_chamfer_counts(X):
     horn = turned([(0, 1e-9), (10, 0), (12, 2), (12, 5), (0, 5)])
-    hints, _ = found(X, horn=horn, bracket=BRACKET)
+    hints, _ = found(X, horn=horn, bracket=bracket_with_bore())
     (hint,) = hints
     assert (hint.kind, hint.confidence) == ("rim", "low")
     assert hint.evidence == "coaxial rims of diameter 8 and 20 mm"
@@ -41,7 +42,7 @@ def test_the_rim_of_a_chamfer_counts(X):
 
 def test_a_round_boss_away_from_the_contact_is_no_rim():
     lever = box(-14, 14, -14, 14, 0, 4) + rod(12, 3, 9, 72)
-    hints, _ = found(np.eye(4), lever=lever, bracket=BRACKET)
+    hints, _ = found(np.eye(4), lever=lever, bracket=bracket_with_bore())
     assert hints == ()
 
 
@@ -56,12 +57,12 @@ def test_rims_on_two_axes_suggest_none_of_them(places, expected):
 
 def test_rims_that_miss_each_other_suggest_nothing():
     horn = (rod(12, 0, 4, 72) - rod(3, -1, 6, 48)).translate((0.6, 0, 0))
-    assert found(np.eye(4), horn=horn, bracket=BRACKET)[0] == ()
+    assert found(np.eye(4), horn=horn, bracket=bracket_with_bore())[0] == ()
 
 
 def test_half_a_rim_is_none():
     horn = rod(12, 0, 4, 72) ^ box(-20, 20, 0, 20, -1, 9)
-    assert found(np.eye(4), horn=horn, bracket=BRACKET)[0] == ()
+    assert found(np.eye(4), horn=horn, bracket=bracket_with_bore())[0] == ()
 
 
 def test_a_small_contact_gives_no_axis():

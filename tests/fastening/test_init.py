@@ -13,17 +13,19 @@ from support.command_line import ran_here
 from support.solids import box
 from support.suggestions import CORNERS, drilled
 
-SOLIDS = {
-    "servo": box(-10, 10, -6, 6, 0, 20),
-    "bracket": box(-30, 30, -15, 15, -4, 12) - box(-10, 10, -6, 6, 0, 30),
-    "servo_body": drilled(30, 35, CORNERS),
-    'a "quoted" plate': drilled(35, 40, CORNERS),
-}
+
+def servo_and_bracket():
+    return {
+        "servo": box(-10, 10, -6, 6, 0, 20),
+        "bracket": box(-30, 30, -15, 15, -4, 12) - box(-10, 10, -6, 6, 0, 30),
+        "servo_body": drilled(30, 35, CORNERS),
+        'a "quoted" plate': drilled(35, 40, CORNERS),
+    }
 
 
 def written(folder):
     names = []
-    for name, solid in SOLIDS.items():
+    for name, solid in servo_and_bracket().items():
         mesh = solid.to_mesh64()
         vertices = np.asarray(mesh.vert_properties)[:, :3]
         trimesh.Trimesh(vertices, np.asarray(mesh.tri_verts), process=False).export(folder / f"{name}.stl")
@@ -66,7 +68,7 @@ def test_proposed_groups_are_ready_to_be_taken_over(begun):
 
 def test_nothing_but_comments_is_proposed(begun):
     folder, _ = begun
-    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "mm", "--no-suggest")
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "mm", "--no-suggest")
     plain = [line for line in ran.stdout.splitlines() if not line.startswith("#")]
     kept = [line for line in (folder / "m.toml").read_text().splitlines() if not line.startswith("#")]
     # only the name differs: a manifest that is written is named after its file
@@ -84,7 +86,7 @@ def test_the_evidence_stands_above_each_proposal_and_stays_a_comment(begun):
 
 def test_a_unit_that_is_hard_to_believe_is_said_at_once_and_nothing_is_proposed(begun):
     folder, _ = begun
-    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "um", "-o", "tiny.toml")
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "um", "-o", "tiny.toml")
     assert ran.returncode == 0
     assert "warning: doubtful: in um the assembly is" in ran.stderr
     assert "proposed" not in ran.stderr
@@ -93,9 +95,9 @@ def test_a_unit_that_is_hard_to_believe_is_said_at_once_and_nothing_is_proposed(
 
 def test_the_manifest_alone_goes_to_stdout(begun):
     folder, _ = begun
-    ran = kinform(folder, "init", *(f"{name}.stl" for name in SOLIDS), "--units", "mm")
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "mm")
     assert tomllib.loads(ran.stdout)["schema"] == 1
-    assert len(tomllib.loads(ran.stdout)["part"]) == len(SOLIDS)
+    assert len(tomllib.loads(ran.stdout)["part"]) == len(servo_and_bracket())
 
 
 def test_show_lists_suggestions_with_evidence_and_confidence(begun):

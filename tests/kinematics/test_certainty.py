@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,7 +14,11 @@ from kinform.kinematics.pair.evidence import gather
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]
-COLLARS = [ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z)]
+
+
+@cache
+def collars():
+    return [ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z)]
 
 
 def decision(patches, size=0.0):
@@ -45,7 +50,7 @@ def test_bodies_that_only_unknown_facets_hold_are_not_sure_to_be_one():
 @pytest.mark.parametrize("apart", [1.2e-4, 2e-4])
 def test_bearings_that_nearly_agree_do_not_make_one_body(apart):
     bearings = [cylinder(length=0.005, point=(0, 0, -0.006)), cylinder(length=0.005, point=(apart, 0, 0.006))]
-    found = decision([*bearings, *COLLARS])
+    found = decision([*bearings, *collars()])
     assert found.form.type == "fixed"
     assert found.status == "ambiguous"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,7 +17,11 @@ from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]
-COLLARS = [ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z)]
+
+
+@cache
+def collars():
+    return [ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z)]
 
 
 def hexagon():
@@ -28,34 +34,34 @@ def key():
 
 
 CASES = {
-    "shaft in bore": ([cylinder()], "cylindrical"),
-    "shaft with collars": ([cylinder(), *COLLARS], "revolute"),
-    "shaft on one shoulder": ([cylinder(), COLLARS[0]], "revolute"),
-    "hexagon in hexagon": (hexagon(), "prismatic"),
-    "ball in socket": ([sphere(cap=0.3)], "spherical"),
-    "ball in shallow socket": ([sphere(cap=-0.8)], "spherical"),
-    "block on table": ([plane()], "planar"),
-    "cone in cone": ([cone()], "revolute"),
-    "one degree taper": ([cone(half_angle=np.radians(1))], "revolute"),
-    "quarter arc with collars": ([cylinder(arc=(0, np.pi / 2)), *COLLARS], "revolute"),
+    "shaft in bore": (lambda: [cylinder()], "cylindrical"),
+    "shaft with collars": (lambda: [cylinder(), *collars()], "revolute"),
+    "shaft on one shoulder": (lambda: [cylinder(), collars()[0]], "revolute"),
+    "hexagon in hexagon": (lambda: hexagon(), "prismatic"),
+    "ball in socket": (lambda: [sphere(cap=0.3)], "spherical"),
+    "ball in shallow socket": (lambda: [sphere(cap=-0.8)], "spherical"),
+    "block on table": (lambda: [plane()], "planar"),
+    "cone in cone": (lambda: [cone()], "revolute"),
+    "one degree taper": (lambda: [cone(half_angle=np.radians(1))], "revolute"),
+    "quarter arc with collars": (lambda: [cylinder(arc=(0, np.pi / 2)), *collars()], "revolute"),
     "D-shaft with shoulders": (
-        [cylinder(arc=(0.3, 6.0)), plane((0.004, 0, 0), X, (0.002, 0.01)), *COLLARS],
+        lambda: [cylinder(arc=(0.3, 6.0)), plane((0.004, 0, 0), X, (0.002, 0.01)), *collars()],
         "fixed",
     ),
-    "D-shaft": ([cylinder(arc=(0.3, 6.0)), plane((0.004, 0, 0), X, (0.002, 0.01))], "prismatic"),
-    "keyed shaft with collars": ([cylinder(), *key(), *COLLARS], "fixed"),
-    "keyed shaft": ([cylinder(), *key()], "prismatic"),
+    "D-shaft": (lambda: [cylinder(arc=(0.3, 6.0)), plane((0.004, 0, 0), X, (0.002, 0.01))], "prismatic"),
+    "keyed shaft with collars": (lambda: [cylinder(), *key(), *collars()], "fixed"),
+    "keyed shaft": (lambda: [cylinder(), *key()], "prismatic"),
     "piloted flange with one dowel": (
-        [plane(size=(0.04, 0.04)), cylinder(0.01, 0.005), cylinder(0.0015, 0.005, point=(0.015, 0, 0))],
+        lambda: [plane(size=(0.04, 0.04)), cylinder(0.01, 0.005), cylinder(0.0015, 0.005, point=(0.015, 0, 0))],
         "fixed",
     ),
     "plate on two dowels": (
-        [cylinder(0.002, 0.006, point=(-0.02, 0, 0)), cylinder(0.002, 0.006, point=(0.02, 0.01, 0))],
+        lambda: [cylinder(0.002, 0.006, point=(-0.02, 0, 0)), cylinder(0.002, 0.006, point=(0.02, 0.01, 0))],
         "prismatic",
     ),
-    "box in slot": ([plane(), plane((0.01, 0, 0.005), X), plane((-0.01, 0, 0.005), -X)], "prismatic"),
-    "ball in tube": ([sphere(cap=0.9), cylinder(0.005, 0.02)], "revolute"),
-    "two balls": ([sphere(), sphere(centre=(0.05, 0, 0))], "revolute"),
+    "box in slot": (lambda: [plane(), plane((0.01, 0, 0.005), X), plane((-0.01, 0, 0.005), -X)], "prismatic"),
+    "ball in tube": (lambda: [sphere(cap=0.9), cylinder(0.005, 0.02)], "revolute"),
+    "two balls": (lambda: [sphere(), sphere(centre=(0.05, 0, 0))], "revolute"),
 }
 
 
@@ -67,14 +73,15 @@ def decision(patches, **keys):
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_type_is_that_of_the_mechanics(name):
-    patches, expected = CASES[name]
+    make, expected = CASES[name]
+    patches = make()
     found = decision(patches)
     assert (found.form.type, found.status) == (expected, "determined")
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_zeros_are_exact_and_the_rest_is_far_above_the_threshold(name):
-    found = decision(CASES[name][0])
+    found = decision(CASES[name][0]())
     freedoms = found.basis.shape[1]
     assert np.abs(found.singular_values[:freedoms]).max(initial=0.0) < 1e-10
     assert found.singular_values[freedoms:].min(initial=1.0) > 0.01
@@ -107,7 +114,8 @@ def moved(patch: Patch, rotation: Rotation, shift, scale: float) -> Patch:
 )
 def test_pose_scale_and_order_change_nothing(name, seed, scale, far):
     rng = np.random.default_rng(seed)
-    patches, expected = CASES[name]
+    make, expected = CASES[name]
+    patches = make()
     rotation = Rotation.random(random_state=rng)
     shift = far * scale * rng.normal(size=3)
     turned = [moved(p, rotation, shift, scale) for p in patches]
@@ -135,7 +143,7 @@ def test_pose_scale_and_order_change_nothing(name, seed, scale, far):
     ],
 )
 def test_a_small_stray_patch_blocks_but_does_not_hide_the_joint(name, expected, centre, normal, share, overlap):
-    patches = CASES[name][0]
+    patches = CASES[name][0]()
     area = share * sum(p.area for p in patches)
     stray = plane(centre, normal, (0.003, 0.003), area=area, gap=overlap)
     found = decision([*patches, stray])
@@ -145,7 +153,7 @@ def test_a_small_stray_patch_blocks_but_does_not_hide_the_joint(name, expected, 
 
 @pytest.mark.parametrize("share", [0.01, 0.05, 0.2])
 def test_locators_hold_however_small_they_are(share):
-    shaft = [cylinder(), *COLLARS]
+    shaft = [cylinder(), *collars()]
     area = share * sum(p.area for p in shaft)
     flat = plane((0.004, 0, 0), X, (0.002, 0.01), area=area)
     faces = [plane((0.005, s * 0.001, 0), s * Y, (0.002, 0.01), area=area / 2) for s in (1, -1)]
@@ -163,7 +171,7 @@ def test_a_taper_too_small_to_tell_from_a_cylinder_is_ambiguous():
 def test_misaligned_bearings_within_the_alignment_tolerance_mate_and_beyond_do_not():
     def pair(angle):
         axis = (np.sin(angle), 0.0, np.cos(angle))
-        return [cylinder(length=0.005), cylinder(length=0.005, axis=axis), *COLLARS]
+        return [cylinder(length=0.005), cylinder(length=0.005, axis=axis), *collars()]
 
     assert decision(pair(np.radians(0.1))).form.type == "revolute"
     assert decision(pair(np.radians(1.0))).form.type == "fixed"
@@ -173,7 +181,7 @@ def test_an_axis_through_two_short_bearings_passes_through_both():
     apart = [
         cylinder(length=0.005, gap=5e-5),
         cylinder(length=0.005, point=(2e-5, 0, 0.1), gap=5e-5),
-        *COLLARS,
+        *collars(),
     ]
     found = decision(apart)
     assert found.form.type == "revolute"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from support.assemblies import assembly, between, contacts, intended, part
@@ -22,11 +24,13 @@ def hinge():
     return cylinder(), ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z)
 
 
-TWO = assembly(part("a"), part("b"), ground="a")
+@cache
+def two_parts():
+    return assembly(part("a"), part("b"), ground="a")
 
 
 def test_a_collared_shaft_is_cylindrical_without_both_collars_and_planar_without_its_journal():
-    made = design(TWO, *hinge())
+    made = design(two_parts(), *hinge())
     found = insight(made, "a~b")
     kinds = {k: p.kind for k, p in enumerate(made.contacts.patches)}
     others = {tuple(sorted(kinds[k] for k in item.without)): item for item in found.alternatives}
@@ -38,22 +42,22 @@ def test_a_collared_shaft_is_cylindrical_without_both_collars_and_planar_without
     # what is claimed is so: derived without those patches
     for item in found.alternatives:
         rest = [p for k, p in enumerate(made.contacts.patches) if k not in item.without]
-        (joint,) = derive(TWO, {}, contacts(*rest)).joints
+        (joint,) = derive(two_parts(), {}, contacts(*rest)).joints
         assert (joint.type, joint.freedoms, joint.status) == (item.type, item.freedoms, item.status)
 
 
 def test_the_gap_behind_the_decision_is_that_of_the_singular_values():
-    found = insight(design(TWO, *hinge()), "a~b")
+    found = insight(design(two_parts(), *hinge()), "a~b")
     assert found.last_free < found.free < found.held < found.first_held
     assert np.isclose(found.first_held, found.joint.singular_values[1])
     assert {item.role for item in found.patches} == {"carries"}
     assert sum(item.share for item in found.patches) == pytest.approx(1.0)
-    assert found.rows == len(design(TWO, *hinge()).kinematics.matrix.patch)
+    assert found.rows == len(design(two_parts(), *hinge()).kinematics.matrix.patch)
 
 
 def test_a_blocked_joint_names_the_patch_without_which_it_is_determined():
     stop = plane((0.02, 0, 0), Y, (0.002, 0.002), area=2e-5)
-    made = design(TWO, *hinge(), stop)
+    made = design(two_parts(), *hinge(), stop)
     found = insight(made, "a~b")
     roles = {made.contacts.patches[item.index].area: item.role for item in found.patches}
     assert roles[2e-5] == "blocks"
@@ -63,11 +67,11 @@ def test_a_blocked_joint_names_the_patch_without_which_it_is_determined():
 
 def test_an_unknown_joint_lists_those_there_are():
     with pytest.raises(KeyError, match="a~b"):
-        insight(design(TWO, *hinge()), "b~a")
+        insight(design(two_parts(), *hinge()), "b~a")
 
 
 def test_a_query_says_which_way_a_block_leaves_its_table():
-    made = design(TWO, plane())
+    made = design(two_parts(), plane())
     up = query(made, "a", "b", slide=Z)
     assert (up.free_in_pair, up.pair_ways, up.assembly_ways) == (False, (True, False), (True, False))
     assert "one way only: b leaves contact in +z" in up.text
@@ -81,7 +85,7 @@ def test_a_query_says_which_way_a_block_leaves_its_table():
 
 
 def test_tipping_about_an_edge_is_there_and_about_the_middle_is_not():
-    made = design(TWO, plane(size=(0.02, 0.02)))
+    made = design(two_parts(), plane(size=(0.02, 0.02)))
     edge = query(made, "a", "b", turn=(Y, np.array([0.01, 0, 0])))
     assert edge.pair_ways == (True, False)
     assert "the sense of +y" in edge.text

@@ -15,7 +15,7 @@ from kinform.kinematics.loops.loop_kinematics import loop_system
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.kinematics import Body, Joint, Misfit
 
-MECHANISMS = {"Bennett": ring(*bennett()), "Bricard": bricard()}
+MECHANISMS = {"Bennett": lambda: ring(*bennett()), "Bricard": bricard}
 
 
 def joints_of(mechanism, error=0.0, seed=0):
@@ -62,7 +62,7 @@ def gap(joints, angle=1.2):
 @pytest.mark.parametrize("name", MECHANISMS)
 @pytest.mark.parametrize("seed", range(3))
 def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
-    joints = joints_of(MECHANISMS[name], 2e-9, seed)
+    joints = joints_of(MECHANISMS[name](), 2e-9, seed)
     assert gap(joints) > 1e-10
     doubts = np.full((len(joints), 2), 1e-8)
     fitted, misfit = fit_proportions(graph_of(joints), doubts, 2.0, Misfit())
@@ -75,7 +75,7 @@ def test_roundings_of_a_mesh_file_are_taken_out_of_the_whole_motion(name, seed):
 
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_errors_beyond_the_uncertainty_stay_and_no_misfit_is_claimed(name):
-    joints = joints_of(MECHANISMS[name], 1e-5)
+    joints = joints_of(MECHANISMS[name](), 1e-5)
     fitted, misfit = fit_proportions(graph_of(joints), np.full((len(joints), 2), 1e-8), 2.0, Misfit())
     assert all(a is b for a, b in zip(joints, fitted, strict=True))
     assert misfit == Misfit()
@@ -83,7 +83,7 @@ def test_errors_beyond_the_uncertainty_stay_and_no_misfit_is_claimed(name):
 
 def test_the_least_moves_are_those_of_the_least_certain_axes():
     """One hinge known a thousand times worse than the others takes it all, as far as it is in the way at all."""
-    joints = joints_of(MECHANISMS["Bricard"])
+    joints = joints_of(MECHANISMS["Bricard"]())
     worst = replace(joints[2], axis=joints[2].axis + np.array([0.0, 3e-6, 0.0]))
     joints[2] = replace(worst, twists=twists_of("revolute", worst.axis, worst.point, None, None))
     doubts = np.full((len(joints), 2), 1e-8)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -31,7 +32,11 @@ from kinform.model.kinematics import Body
 from kinform.simulation import simulate
 
 HEALTH = MeshHealth(1, 3, True, True, "NoError", 1.0, 0, 0, 0, 0, 1, 0.0)
-MESH = Mesh(np.eye(3), np.array([[0, 1, 2]]), HEALTH, "m.stl", None, "mesh")
+
+
+@cache
+def mesh_of_one_facet():
+    return Mesh(np.eye(3), np.array([[0, 1, 2]]), HEALTH, "m.stl", None, "mesh")
 
 
 def hinge(**request):
@@ -42,7 +47,7 @@ def hinge(**request):
 
 def meshed(made, chain, mass):
     """The same device with a mesh on every part."""
-    return replace(made, parts=tuple(replace(p, mesh=MESH) for p in made.parts)), chain, mass
+    return replace(made, parts=tuple(replace(p, mesh=mesh_of_one_facet()) for p in made.parts)), chain, mass
 
 
 def massless(made, chain, mass):

@@ -133,6 +133,10 @@ def bar(wall, reach=30.0, law=None, **request):
     return made
 
 
-WALL = box(30, 40, -60, 60, -10, 10)
-THIN = box(-0.025, 0.025, 35, 60, -10, 10)
-"""A foil in the middle of the swing."""
+def wall():
+    return box(30, 40, -60, 60, -10, 10)
+
+
+def thin_wall():
+    """A foil in the middle of the swing."""
+    return box(-0.025, 0.025, 35, 60, -10, 10)
