@@ -458,3 +458,8 @@ MOST_PATCHES = 40
 """Joints with more patches are not decided again without each."""
 MOST_PATCH_SETS = 24
 """Sets of several patches that are tried, the smallest area first."""
+
+# mobility/guides
+
+PRESERVED_SHARE = 0.03
+"""A patch mates along a motion whose velocity is within this share of tangential to it."""

@@ -16,7 +16,7 @@ from kinform.design import Design
 from kinform.foundation.algebra.screws import Frame
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 from kinform.statics.carrying import missing, wrenches_at
 from kinform.statics.sharing import decidable, self_stresses
@@ -285,19 +285,18 @@ def _span(design: Design, name: str, surface: int, axis: Array) -> tuple[float, 
 
 def slips(design: Design) -> tuple[Slip, ...]:
     """First time at which each joint with a slide has left the last of the patches along which it slides."""
-    from kinform.collisions.shapes import Shapes
-    from kinform.collisions.single import guide
+    from kinform.kinematics.mobility.guides import guide
 
     run, kinematics, contacts = design.simulation, design.kinematics, design.contacts
     assert run is not None and kinematics is not None and contacts is not None
-    shapes = Shapes(design.assembly, design.surfaces, contacts, _meshed(design, kinematics))
+    parts = {body.name: body.parts for body in kinematics.bodies}
     out = []
     for joint in kinematics.joints:
         if joint.type not in SLIDES or joint.name not in run.joint_names or joint.axis is None or is_stated(joint):
             continue
         index = run.joint_names.index(joint.name)
         values = run.joint_position[:, int(run.joint_offset[index]) + SLIDES[joint.type]]
-        low, high = guide(shapes, _sliding(joint), _along(joint))
+        low, high = guide(design.assembly, design.surfaces, contacts, _sliding(joint), parts[joint.bodies[1]])
         beyond = np.flatnonzero((values < low) | (values > high))
         if len(beyond):
             value = float(values[beyond[0]])
@@ -305,17 +304,6 @@ def slips(design: Design) -> tuple[Slip, ...]:
     return tuple(out)
 
 
-def _meshed(design: Design, kinematics: Kinematics) -> dict[str, frozenset[str]]:
-    with_mesh = {part.name for part in design.assembly.parts if part.mesh is not None}
-    return {body.name: frozenset(part for part in body.parts if part in with_mesh) for body in kinematics.bodies}
-
-
 def _sliding(joint: Joint) -> Joint:
     """A cylindrical joint as a guide sees it."""
     return replace(joint, type="prismatic") if joint.type == "cylindrical" else joint
-
-
-def _along(joint: Joint) -> Array:
-    from kinform.collisions.single import joint_twist
-
-    return joint_twist(_sliding(joint))

@@ -7,7 +7,7 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["FacetBoxes", "FlatBoxes", "facet_boxes", "together"]
+__all__ = ["FacetBoxes", "FlatBoxes", "box_corners", "facet_boxes", "together"]
 
 
 _CHUNK = 48
@@ -18,6 +18,12 @@ _FINEST = 512
 """Cells along the side of a grid, at most."""
 _LISTED = 12
 """Cells of a grid that a facet is listed in on average, at most."""
+
+
+def box_corners(low: Array, high: Array, X: Array) -> Array:
+    """(8, 3) corners of a box from `low` to `high` (3,), at the pose X (4, 4)."""
+    bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
+    return np.asarray(np.where(bits, high, low) @ X[:3, :3].T + X[:3, 3])
 
 
 def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:

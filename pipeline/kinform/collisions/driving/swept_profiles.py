@@ -16,7 +16,8 @@ __all__ = ["Profile", "meeting"]
 
 
 class Profile:
-    """What vertices (n, 3) and facets (m, 3) of a part, in the world, keep along a unit twist (6,) (ω; v at the origin)."""
+    """What vertices (n, 3) and facets (m, 3) of a part, in the world, keep along a unit twist (6,) (ω; v at the
+    origin)."""
 
     def __init__(self, vertices: Array, faces: Ints, twist: Array):
         self._faces = faces
@@ -67,20 +68,22 @@ class Profile:
         return float(self._radius[self._faces[facets]].max(initial=0.0))
 
 
-def meeting(first: Profile, second: Profile, own: Ints, other: Ints, margin: float) -> tuple[Ints, Ints]:
+def meeting(
+    first: Profile, second: Profile, facets_first: Ints, facets_second: Ints, margin: float
+) -> tuple[Ints, Ints]:
     """Which of the facets `own` of one part and `other` of another can meet when the second moves along the twist."""
-    boxes = [first.boxes(own), second.boxes(other)]
-    facets = [own, other]
+    boxes = [first.boxes(facets_first), second.boxes(facets_second)]
+    facets = [facets_first, facets_second]
     for k in (0, 1, 0):
         # near_boxes asks about all that it is given
         low, high = boxes[1 - k]
         if not len(low):
-            return own[:0], other[:0]
+            return facets_first[:0], facets_second[:0]
         near = (boxes[k][0] <= high.max(axis=0) + margin) & (boxes[k][1] >= low.min(axis=0) - margin)
         kept = near.all(axis=1)
         boxes[k], facets[k] = (boxes[k][0][kept], boxes[k][1][kept]), facets[k][kept]
-    found = near_boxes(*boxes[0], *boxes[1], margin)
-    return facets[0][found[0]], facets[1][found[1]]
+    near = near_boxes(*boxes[0], *boxes[1], margin)
+    return facets[0][near[0]], facets[1][near[1]]
 
 
 def _span(values: Array, corners: Ints) -> tuple[Array, Array]:

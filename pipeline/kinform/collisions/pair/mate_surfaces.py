@@ -6,6 +6,7 @@ from collections.abc import Sequence, Set
 
 import numpy as np
 
+from kinform.collisions.constants import MATE_ROUNDING
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
@@ -19,7 +20,8 @@ _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid
 
 
 class Mates:
-    """The mates of two parts, all in the frame of the first; `near`: for each surface those that share an edge with it."""
+    """The mates of two parts, all in the frame of the first; `near`: for each surface those that share an edge with
+    it."""
 
     def __init__(
         self,
@@ -32,7 +34,7 @@ class Mates:
         self._surfaces, self._near = surfaces, near
         self._pairs = [_of(patch, first) for patch in patches]
         self.slacks = [
-            patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + 1e-6 * size for patch in patches
+            patch.chord + 2.0 * abs(patch.gap) + sum(patch.uncertainty[1:]) + MATE_ROUNDING * size for patch in patches
         ]
         """m, of each: how far its points may be off the surface."""
         self._bare: Set[SurfacePair] = {

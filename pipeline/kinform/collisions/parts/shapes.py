@@ -8,24 +8,18 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.invariant import Allowed, OwnMotions, Slippage
+from kinform.collisions.constants import SCRAPE, SCRAPE_ANGLES, SPHERES
+from kinform.collisions.parts.slippage import Allowed, OwnMotions, Slippage
 from kinform.foundation.algebra.vectors import cross
-from kinform.foundation.meshes.boxes import together
+from kinform.foundation.meshes.boxes import box_corners, together
 from kinform.foundation.meshes.fcl_adapter import partial_model
 from kinform.foundation.meshes.index import MeshIndex, MeshStore
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Assembly, Mesh, Part
-from kinform.model.contacts import Contacts
+from kinform.model.contacts import Contacts, Patch
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Shapes"]
-
-
-SPHERES = 96
-"""Spheres about the facets of a part."""
-SCRAPE = 1e-3
-"""Share of the smaller part's diagonal by which parts may overlap as they slide along each other: by rounding of their
-files and by what is left over where joints were fitted. In no unit, so that an assembly of any size answers the same."""
 
 
 @dataclass
@@ -43,8 +37,12 @@ class Shapes:
     _models: dict[tuple[str, bytes], fcl.BVHModel] = field(default_factory=dict)
     _store: MeshStore = field(default_factory=MeshStore)
     _spheres: dict[str, tuple[Array, Array]] = field(default_factory=dict)
-    _patches: dict[tuple[str, str], list[int]] | None = None
+    _patches: dict[tuple[str, str], list[Patch]] | None = None
     _parts: dict[str, Part] = field(default_factory=dict)
+
+    def design(self) -> tuple[Assembly, dict[str, MeshSurfaces], Contacts | None]:
+        """What it is made of."""
+        return self.assembly, self.surfaces, self.contacts
 
     def part(self, name: str) -> Part:
         """The part of that name."""
@@ -62,10 +60,9 @@ class Shapes:
     def size(self) -> float:
         """m: diagonal of the assembly's box at the pose of the meshes; 1 without meshes."""
         corners = []
-        for name in sorted(name for own in self.body_parts.values() for name in own):
-            X, index = self.part(name).X_WP, self.index(name)
-            bits = np.array([[(k >> axis) & 1 for axis in range(3)] for k in range(8)])
-            corners.append(np.where(bits, index.high, index.low) @ X[:3, :3].T + X[:3, 3])
+        for name in sorted(name for parts in self.body_parts.values() for name in parts):
+            index = self.index(name)
+            corners.append(box_corners(index.low, index.high, self.part(name).X_WP))
         return float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0))) if corners else 1.0
 
     def surfaces_of(self, name: str) -> MeshSurfaces:
@@ -75,7 +72,7 @@ class Shapes:
     def allowed(self, first: str, second: str) -> Allowed:
         """What surfaces of a pair may be off an exact invariance."""
         size = min(self.mesh(first).diagonal, self.mesh(second).diagonal)
-        return Allowed(SCRAPE * size, 1.5 * self.assembly.tolerances.alignment)
+        return Allowed(SCRAPE * size, SCRAPE_ANGLES * self.assembly.tolerances.alignment)
 
     def invariant(self, name: str, twists: Array, allowed: Allowed) -> Flags:
         """(s,) which surfaces of a part the motions `twists` (k, 6), in the world, map onto themselves."""
@@ -102,8 +99,8 @@ class Shapes:
 
     def overlapping(self, first: str, second: str) -> bool:
         """Whether the solids of two parts overlap at the pose of the meshes, other than where they mate."""
-        found = self.contacts.interferences if self.contacts is not None else ()
-        return any(set(item.parts) == {first, second} and not item.mated for item in found)
+        overlaps = self.contacts.interferences if self.contacts is not None else ()
+        return any(set(item.parts) == {first, second} and not item.mated for item in overlaps)
 
     def index(self, name: str) -> MeshIndex:
         """Its facets, to be asked for insides and distances."""
@@ -126,12 +123,24 @@ class Shapes:
             self._spheres[mesh.digest] = _spheres(mesh)
         return self._spheres[mesh.digest]
 
-    def patches(self, first: str, second: str) -> list[int]:
-        """Indices of the patches between two parts, in either order."""
+    def moved_facets(self, first: str, second: str, twists: Array) -> tuple[Ints, Ints]:
+        """Facets of two parts on surfaces that the motions `twists` (k, 6) do not map onto themselves; all without
+        any."""
+        facets = []
+        for name in (first, second):
+            labels = self.surfaces_of(name).labels
+            moves = np.ones(len(labels), dtype=bool)
+            if len(twists):
+                moves = ~self.invariant(name, twists, self.allowed(first, second))[labels]
+            facets.append(np.flatnonzero(moves))
+        return facets[0], facets[1]
+
+    def patches(self, first: str, second: str) -> list[Patch]:
+        """The patches between two parts, in either order."""
         if self._patches is None:
             self._patches = {}
-            for n, patch in enumerate(self.contacts.patches if self.contacts is not None else ()):
-                self._patches.setdefault(patch.parts, []).append(n)
+            for patch in self.contacts.patches if self.contacts is not None else ():
+                self._patches.setdefault(patch.parts, []).append(patch)
         return self._patches.get((min(first, second), max(first, second)), [])
 
 

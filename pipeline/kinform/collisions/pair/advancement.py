@@ -13,38 +13,32 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from kinform.collisions.course import Course
-from kinform.collisions.inside import Inside
-from kinform.collisions.mates import SurfacePair
-from kinform.collisions.pairs import NONE, Crossing, PairTest
+from kinform.collisions.constants import (
+    AHEAD,
+    BEHIND_DEPTH,
+    BEHIND_FACE,
+    BEHIND_LEAST,
+    CROSSING_LEAST,
+    OVERLAPPING,
+    RESOLUTION,
+    RISE,
+    TOGETHER,
+    WORK,
+)
+from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.deep_points import Inside
+from kinform.collisions.pair.mate_surfaces import SurfacePair
+from kinform.collisions.pair.pair_test import NONE, Crossing, PairTest
 from kinform.model.arrays import Array
 
 __all__ = ["First", "first_crossing"]
 
 
-WORK = 4000
-"""Poses of one pair that one question may try."""
-RESOLUTION = 4e-3
-"""Share of the smaller part's diagonal that a part may travel unseen where others are in touch."""
-
-
-TOGETHER = 8.0
-"""Surfaces that come to cross within so many chord errors of travel belong to one collision."""
-OVERLAPPING = 5.0
-"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
-AHEAD = (0.0, 1.0, 2.0, 4.0)
-"""Where points of a part are deep inside the other, facets are looked for that cross too deeply up to so much further, as
-multiples of what mates may be deep: facets may have met before."""
-SOON = (1.0, 0.2, 0.04)
-"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
-RISE = 0.02
-"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
-
-
 @dataclass(frozen=True, eq=False)
 class First:
-    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `overlaps`: the parts cross from the start
-    and never part, so nothing is known. `exhausted`: how far it is free, where the work allowed was not enough."""
+    """`at` is free and `hit` is not, closer than asked; None: nothing was met. `overlaps`: the parts cross from the
+    start and never part, so nothing is known. `exhausted`: how far it is free, where the work allowed was not
+    enough."""
 
     at: float | None
     hit: float | None
@@ -71,7 +65,7 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     while stack:
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
-        if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + 1e-9 * test.size:
+        if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + CROSSING_LEAST * test.size:
             # nothing comes to be inside where no facets that count meet: the end is asked all the same
             entered = search.entered(left, right, end, fine, resolution) if right >= end else None
             if entered is not None:
@@ -161,7 +155,7 @@ class _Search:
         before, after = self.state(left), self.state(right)
         if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
-        least = 1e-9 * self.test.size
+        least = CROSSING_LEAST * self.test.size
         if before.distance > least:
             low, high = self._heights(left, right, before.nearest)
             return low > least >= high
@@ -174,46 +168,47 @@ class _Search:
         return low, high
 
     def goes_in(self, s: float, end: float, step: float, fine: float) -> bool:
-        """Whether the faces that pass each other at s are inside the parts a step later; where parts are thin, sooner."""
+        """Whether the faces that pass each other at s are inside the parts a step later; where parts are thin,
+        sooner."""
         nearest = self.state(s).nearest
         begun = self.course.travel(s)
-        for share in SOON:
+        for share in BEHIND_FACE:
             further = self.course.when(begun + share * step, s, end)
             way = self.course.travel(further) - begun
-            if further - s < 4.0 * fine:
+            if further - s < BEHIND_LEAST * fine:
                 return False
             D = self.course.displacement(further)
-            if self.test.faces(D, *nearest) if share < 1.0 else self.test.inside(D, *nearest, 0.4 * way):
+            if self.test.faces(D, *nearest) if share < 1.0 else self.test.inside(D, *nearest, BEHIND_DEPTH * way):
                 return True
         return False
 
     def entered(self, left: float, right: float, end: float, fine: float, resolution: float) -> First | None:
-        """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to cross
-        that are too deep together with them."""
-        found = self._entered(right, end, fine, every=right >= end)
-        if found is None or not self.state(right).crossing:
-            return found
+        """Where points came to be deep inside the other part up to `right`, or a little further; or facets came to
+        cross that are too deep together with them."""
+        point = self._entered(right, end, fine, every=right >= end)
+        if point is None or not self.state(right).crossing:
+            return point
         for more in AHEAD:
             further = self.course.when(self.course.travel(right) + more * self.test.loose, right, end)
             if self.too_deep(further):
                 crossed = self.located(left, further, fine, resolution)
-                return found if crossed.hit is None or found.hit <= crossed.hit else crossed
-        return found
+                return point if crossed.hit is None or point.hit <= crossed.hit else crossed
+        return point
 
-    def sooner(self, right: float, fine: float, found: First) -> First:
+    def sooner(self, right: float, fine: float, crossed: First) -> First:
         """What was found, or points that came to be inside before."""
         entered = self._entered(right, right, fine, every=True)
-        return found if entered is None or found.hit is None or entered.hit >= found.hit else entered
+        return crossed if entered is None or crossed.hit is None or entered.hit >= crossed.hit else entered
 
     def _entered(self, right: float, end: float, fine: float, *, every: bool) -> _Hit | None:
         if self.overlaps:
             return None
         if self._inside is None:
             self._inside = Inside(self.test, self.course, self._apart)
-        found = self._inside.met(right, end, fine, every=every)
-        if found is None:
+        point = self._inside.met(right, end, fine, every=every)
+        if point is None:
             return None
-        at, hit, place = found
+        at, hit, place = point
         return _Hit(at, hit, (self.test.X_WA @ np.append(place, 1.0))[:3], before=self.before)
 
     def flat(self, left: float, right: float) -> First:
@@ -246,13 +241,13 @@ class _Search:
         crossing = self.state(right).crossing
         for pair in crossing.shared:
             self.since.setdefault(pair, (left, right))
-        known = {pair: self.since[pair] for pair in crossing.shared}
-        began = sorted({step for step in known.values() if step is not None}, reverse=True)
+        since = {pair: self.since[pair] for pair in crossing.shared}
+        began = sorted({step for step in since.values() if step is not None}, reverse=True)
         near = TOGETHER * crossing.slack + 2.0 * resolution
         for earliest, before in zip(began, [*began[1:], None], strict=True):
             if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
                 continue
-            newest = frozenset(pair for pair, step in known.items() if step is not None and step >= earliest)
+            newest = frozenset(pair for pair, step in since.items() if step is not None and step >= earliest)
             if self._deep(right, newest):
                 return self._narrow(*earliest, fine, partial(self._crosses, newest))
         return self._rise(right, fine, resolution)

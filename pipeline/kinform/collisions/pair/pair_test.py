@@ -14,10 +14,20 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.crossing import crossings
-from kinform.collisions.entering import Probes, probes
-from kinform.collisions.mates import Mates, SurfacePair
-from kinform.collisions.shapes import Shapes
+from kinform.collisions.constants import (
+    CROSSING_LEAST,
+    CROSSINGS_MOST,
+    DEPTH_ENDS,
+    DEPTH_FINER,
+    DEPTH_INSIDE,
+    DEPTH_MIDDLES,
+    DIRECTIONS_ROUND,
+    FACET_GRID,
+)
+from kinform.collisions.pair.facet_crossings import crossings
+from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
+from kinform.collisions.pair.surface_points import Probes, probes
+from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array, Ints
@@ -25,24 +35,6 @@ from kinform.model.contacts import Patch
 from kinform.model.names import PartName
 
 __all__ = ["Crossing", "PairTest"]
-
-
-PRESERVED = 0.03
-"""A patch mates along a motion whose velocity is within this share of tangential to it."""
-SAMPLES = 32
-"""Ends of crossing segments between which the depth is looked for."""
-GRID = 12
-"""Points along the side of a facet that are asked whether they are inside the other part."""
-ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
-"""(8, 2) directions about a point in a plane."""
-MIDDLES = 64
-"""Places between them that are asked whether they are inside both parts."""
-INSIDE = 40
-"""Of those that are, at which the depth is measured."""
-FINER = 4
-"""So many times as many places for a depth that is reported."""
-MOST = 200_000
-"""Crossing facets that one question may return."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +51,7 @@ class Crossing:
 
     def segments(self, pairs: Collection[SurfacePair] | None = None) -> Array:
         """(n, 2, 3) m: those of some pairs of surfaces, or all."""
-        chosen = [own for pair, own in self.shared.items() if pairs is None or pair in pairs]
+        chosen = [segments for pair, segments in self.shared.items() if pairs is None or pair in pairs]
         return np.concatenate(chosen) if chosen else np.zeros((0, 2, 3))
 
 
@@ -113,7 +105,8 @@ class PairTest:
         return X
 
     def distance(self, D: Array) -> tuple[float, tuple[int, int]]:
-        """Distance (m) of the facets that count at a displacement (4, 4), 0 where they touch or cross; and the nearest."""
+        """Distance (m) of the facets that count at a displacement (4, 4), 0 where they touch or cross; and the
+        nearest."""
         if self.empty:
             return float("inf"), (0, 0)
         self._place(D)
@@ -155,48 +148,52 @@ class PairTest:
         for name, points, normal in self._on(D, f, g):
             index = self._shapes.index(name)
             within = points[index.contains(points)]
-            for e in ROUND @ np.stack(perpendicular(normal)):
+            for e in DIRECTIONS_ROUND @ np.stack(perpendicular(normal)):
                 within = within[index.contains(within + self.loose * e)] if len(within) else within
             if len(within):
                 return True
         return False
 
     def _on(self, D: Array, f: int, g: int) -> Iterator[tuple[str, Array, Array]]:
-        """Points (n, 3) m on either of two facets, in the frame of the other part, whose name is first; and its normal."""
+        """Points (n, 3) m on either of two facets, in the frame of the other part, whose name is first; and its
+        normal."""
         X = self.pose(D)
-        grid = np.array([(a, b, GRID - a - b) for a in range(GRID + 1) for b in range(GRID + 1 - a)]) / GRID
-        own = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
-        far = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
-        yield self.names[1], (own - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
-        yield self.names[0], far @ X[:3, :3].T + X[:3, 3], X[:3, :3] @ self._normals[1][g]
+        grid = (
+            np.array([(a, b, FACET_GRID - a - b) for a in range(FACET_GRID + 1) for b in range(FACET_GRID + 1 - a)])
+            / FACET_GRID
+        )
+        first = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        second = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
+        yield self.names[1], (first - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
+        yield self.names[0], second @ X[:3, :3].T + X[:3, 3], X[:3, :3] @ self._normals[1][g]
 
     @cached_property
     def probes(self) -> tuple[Probes, Probes]:
         """Points on the facets that count."""
         first, second = (
-            probes(mesh, surfaces.labels, own)
-            for mesh, surfaces, own in zip(self._meshes, self._surfaces, self.facets, strict=True)
+            probes(mesh, surfaces.labels, facets)
+            for mesh, surfaces, facets in zip(self._meshes, self._surfaces, self.facets, strict=True)
         )
         return first, second
 
     def heights(self, D: Array, chosen: Ints) -> Array:
-        """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the negative
-        of a distance that they keep at least."""
+        """(k,) m: how deep some of both parts' `probes`, counted through, are inside the other part; outside, the
+        negative of a distance that they keep at least."""
         X = self.pose(D)
-        own, far = self.probes
-        count = len(own.points)
+        near, far = self.probes
+        count = len(near.points)
         first, second = (self._shapes.index(name) for name in self.names)
         mine, other = chosen[chosen < count], chosen[chosen >= count] - count
         out = np.zeros(len(chosen))
-        out[chosen < count] = own.heights(second, np.asarray(np.linalg.inv(X)), mine)
+        out[chosen < count] = near.heights(second, np.asarray(np.linalg.inv(X)), mine)
         out[chosen >= count] = far.heights(first, X, other)
         return out
 
     def places(self, D: Array) -> Array:
         """(n, 3) m, first part's frame: these points."""
         X = self.pose(D)
-        own, far = self.probes
-        return np.concatenate([own.points, far.points @ X[:3, :3].T + X[:3, 3]])
+        near, far = self.probes
+        return np.concatenate([near.points, far.points @ X[:3, :3].T + X[:3, 3]])
 
     def deepest(self, D: Array) -> float:
         """m: how deep the parts go into each other where they cross, or where points of one are inside the other."""
@@ -204,18 +201,19 @@ class PairTest:
             return 0.0
         places = self.places(D)
         inside = self.heights(D, np.arange(len(places))) > self.loose
-        found = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
-        return max((self.depth(D, points, finer=FINER) for points in found), default=0.0)
+        places_deep = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
+        return max((self.depth(D, points, finer=DEPTH_FINER) for points in places_deep), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
         X = self.pose(D)
-        own = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
-        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
-        return np.asarray(0.5 * (own.mean(axis=0) + far.mean(axis=0)))
+        first = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
+        second = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
+        return np.asarray(0.5 * (first.mean(axis=0) + second.mean(axis=0)))
 
     def crossing(self, D: Array, hits: Ints | None = None) -> Crossing:
-        """Facets that count and cross at a displacement (4, 4), other than along mates; `hits`: where these are known."""
+        """Facets that count and cross at a displacement (4, 4), other than along mates; `hits`: where these are
+        known."""
         hits = self.hits(D) if hits is None else hits
         if not len(hits):
             return NONE
@@ -224,41 +222,45 @@ class PairTest:
         first = self._meshes[0].vertices[self._meshes[0].faces[f]]
         second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
         normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
-        found, segments = crossings(first, second, normals, 1e-9 * self.size)
-        if not found.any():
+        cross, segments = crossings(first, second, normals, CROSSING_LEAST * self.size)
+        if not cross.any():
             return NONE
-        first_labels, second_labels = self._surfaces[0].labels[f[found]], self._surfaces[1].labels[g[found]]
-        segments = segments[found]
+        first_labels, second_labels = self._surfaces[0].labels[f[cross]], self._surfaces[1].labels[g[cross]]
+        segments = segments[cross]
         out: dict[SurfacePair, Array] = {}
         slack = self.scrape
         for pair in sorted(set(zip(first_labels.tolist(), second_labels.tolist(), strict=True))):
-            own = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
-            own = own[~self._mates.along(pair, own)]
-            if len(own):
-                out[pair] = own
+            shared = segments[(first_labels == pair[0]) & (second_labels == pair[1])]
+            shared = shared[~self._mates.along(pair, shared)]
+            if len(shared):
+                out[pair] = shared
                 slack = max(slack, sum(self._surfaces[k].surfaces[pair[k]].chord for k in (0, 1)))
         return Crossing(out, slack) if out else NONE
 
     def depth(self, D: Array, segments: Array, least: float = 0.0, finer: int = 1) -> float:
-        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3) inside
-        either; 0 where it is not above `least`. Asked at `finer` times as many places."""
+        """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3)
+        inside either; 0 where it is not above `least`. Asked at `finer` times as many places."""
         points = segments.reshape(-1, 3)
-        points = points[np.unique(np.linspace(0, len(points) - 1, finer * SAMPLES).astype(int))]
+        points = points[np.unique(np.linspace(0, len(points) - 1, finer * DEPTH_ENDS).astype(int))]
         a, b = np.triu_indices(len(points), 1)
         order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
         # of near ones and far ones: parts may be thin, or deep in each other
-        order = order[np.unique(np.linspace(0, len(order) - 1, finer * MIDDLES).astype(int))] if len(order) else order
+        order = (
+            order[np.unique(np.linspace(0, len(order) - 1, finer * DEPTH_MIDDLES).astype(int))] if len(order) else order
+        )
         a, b = a[order], b[order]
         middles = 0.5 * (points[a] + points[b])
         X = self.pose(D)
         other = (middles - X[:3, 3]) @ X[:3, :3]
-        own, far = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        inside = np.flatnonzero(own.contains(middles))
-        inside = inside[far.contains(other[inside])]
+        first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
+        inside = np.flatnonzero(first.contains(middles))
+        inside = inside[second.contains(other[inside])]
         inside = (
-            inside[np.unique(np.linspace(0, len(inside) - 1, finer * INSIDE).astype(int))] if len(inside) else inside
+            inside[np.unique(np.linspace(0, len(inside) - 1, finer * DEPTH_INSIDE).astype(int))]
+            if len(inside)
+            else inside
         )
-        total = own.whole().depths(middles[inside])[0] + far.whole().depths(other[inside])[0]
+        total = first.whole().depths(middles[inside])[0] + second.whole().depths(other[inside])[0]
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
 
@@ -266,6 +268,6 @@ class PairTest:
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=MOST, enable_contact=False), result)
+    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=CROSSINGS_MOST, enable_contact=False), result)
     key = np.unique(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)

@@ -13,6 +13,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.collisions.constants import (
+    CLOSED,
+    CLOSED_EXACTLY,
+    CLOSING_STEPS,
+    EVEN_STEPS,
+    EVEN_TRIED,
+    JACOBIAN_SAME,
+    LONG_STEP,
+    LOOP_RANK,
+    NARROW,
+    NODES_THROUGH,
+    PATH_STEPS,
+    RATE_SAME,
+    RETURN_MISS,
+    SINGULAR,
+    SMOOTH,
+    STEP,
+    STEP_KEPT,
+    STEPS_AWAY,
+)
 from kinform.foundation.algebra.displacements import exponentials, inverse
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import forest
@@ -24,26 +44,8 @@ __all__ = ["RETURNED", "Between", "Linkage", "Path", "follow"]
 
 Edge = tuple[int, int]
 
-STEP = 0.04
-"""Arc length of a step: rad, and share of the block's size."""
-STEPS = 900
-"""Steps to each side at most."""
-RANK = 1e-4
-"""Singular values of the closure below this leave motions; one more of them within `SINGULAR` is a branching."""
-SINGULAR = 2e-3
-LONG, TRIED, EVENLY, SAME = 0.4, 30, 6000, 1e-9
-"""rad of a step, steps after which it is believed, steps in all, and change of the closure's Jacobian where a motion goes
-on evenly: screws and slides along one line, on which there is nothing to be passed over."""
-MET = 1e-5
-"""rad and share of the size by which a motion may miss where it began and be back there."""
 RETURNED = "returned"
 """How a motion ends that is back where it began."""
-NARROW = 1e-2
-"""Share of the assembly's size that a block's size is at least: its joints may be on one point."""
-NODES, SMOOTH = 6, 1e-9
-"""Nodes that the motion between two of them is taken through, and rad and share of the size that loops may be open then."""
-CLOSED = 1e-6
-"""rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
 
 
 class Linkage:
@@ -85,17 +87,17 @@ class Linkage:
 
     def _columns(self, kinematics: Kinematics, idle: Sequence[Freedom]) -> list[int]:
         """For each idle freedom a coordinate in which it is seen, each another: holding these holds the freedoms."""
-        taken: list[int] = []
+        held: list[int] = []
         for freedom in idle:
             rates = np.zeros(len(self.owner))
             for name, coordinate, rate in freedom.drives:
-                own = [n for n, k in enumerate(self.owner) if kinematics.joints[k].name == name]
-                if own and own[coordinate] not in taken and self.turns[own[coordinate]]:
-                    rates[own[coordinate]] = abs(rate)
+                columns = [n for n, k in enumerate(self.owner) if kinematics.joints[k].name == name]
+                if columns and columns[coordinate] not in held and self.turns[columns[coordinate]]:
+                    rates[columns[coordinate]] = abs(rate)
             if rates.any():
                 # rates that are the same but for rounding go by their order
-                taken.append(int(np.flatnonzero(rates > 0.99 * rates.max())[0]))
-        return taken
+                held.append(int(np.flatnonzero(rates > RATE_SAME * rates.max())[0]))
+        return held
 
     def poses(self, q: Array) -> Array:
         """(D, B, 4, 4) displacement of each body at coordinates q (D, n); joints outside of the block rest."""
@@ -116,15 +118,15 @@ class Linkage:
     def closed(self, q: Array) -> Array | None:
         """The nearest coordinates at which the loops close."""
         left = math.inf
-        for _ in range(12):
-            found = self.system.close(q[None])
-            residual = found.residual[0]
+        for _ in range(CLOSING_STEPS):
+            loops = self.system.close(q[None])
+            residual = loops.residual[0]
             before, left = left, float(np.abs(residual).max())
-            if left < 1e-12 or (left < CLOSED and left > 0.5 * before):
+            if left < CLOSED_EXACTLY or (left < CLOSED and left > 0.5 * before):
                 return q
-            rows = np.vstack([found.jacobian[0], self.held])
+            rows = np.vstack([loops.jacobian[0], self.held])
             wanted = np.concatenate([residual, self.held @ q])
-            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * RANK)[0], float)
+            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * LOOP_RANK)[0], float)
         return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
 
     def jacobian(self, q: Array) -> Array:
@@ -136,7 +138,7 @@ class Linkage:
         jacobian = np.vstack([self.system.close(q[None]).jacobian[0], self.held])
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
-        count = int((values < RANK).sum())
+        count = int((values < LOOP_RANK).sum())
         if count == 0:
             return None
         return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > SINGULAR)
@@ -159,9 +161,9 @@ class Path:
 def follow(linkage: Linkage, sign: float) -> Path:
     """The motion to one side, as far as it goes."""
     q = np.zeros(linkage.system.coordinates)
-    found = linkage.tangent(q)
-    assert found is not None
-    along, step = sign * found[0], STEP
+    tangent = linkage.tangent(q)
+    assert tangent is not None
+    along, step = sign * tangent[0], STEP
     even: Array | None = linkage.jacobian(q)
     path, s = [q], [0.0]
     turns = np.array(linkage.turns)
@@ -169,27 +171,31 @@ def follow(linkage: Linkage, sign: float) -> Path:
     def ended(why: str) -> Path:
         return Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
 
-    while len(path) <= STEPS:
-        if even is not None and len(path) > TRIED:
-            rest = np.arange(1.0, EVENLY)[:, None] * step * along
+    while len(path) <= PATH_STEPS:
+        if even is not None and len(path) > EVEN_TRIED:
+            rest = np.arange(1.0, EVEN_STEPS)[:, None] * step * along
             if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < CLOSED:
                 path.extend(q + rest)
-                s.extend(s[-1] + np.arange(1.0, EVENLY) * step / STEP)
+                s.extend(s[-1] + np.arange(1.0, EVEN_STEPS) * step / STEP)
                 break
         following = linkage.closed(q + step * along)
-        if following is None or float(np.linalg.norm(following - q)) < 0.3 * step:
+        if following is None or float(np.linalg.norm(following - q)) < STEP_KEPT * step:
             return ended("the loops cannot be closed further")
-        found = linkage.tangent(following)
-        if found is None or not found[1]:
+        tangent = linkage.tangent(following)
+        if tangent is None or not tangent[1]:
             return ended("a singular pose, from which motions branch")
-        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > SAME:
+        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > JACOBIAN_SAME:
             even = None
         q = following
         path.append(q)
         s.append(s[-1] + step / STEP)
-        step = STEP if even is None else min(2.0 * step, LONG)
-        along = found[0] if float(found[0] @ along) >= 0.0 else -found[0]
-        if len(path) > 8 and float(np.linalg.norm(_around(q, turns))) < step and _meets_start(linkage, q, turns):
+        step = STEP if even is None else min(2.0 * step, LONG_STEP)
+        along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
+        if (
+            len(path) > STEPS_AWAY
+            and float(np.linalg.norm(_around(q, turns))) < step
+            and _meets_start(linkage, q, turns)
+        ):
             return ended(RETURNED)
     return ended("the motion is too long to be followed to its end")
 
@@ -202,12 +208,12 @@ def _around(q: Array, turns: Flags) -> Array:
 def _meets_start(linkage: Linkage, q: Array, turns: Flags) -> bool:
     """Whether the motion goes through the start near q, rather than past it, as a nut does that is a turn further."""
     for _ in range(4):
-        found = linkage.tangent(q)
-        moved = None if found is None else linkage.closed(q - float(_around(q, turns) @ found[0]) * found[0])
-        if moved is None:
+        tangent = linkage.tangent(q)
+        back = None if tangent is None else linkage.closed(q - float(_around(q, turns) @ tangent[0]) * tangent[0])
+        if back is None:
             return False
-        q = moved
-    return float(np.linalg.norm(_around(q, turns))) < MET
+        q = back
+    return float(np.linalg.norm(_around(q, turns))) < RETURN_MISS
 
 
 class Between:
@@ -228,13 +234,13 @@ class Between:
         guess = self._through(n, x)
         if self._smooth[n]:
             return guess
-        found = self._linkage.closed(guess)
-        return guess if found is None else found
+        closed = self._linkage.closed(guess)
+        return guess if closed is None else closed
 
     def _through(self, n: int, x: float) -> Array:
         """The polynomial through the nodes about step n (Lagrange), at x."""
-        first = min(max(n - NODES // 2 + 1, 0), max(len(self._s) - NODES, 0))
-        s, q = self._s[first : first + NODES], self._q[first : first + NODES]
+        first = min(max(n - NODES_THROUGH // 2 + 1, 0), max(len(self._s) - NODES_THROUGH, 0))
+        s, q = self._s[first : first + NODES_THROUGH], self._q[first : first + NODES_THROUGH]
         apart = s[:, None] - s
         np.fill_diagonal(apart, 1.0)
         away = np.broadcast_to(x - s, apart.shape).copy()

@@ -7,31 +7,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.collisions.course import Course
-from kinform.collisions.pairs import PairTest
+from kinform.collisions.constants import CERTAIN, SPARSE, SPECK, UNSEEN
+from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.pair_test import PairTest
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["Inside"]
 
 
-SPECK = 1e-8
-"""Share of the smaller part's diagonal by which a point is inside."""
-UNSEEN = 0.5
-"""Share of what mates may be deep that points may travel unseen."""
-SPARSE = 0.016
-"""Share of the smaller part's diagonal that points near the other part may travel between two questions: to ask whether
-they are inside is dear, and what came in is found by halving anyhow."""
-
-
 class Inside:
-    """The `probes` of a pair along a course, from `s` on: those that are deep inside there do not count until they are out.
+    """The `probes` of a pair along a course, from `s` on: those that are deep inside there do not count until they are
+    out.
 
     What is less deep than mates may be does not count either, nor where it began: it is met where it is deeper.
     """
 
     def __init__(self, test: PairTest, course: Course, s: float):
         self._test, self._course = test, course
-        count = sum(len(own.points) for own in test.probes)
+        count = sum(len(probes.points) for probes in test.probes)
         speck = SPECK * test.size
         self._every = np.arange(count)
         heights = self._heights(s, self._every)
@@ -56,7 +49,7 @@ class Inside:
         """When points have to be asked for again: once they may be out, in, or deep."""
         inside = ~self._ignored[chosen] & (heights > 0.0)
         away = np.where(inside, self._test.loose - heights, np.abs(heights))
-        self._due[chosen] = travelled + np.maximum((1.0 - 1e-6) * away, self._stride)
+        self._due[chosen] = travelled + np.maximum(CERTAIN * away, self._stride)
 
     def met(self, right: float, end: float, fine: float, *, every: bool = False) -> tuple[float, float, Array] | None:
         """Whether points are deep inside at `right`: to within `fine`, where the first of them came

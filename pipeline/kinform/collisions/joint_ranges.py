@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from kinform.collisions.linkage import drive_loops
-from kinform.collisions.shapes import Shapes
-from kinform.collisions.single import drive_alone
+from kinform.collisions.driving.alone import drive_alone
+from kinform.collisions.driving.loops import drive_loops
+from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
@@ -51,11 +51,11 @@ def ranges(
         if reason:
             out[k] = unknown(joint, reason)
         elif k in looped:
-            found = drive_loops(shapes, kinematics, edges, looped[k])
+            of_block = drive_loops(shapes, kinematics, edges, looped[k])
             for n in looped[k]:
                 if _refused(joints[n], kinematics, shapes):
                     continue
-                out[n] = unknown(joints[n], found) if isinstance(found, str) else found[n]
+                out[n] = unknown(joints[n], of_block) if isinstance(of_block, str) else of_block[n]
         else:
             still, moving = _sides(kinematics, edges, k, shapes)
             out[k] = drive_alone(shapes, joint, still, moving)
@@ -68,8 +68,8 @@ def shapes_of(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts | None, kinematics: Kinematics
 ) -> Shapes:
     """The meshes of an assembly, for questions about motions."""
-    known = {p.name for p in assembly.parts if p.mesh is not None and p.mesh.digest in surfaces and len(p.mesh.faces)}
-    parts = {str(body.name): frozenset(str(p) for p in body.parts if p in known) for body in kinematics.bodies}
+    meshed = {p.name for p in assembly.parts if p.mesh is not None and p.mesh.digest in surfaces and len(p.mesh.faces)}
+    parts = {str(body.name): frozenset(str(p) for p in body.parts if p in meshed) for body in kinematics.bodies}
     return Shapes(assembly, dict(surfaces), contacts, parts)
 
 
@@ -86,9 +86,11 @@ def _refused(joint: Joint, kinematics: Kinematics, shapes: Shapes) -> str:
     if joint.axis is None or (joint.type != "prismatic" and joint.point is None):
         return "the joint has no axis"
     bare = [body.name for body in kinematics.bodies if not shapes.body_parts[body.name]]
-    own = [name for name in joint.bodies if name in bare]
-    if own:
-        return f"{' and '.join(own)} has no mesh" if len(own) == 1 else f"{' and '.join(own)} have no meshes"
+    without = [name for name in joint.bodies if name in bare]
+    if without:
+        return (
+            f"{' and '.join(without)} has no mesh" if len(without) == 1 else f"{' and '.join(without)} have no meshes"
+        )
     return ""
 
 

@@ -8,12 +8,22 @@ from itertools import combinations, product
 
 import numpy as np
 
-from kinform.collisions.course import Course
-from kinform.collisions.pairs import PairTest
-from kinform.collisions.ranges import shapes_of
-from kinform.collisions.recorded import Nodes, moving_pairs
-from kinform.collisions.scan import first_crossing
-from kinform.collisions.shapes import Shapes
+from kinform.collisions.constants import (
+    CONTACT_TIME,
+    DEPTH_SOON,
+    DEPTH_TIMES,
+    OUTPUT_SLIDE,
+    OUTPUT_TURN,
+    OUTPUTS_MOST,
+    OVERLAP_SAME,
+    RUN_ASKED,
+)
+from kinform.collisions.joint_ranges import shapes_of
+from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.pair_test import PairTest
+from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -24,20 +34,6 @@ from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["along"]
-
-
-TIME = 1e-4
-"""Share of the time between two outputs to which a first contact is found."""
-TURN, SLIDE = 0.2, 0.05
-"""rad, and share of the assembly's size, that a joint may move between outputs: then arcs are as good as straight."""
-MOST, ASKED = 50_000, 3
-"""Outputs up to which a run is asked for again, and how often: with more of them more of the motion is seen."""
-SAME = 1.25
-"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they were."""
-SOON = 17
-"""Times within an output step of the first contact at which the depth is measured too."""
-DEPTHS = 12
-"""Output times after the first contact at which the depth is measured: so many spread over the rest, and about the worst."""
 
 
 def along(
@@ -52,10 +48,10 @@ def along(
 ) -> tuple[tuple[Collision, ...], tuple[tuple[str, str, str], ...]]:
     """The first contact of each pair of parts of different bodies outside of their mates, sorted by time and names.
 
-    Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh
-    and overlap where they do; or the output times are too far apart to tell what happens between them.
-    Between output times bodies are taken to move evenly: where joints move far, the run is asked for again from `finer`,
-    with so many times as many outputs; without it the outputs are trusted. Empty for runs without poses.
+    Second: pairs of which that is not known, and why: they overlap from the start, stay too close, or roll or mesh and
+    overlap where they do; or the output times are too far apart to tell what happens between them. Between output
+    times bodies are taken to move evenly: where joints move far, the run is asked for again from `finer`, with so many
+    times as many outputs; without it the outputs are trusted. Empty for runs without poses.
     """
     if len(simulation.time) < 2 or not len(simulation.body_names):
         return (), ()
@@ -71,23 +67,23 @@ def along(
         if progress is not None:
             progress(done, len(pairs))
         test = item.test
-        found = first_crossing(test, item.course, end, TIME * step, start=item.free)
+        crossing = first_crossing(test, item.course, end, CONTACT_TIME * step, start=item.free)
         first, second = test.part_names
-        if found.overlaps:
+        if crossing.overlaps:
             untested.append((first, second, "they overlap from the start"))
-        if found.exhausted is not None:
-            untested.append((first, second, f"they stay too close to be followed after t = {found.exhausted:.6g} s"))
-        if found.hit is not None and found.place is not None:
+        if crossing.exhausted is not None:
+            untested.append((first, second, f"they stay too close to be followed after t = {crossing.exhausted:.6g} s"))
+        if crossing.hit is not None and crossing.place is not None:
             if item.rolls:
-                reason = f"they roll or mesh, and overlap by more than chord errors at t = {found.hit:.6g} s"
+                reason = f"they roll or mesh, and overlap by more than chord errors at t = {crossing.hit:.6g} s"
                 untested.append((first, second, reason))
                 continue
-            place = (nodes.between(found.hit)[item.first] @ np.append(found.place, 1.0))[:3]
-            depth = _depth(test, item.course, simulation.time, found.hit)
-            if found.before > 0.0 and depth <= SAME * found.before + test.scrape:
+            place = (nodes.between(crossing.hit)[item.first] @ np.append(crossing.place, 1.0))[:3]
+            depth = _depth(test, item.course, simulation.time, crossing.hit)
+            if crossing.before > 0.0 and depth <= OVERLAP_SAME * crossing.before + test.scrape:
                 untested.append((first, second, "they overlap from the start, and again later"))
                 continue
-            out.append(Collision(test.part_names, found.hit, place, depth))
+            out.append(Collision(test.part_names, crossing.hit, place, depth))
     if coarse:
         untested += [(*pair, coarse) for pair in _apart(shapes, names, {c.parts for c in out})]
     if progress is not None:
@@ -96,12 +92,13 @@ def along(
 
 
 def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simulation] | None) -> tuple[Simulation, str]:
-    """The run with outputs so near each other that bodies move evenly between them; or why it has not ("" when it has)."""
+    """The run with outputs so near each other that bodies move evenly between them; or why it has not ("" when it
+    has)."""
     if finer is None:
         return simulation, ""
     times, wanted = 1, _parts_of_a_step(simulation, size)
-    for _ in range(ASKED):
-        if wanted == 1 or 2 * wanted * len(simulation.time) > MOST:
+    for _ in range(RUN_ASKED):
+        if wanted == 1 or 2 * wanted * len(simulation.time) > OUTPUTS_MOST:
             break
         times *= 2 * wanted
         again = finer(times)
@@ -135,7 +132,7 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> int:
     step = float(np.diff(simulation.time).max())
     turns = {joint: kind != "prismatic" for joint, kind in enumerate(simulation.joint_types)}
     owner = np.repeat(np.arange(len(simulation.joint_types)), np.diff(simulation.joint_offset))
-    reach = np.array([TURN if turns[int(joint)] else SLIDE * size for joint in owner])
+    reach = np.array([OUTPUT_TURN if turns[int(joint)] else OUTPUT_SLIDE * size for joint in owner])
     if not len(reach):
         return 1
     rate, acceleration = (
@@ -182,21 +179,23 @@ def _nodes(simulation: Simulation) -> Nodes:
     return Nodes(time, displacements, lru_cache(maxsize=None)(between))
 
 
-def _depth(test: PairTest, way: Course, time: Array, hit: float) -> float:
-    """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it, between
-    outputs too, at outputs spread over the run, and about the worst of these."""
-    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), SOON)
+def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
+    """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it,
+    between outputs too, at outputs spread over the run, and about the worst of these."""
+    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), DEPTH_SOON)
     after = np.unique(np.concatenate([soon, time[time >= hit]]))
     last = len(after) - 1
-    known: dict[int, float] = {}
+    depths: dict[int, float] = {}
 
     def deep(n: int) -> float:
-        if n not in known:
-            known[n] = test.deepest(way.displacement(float(after[n])))
-        return known[n]
+        if n not in depths:
+            depths[n] = test.deepest(course.displacement(float(after[n])))
+        return depths[n]
 
-    tried = {int(n) for n in np.linspace(0, last, DEPTHS)} | {2**k - 1 for k in range(DEPTHS) if 2**k - 1 <= last}
-    worst, step = max(sorted(tried), key=deep), max(last // DEPTHS, 1)
+    tried = {int(n) for n in np.linspace(0, last, DEPTH_TIMES)} | {
+        2**k - 1 for k in range(DEPTH_TIMES) if 2**k - 1 <= last
+    }
+    worst, step = max(sorted(tried), key=deep), max(last // DEPTH_TIMES, 1)
     while step:
         better = max((n for n in (worst, worst - step, worst + step) if 0 <= n <= last), key=deep)
         worst, step = better, step if better != worst else step // 2

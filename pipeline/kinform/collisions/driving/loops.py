@@ -7,18 +7,19 @@ or, where it goes on evenly, where a slide or screw leaves its guide.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
-from kinform.collisions.path import RETURNED, Between, Linkage, Path, follow
-from kinform.collisions.recorded import Nodes, moving_pairs
-from kinform.collisions.scan import first_crossing
-from kinform.collisions.shapes import Shapes
-from kinform.collisions.single import drive_alone, guide, joint_twist
+from kinform.collisions.constants import LOOP_STOP, TURNED_ROUND
+from kinform.collisions.driving.alone import drive_alone
+from kinform.collisions.driving.loop_motion import RETURNED, Between, Linkage, Path, follow
+from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.parts.shapes import Shapes
+from kinform.kinematics.mobility.guides import guide
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
@@ -74,13 +75,13 @@ def _spun(shapes: Shapes, kinematics: Kinematics, joint: Joint, body: BodyName) 
     if joint.type != "revolute" or joint.axis is None or joint.point is None:
         end = RangeEnd("unknown", reason=f"'{body}' spins on itself")
         return JointRange(joint.name, end, end)
-    own = sorted(shapes.body_parts[body])
+    spinning = sorted(shapes.body_parts[body])
     rest = sorted(part for name, parts in shapes.body_parts.items() if name != body for part in parts)
-    found = drive_alone(shapes, joint, *((rest, own) if joint.bodies[1] == body else (own, rest)))
-    if found.status == "unbounded":
-        return found
+    spin = drive_alone(shapes, joint, *((rest, spinning) if joint.bodies[1] == body else (spinning, rest)))
+    if spin.status == "unbounded":
+        return spin
     end = RangeEnd("unknown", reason=f"'{body}' spins on itself, and not freely where it is")
-    return JointRange(joint.name, end, end, found.left_out)
+    return JointRange(joint.name, end, end, spin.left_out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +112,14 @@ def _travelled(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: P
         test = item.test
         if item.free >= end:
             continue
-        found = first_crossing(test, item.course, end, 1e-3, start=item.free)
-        if found.overlaps or (item.rolls and found.at is not None):
+        first = first_crossing(test, item.course, end, LOOP_STOP, start=item.free)
+        if first.overlaps or (item.rolls and first.at is not None):
             left_out.add(test.part_names)
-        if found.exhausted is not None:
-            end, why, parts, place = found.exhausted, f"{' and '.join(test.names)} stay too close", (), None
-        elif found.at is not None and found.place is not None and not item.rolls:
-            end, why, parts = found.at, "", test.part_names
-            place = (nodes.between(found.at)[item.first] @ np.append(found.place, 1.0))[:3]
+        if first.exhausted is not None:
+            end, why, parts, place = first.exhausted, f"{' and '.join(test.names)} stay too close", (), None
+        elif first.at is not None and first.place is not None and not item.rolls:
+            end, why, parts = first.at, "", test.part_names
+            place = (nodes.between(first.at)[item.first] @ np.append(first.place, 1.0))[:3]
     kept = s < end
     q, s = np.concatenate([path.q[kept], at(end)[None]]), np.append(s[kept], end)
     return _Travelled(q, s, why, parts, place, tuple(sorted(left_out)))
@@ -132,7 +133,7 @@ def _guided(shapes: Shapes, kinematics: Kinematics, linkage: Linkage, path: Path
         if joint.type not in ("prismatic", "screw") or joint.axis is None:
             continue
         values = path.q[:, n] * linkage.unit[n] * _sense(joint, linkage.twists[n])
-        low, high = guide(shapes, joint, joint_twist(joint))
+        low, high = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
         limit = high if values[-1] > 0.0 else low
         if abs(values[-1]) > abs(limit):
             at = float(np.interp(abs(limit), np.abs(values), path.s))
@@ -152,7 +153,7 @@ def _range(joint: Joint, linkage: Linkage, column: int, ends: Sequence[_Travelle
     )
     left_out = tuple(sorted({pair for end in ends for pair in end.left_out}))
     returned = any(end.why == RETURNED for end in ends)
-    if returned and linkage.turns[column] and high - low > 2.0 * math.pi - 0.2:
+    if returned and linkage.turns[column] and high - low > TURNED_ROUND:
         free = RangeEnd("unknown", reason=_overlap(left_out)) if left_out else RangeEnd("unbounded")
         return JointRange(joint.name, free, free, left_out)
     sides = []
@@ -190,5 +191,5 @@ def _sense(joint: Joint, twist: Array) -> float:
     """1 where the twist goes with the joint's axis, −1 where against it."""
     if joint.axis is None:
         return 1.0
-    own = twist[3:] if joint.type == "prismatic" else twist[:3]
-    return 1.0 if float(own @ joint.axis) >= 0.0 else -1.0
+    direction = twist[3:] if joint.type == "prismatic" else twist[:3]
+    return 1.0 if float(direction @ joint.axis) >= 0.0 else -1.0

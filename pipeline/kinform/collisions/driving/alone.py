@@ -9,40 +9,23 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from kinform.collisions.coarse import Wholes
-from kinform.collisions.course import Course
-from kinform.collisions.pairs import PRESERVED, PairTest
-from kinform.collisions.scan import first_crossing
-from kinform.collisions.shapes import Shapes
-from kinform.collisions.sweeps import Profile, meeting
+from kinform.collisions.constants import MEETING_MARGIN, SCREW_TURNS, SCREW_TURNS_MOST, STOP_ANGLE, STOP_LENGTH
+from kinform.collisions.driving.swept_profiles import Profile, meeting
+from kinform.collisions.pair.advancement import first_crossing
+from kinform.collisions.pair.course import Course
+from kinform.collisions.pair.pair_test import PairTest
+from kinform.collisions.pair.wholes import Wholes
+from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
-from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics.mobility.guides import guide, joint_twist, preserved
 from kinform.model.arrays import Array
 from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
-__all__ = ["drive_alone", "guide", "joint_twist", "preserved"]
+__all__ = ["drive_alone"]
 
 Pair = tuple[PartName, PartName]
-
-ANGLE = math.radians(2e-5)
-"""rad: to which a stop of a turn is found."""
-LENGTH = 1e-5
-"""To which a stop of a slide is found, relative to the size of the smaller part."""
-TURNS, MOST_TURNS = 20, 400
-"""Turns of a screw that are tried at once to each side, and in all."""
-
-
-def preserved(patch: Patch, twists: Array) -> bool:
-    """Whether the relative motions `twists` (k, 6) leave the two sides of a patch in contact."""
-    for twist in twists:
-        velocity = twist[3:] + cross(np.broadcast_to(twist[:3], patch.points.shape), patch.points)
-        fastest = float(np.linalg.norm(velocity, axis=1).max(initial=0.0))
-        if np.any(np.abs(np.einsum("ij,ij->i", velocity, patch.normals)) > PRESERVED * fastest):
-            return False
-    return True
 
 
 class _Candidate:
@@ -53,7 +36,8 @@ class _Candidate:
         self._turning = float(twist[:3] @ twist[:3]) > 0.25
 
     def course(self, sign: int, radius: float | None = None) -> Course:
-        """The motion to one side, for points no further from the axis than `radius` (m), by default all that can meet."""
+        """The motion to one side, for points no further from the axis than `radius` (m), by default all that can
+        meet."""
         if radius is None:
             radius = min(profile.largest for profile in self._profiles)
         along = float(abs(self._twist[:3] @ self._twist[3:]))
@@ -68,18 +52,13 @@ class _Candidate:
     def test(self) -> tuple[PairTest, float] | None:
         """With the facets that can meet, and how far these are from the axis at most; None where none can."""
         shapes, twists, (first, second) = self._shapes, self._twist[None], self.names
-        allowed = shapes.allowed(first, second)
-        kept = []
-        for name in self.names:
-            slides = shapes.invariant(name, twists, allowed)
-            kept.append(np.flatnonzero(~slides[shapes.surfaces_of(name).labels]))
-        margin = 1e-6 * min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
-        facets = meeting(*self._profiles, kept[0], kept[1], margin)
+        margin = MEETING_MARGIN * min(shapes.mesh(first).diagonal, shapes.mesh(second).diagonal)
+        facets = meeting(*self._profiles, *shapes.moved_facets(first, second, twists), margin)
         if not (len(facets[0]) and len(facets[1])):
             return None
-        patches = [shapes.contacts.patches[k] for k in shapes.patches(first, second)] if shapes.contacts else []
-        test = PairTest(shapes, first, second, facets, [p for p in patches if preserved(p, twists)])
-        return test, min(profile.radius(own) for profile, own in zip(self._profiles, facets, strict=True))
+        mates = [patch for patch in shapes.patches(first, second) if preserved(patch, twists)]
+        test = PairTest(shapes, first, second, facets, mates)
+        return test, min(profile.radius(side) for profile, side in zip(self._profiles, facets, strict=True))
 
 
 _Entry = tuple[_Candidate, float]
@@ -90,7 +69,7 @@ def drive_alone(shapes: Shapes, joint: Joint, still: Sequence[str], moving: Sequ
     twist = joint_twist(joint)
     profiles = {name: _profile(shapes, name, twist) for name in (*still, *moving)}
     candidates = _candidates(shapes, profiles, twist, still, moving)
-    below, above = guide(shapes, joint, twist)
+    below, above = guide(*shapes.design(), joint, shapes.body_parts[joint.bodies[1]])
     if joint.type == "revolute":
         below, above = -math.pi, math.pi
     elif joint.type == "screw":
@@ -115,10 +94,10 @@ def _screwed(joint: Joint, candidates: Sequence[_Candidate], twist: Array, below
     left_out: set[Pair] = set()
     done = []
     for sign, limit in ((-1, abs(below)), (1, above)):
-        last = min(limit, 2.0 * math.pi * (MOST_TURNS if math.isfinite(limit) else TURNS))
+        last = min(limit, 2.0 * math.pi * (SCREW_TURNS_MOST if math.isfinite(limit) else SCREW_TURNS))
         free, end = 0.0, RangeEnd("unbounded")
         while free < last and end.status == "unbounded":
-            further = min(free + 2.0 * math.pi * TURNS, last)
+            further = min(free + 2.0 * math.pi * SCREW_TURNS, last)
             end, pairs = _end(candidates, twist, sign, further, free)
             left_out.update(pairs)
             free = further
@@ -128,17 +107,6 @@ def _screwed(joint: Joint, candidates: Sequence[_Candidate], twist: Array, below
             )
         done.append(_leaving(end, joint, sign * limit))
     return JointRange(joint.name, done[0], done[1], tuple(sorted(left_out)))
-
-
-def joint_twist(joint: Joint) -> Array:
-    """(6,) twist of a joint's value: |ω| 1 for turns, |v| 1 for slides, in the sense of its axis."""
-    axis, point = joint.axis, joint.point
-    assert axis is not None
-    if joint.type == "prismatic":
-        return np.concatenate([np.zeros(3), axis])
-    assert point is not None
-    pitch = joint.pitch or 0.0
-    return np.concatenate([axis, cross(point, axis) + pitch / (2.0 * math.pi) * axis])
 
 
 def _leaving(end: RangeEnd, joint: Joint, limit: float) -> RangeEnd:
@@ -179,14 +147,14 @@ def _end(
         candidate, free = entry
         if candidate.test is not None:
             test, radius = candidate.test
-            fine = ANGLE if turning else LENGTH * test.size
-            found = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
-            if found.overlaps:
+            fine = STOP_ANGLE if turning else STOP_LENGTH * test.size
+            first = first_crossing(test, candidate.course(sign, radius), reach, fine, start=free)
+            if first.overlaps:
                 left_out.append(test.part_names)
-            if found.exhausted is not None and (exhausted is None or found.exhausted < exhausted[0]):
-                exhausted = (found.exhausted, test.part_names)
-            if found.at is not None and found.place is not None:
-                reach, best = found.at, (found.at, test, found.place)
+            if first.exhausted is not None and (exhausted is None or first.exhausted < exhausted[0]):
+                exhausted = (first.exhausted, test.part_names)
+            if first.at is not None and first.place is not None:
+                reach, best = first.at, (first.at, test, first.place)
         entry = _following(order, reach)
     if exhausted is not None and exhausted[0] < reach:
         return RangeEnd("unknown", reason=f"{' and '.join(exhausted[1])} stay too close to be followed"), left_out
@@ -227,36 +195,6 @@ def _in_order(
     for candidate in touching:
         if start < reach:
             reach = yield candidate, start
-
-
-def guide(shapes: Shapes, joint: Joint, twist: Array) -> tuple[float, float]:
-    """Values (rad or m) at which the last of the patches along which a joint slides is left; ±inf without patches."""
-    if shapes.contacts is None or joint.axis is None:
-        return -math.inf, math.inf
-    rate = 1.0 if joint.type == "prismatic" else (joint.pitch or 0.0) / (2.0 * math.pi)
-    ends = []
-    for k in joint.patches:
-        patch = shapes.contacts.patches[k]
-        if not preserved(patch, twist[None]):
-            continue
-        spans = [_span(shapes, name, n, joint.axis) for name, n in zip(patch.parts, patch.surfaces, strict=True)]
-        if patch.parts[1] not in shapes.body_parts[joint.bodies[1]]:
-            spans.reverse()
-        (a0, a1), (b0, b1) = spans
-        ends.append((a0 - b1, a1 - b0))
-    if not ends or rate == 0.0:
-        return -math.inf, math.inf
-    low, high = min(e[0] for e in ends), max(e[1] for e in ends)
-    pair = (low / rate, high / rate)
-    return min(pair), max(pair)
-
-
-def _span(shapes: Shapes, name: str, surface: int, axis: Array) -> tuple[float, float]:
-    """Lowest and highest place (m) along `axis` of a surface of a part."""
-    mesh, X = shapes.mesh(name), shapes.part(name).X_WP
-    corners = mesh.vertices[np.unique(mesh.faces[shapes.surfaces_of(name).labels == surface])]
-    heights = (corners @ X[:3, :3].T + X[:3, 3]) @ axis
-    return float(heights.min()), float(heights.max())
 
 
 def _clear(profiles: Sequence[Profile]) -> float:

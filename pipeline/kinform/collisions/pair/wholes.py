@@ -13,22 +13,13 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.course import Course
-from kinform.collisions.shapes import Shapes
+from kinform.collisions.constants import CERTAIN, SHORT_STEP, SPHERES_FAR, STEPS_MOST, WHOLES_TOUCH
+from kinform.collisions.pair.course import Course
+from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
 
 __all__ = ["Wholes"]
-
-
-SHORT = 0.01
-"""Steps below this share of the smaller part's size are short."""
-FAR = 0.1
-"""Spheres whose distance is more than this share of it need no closer look."""
-MOST = 60
-"""Steps."""
-CERTAIN = 1.0 - 1e-6
-"""Share of a distance that is trusted."""
 
 
 class Wholes:
@@ -50,25 +41,26 @@ class Wholes:
     def distance(self, D: Array) -> float:
         """m: no facets are nearer at a displacement (4, 4) of the second body relative to the first."""
         X = self._to_first @ D @ self._X_WB
-        (own, r), (other, s) = self._spheres
-        moved = other @ X[:3, :3].T + X[:3, 3]
-        square = (own**2).sum(axis=1)[:, None] + (moved**2).sum(axis=1) - 2.0 * own @ moved.T
+        (near, r), (far, s) = self._spheres
+        moved = far @ X[:3, :3].T + X[:3, 3]
+        square = (near**2).sum(axis=1)[:, None] + (moved**2).sum(axis=1) - 2.0 * near @ moved.T
         bound = float((np.sqrt(np.maximum(square, 0.0)) - r[:, None] - s).min())
-        if bound > FAR * self._size:
+        if bound > SPHERES_FAR * self._size:
             return CERTAIN * bound
         self._objects[1].setTransform(fcl_pose(X))
         return CERTAIN * fcl_distance(*self._objects)
 
     def touch(self, D: Array) -> bool:
         """Whether they touch, or nearly."""
-        return self.distance(D) <= 1e-6 * SHORT * self._size
+        return self.distance(D) <= WHOLES_TOUCH * SHORT_STEP * self._size
 
     def step(self, course: Course, s: float, end: float) -> tuple[float, bool]:
-        """A parameter after s up to which they are certainly apart, and whether that was too short a step to go on so."""
+        """A parameter after s up to which they are certainly apart, and whether that was too short a step to go on
+        so."""
         self._steps += 1
         free = self.distance(course.displacement(s))
         following = course.when(course.travel(s) + max(free, 0.0), s, end)
-        return following, following < end and (free < SHORT * self._size or self._steps > MOST)
+        return following, following < end and (free < SHORT_STEP * self._size or self._steps > STEPS_MOST)
 
     def clear_until(self, course: Course, start: float, end: float) -> float:
         """The parameter up to which they are certainly apart: `start` where they touch, `end` where they stay so."""

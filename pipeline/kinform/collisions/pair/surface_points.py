@@ -11,21 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.collisions.constants import POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
 from kinform.foundation.meshes.index import MeshIndex, inner_weights
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
 __all__ = ["Probes", "probes"]
-
-
-EACH = 24
-"""Points on one surface."""
-MOST = 480
-"""Points on one part."""
-FINE = 6
-"""A surface's largest facets are divided until they are about so many times smaller than it."""
-FAR = 0.05
-"""Share of the other part's diagonal beyond whose box a point needs no closer look."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +31,7 @@ class Probes:
         placed = self.points[chosen] @ X[:3, :3].T + X[:3, 3]
         beyond = np.maximum(np.maximum(other.low - placed, placed - other.high), 0.0)
         out = -np.linalg.norm(beyond, axis=1)
-        near = np.flatnonzero(out > -FAR * other.mesh.diagonal)
+        near = np.flatnonzero(out > -POINTS_FAR * other.mesh.diagonal)
         if len(near):
             inside = other.contains(placed[near])
             out[near] = np.where(inside, 0.0, -other.away(placed[near]))
@@ -55,9 +46,9 @@ def probes(mesh: Mesh, labels: Ints, facets: Ints) -> Probes:
         return Probes(np.zeros((0, 3)))
     facets = facets[np.argsort(labels[facets], kind="stable")]
     starts = np.flatnonzero(np.diff(labels[facets], prepend=-1))
-    each = max(min(EACH, MOST // len(starts)), 1)
+    each = max(min(POINTS_SURFACE, POINTS_PART // len(starts)), 1)
     points = _spread(mesh.vertices[mesh.faces[facets]], starts, each)
-    return Probes(points[np.unique(np.linspace(0, len(points) - 1, MOST).astype(int))])
+    return Probes(points[np.unique(np.linspace(0, len(points) - 1, POINTS_PART).astype(int))])
 
 
 def _spread(corners: Array, starts: Ints, count: int) -> Array:
@@ -67,15 +58,15 @@ def _spread(corners: Array, starts: Ints, count: int) -> Array:
     low, high = (f.reduceat(g(corners, axis=1), starts) for f, g in ((np.minimum, np.min), (np.maximum, np.max)))
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     size = np.maximum(np.linalg.norm(high - low, axis=1), 1e-300)[group]
-    parts = np.clip(np.ceil(FINE * sides / size), 1, FINE).astype(np.int64)
-    made, owner, key = [], [], []
+    parts = np.clip(np.ceil(POINTS_FINE * sides / size), 1, POINTS_FINE).astype(np.int64)
+    pieces, owner, key = [], [], []
     for number in np.unique(parts).tolist():
-        some = np.flatnonzero(parts == number)
-        made.append((inner_weights(number) @ corners[some]).reshape(-1, 3))
-        owner.append(np.repeat(group[some], number * number))
-        key.append(owner[-1] * (FINE + 1) + number)
+        these = np.flatnonzero(parts == number)
+        pieces.append((inner_weights(number) @ corners[these]).reshape(-1, 3))
+        owner.append(np.repeat(group[these], number * number))
+        key.append(owner[-1] * (POINTS_FINE + 1) + number)
     order = np.argsort(np.concatenate(key), kind="stable")
-    points, group = np.concatenate(made)[order], np.concatenate(owner)[order]
+    points, group = np.concatenate(pieces)[order], np.concatenate(owner)[order]
     starts = np.flatnonzero(np.diff(group, prepend=-1))
     wide = np.diff(np.append(starts, len(points)))
     middle = np.add.reduceat(points, starts) / wide[:, None]

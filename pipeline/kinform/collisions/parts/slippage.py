@@ -1,10 +1,11 @@
 """Surfaces that a relative motion maps onto themselves.
 
-A point keeps its distance from such a surface, so nothing ever comes to cross it but through its border, and there
-the surfaces that share the border are met as well. Where these cross nothing either, as flush and parallel faces do,
-points of them come to be inside (`inside`): a collision is not missed when it is left out. Journals in bores, thrust faces, guides and flanks of threads are all of this kind, which is why mating surfaces, whose facets
-overlap by their chord errors, need not be told from collisions by any depth. The motions that a kind of surface
-admits are those of slippage analysis (Gelfand and Guibas 2004).
+A point keeps its distance from such a surface, so nothing ever comes to cross it but through its border, and there the
+surfaces that share the border are met as well. Where these cross nothing either, as flush and parallel faces do,
+points of them come to be inside (`inside`): a collision is not missed when it is left out. Journals in bores, thrust
+faces, guides and flanks of threads are all of this kind, which is why mating surfaces, whose facets overlap by their
+chord errors, need not be told from collisions by any depth. The motions that a kind of surface admits are those of
+slippage analysis (Gelfand and Guibas 2004).
 """
 
 from __future__ import annotations
@@ -14,18 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.collisions.constants import DRIFT, EVEN
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
 __all__ = ["Allowed", "OwnMotions", "Slippage"]
-
-
-DRIFT = 0.02
-"""Share of the advance of a screw by which its threads' pitch may be off."""
-EVEN = 1e-6
-"""Advance a radian, relative to a surface's radius, that is rounding."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +61,8 @@ class Slippage:
     turns: Flags
     """(k,) whether a twist turns."""
     drift: Array
-    """(s, k) share of what a twist that turns advances along its axis by which points of a surface leave it along that."""
+    """(s, k) share of what a twist that turns advances along its axis by which points of a surface leave it along
+    that."""
 
     def within(self, allowed: Allowed) -> Flags:
         """(s,) which surfaces all twists map onto themselves, but for what is allowed."""
@@ -79,12 +76,12 @@ class OwnMotions:
 
     def __init__(self, mesh: Mesh, surfaces: MeshSurfaces):
         self._extent = _extents(mesh, surfaces)
-        own = [_own_motions(surface) for surface in surfaces.surfaces]
-        counts = np.array([len(motions) for motions in own], dtype=np.int64)
+        motions = [_own_motions(surface) for surface in surfaces.surfaces]
+        counts = np.array([len(kept) for kept in motions], dtype=np.int64)
         self._bases: list[tuple[NDArray[np.int64], Array]] = []
         for count in sorted(set(counts[counts > 0].tolist())):
             members = np.flatnonzero(counts == count)
-            twists = self._at(np.stack([own[n] for n in members]), members)
+            twists = self._at(np.stack([motions[n] for n in members]), members)
             self._bases.append((members, np.linalg.qr(np.swapaxes(twists, 1, 2))[0]))
 
     def slippage(self, twists: Array) -> Slippage:

@@ -14,32 +14,32 @@ _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 
 
 def crossings(first: Array, second: Array, normals: tuple[Array, Array], least: float) -> tuple[Flags, Array]:
-    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share; `normals`: unit
-    (n, 3) of both.
+    """Which triangles (n, 3, 3) cross, by more than `least` (m), and the segment (n, 2, 3) that they share; `normals`:
+    unit (n, 3) of both.
 
     Triangles that touch, or lie in one plane, do not cross.
     """
-    found = np.zeros(len(first), dtype=bool)
+    crossing = np.zeros(len(first), dtype=bool)
     segments = np.zeros((len(first), 2, 3))
     # most that touch are flush: they are told by one plane, and the rest left out
     n1, n2 = normals
     d1 = _heights(first, second, n2)
-    some = np.flatnonzero((d1.max(axis=1) > least) & (d1.min(axis=1) < -least))
-    first, second, n1, n2, d1 = first[some], second[some], n1[some], n2[some], d1[some]
+    rows = np.flatnonzero((d1.max(axis=1) > least) & (d1.min(axis=1) < -least))
+    first, second, n1, n2, d1 = first[rows], second[rows], n1[rows], n2[rows], d1[rows]
     d2 = _heights(second, first, n1)
-    kept = (d2.max(axis=1) > least) & (d2.min(axis=1) < -least)
-    some, first, second, d1, d2 = some[kept], first[kept], second[kept], d1[kept], d2[kept]
-    if not len(some):
-        return found, segments
-    along = cross(n1[kept], n2[kept])
+    keep = (d2.max(axis=1) > least) & (d2.min(axis=1) < -least)
+    rows, first, second, d1, d2 = rows[keep], first[keep], second[keep], d1[keep], d2[keep]
+    if not len(rows):
+        return crossing, segments
+    along = cross(n1[keep], n2[keep])
     length = np.linalg.norm(along, axis=1)
     along /= np.where(length > 0.0, length, 1.0)[:, None]
     low1, high1, p1, q1 = _span(first, d1, along)
     low2, high2, p2, q2 = _span(second, d2, along)
-    found[some] = (length > 1e-9) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
-    segments[some, 0] = np.where((low1 >= low2)[:, None], p1, p2)
-    segments[some, 1] = np.where((high1 <= high2)[:, None], q1, q2)
-    return found, segments
+    crossing[rows] = (length > 1e-9) & (np.minimum(high1, high2) - np.maximum(low1, low2) > least)
+    segments[rows, 0] = np.where((low1 >= low2)[:, None], p1, p2)
+    segments[rows, 1] = np.where((high1 <= high2)[:, None], q1, q2)
+    return crossing, segments
 
 
 def _heights(triangles: Array, others: Array, normals: Array) -> Array:

@@ -1,0 +1,190 @@
+"""The numbers that decide about ranges and collisions, by the module that uses them first.
+
+Lengths are shares of the diagonal of the smaller part of a pair unless a unit is stated, so that an assembly of any
+size answers the same. Where neither a reason nor a measurement is named the number is a choice.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+# parts: what is asked of the facets of one part
+
+SPHERES = 96
+"""Spheres about the facets of a part."""
+SCRAPE = 1e-3
+"""By so much parts may overlap as they slide along each other: by rounding of their files and by what is left over
+where joints were fitted."""
+SCRAPE_ANGLES = 1.5
+"""What a surface may be off an exact invariance, in alignment tolerances."""
+DRIFT = 0.02
+"""Share of the advance of a screw by which its threads' pitch may be off."""
+EVEN = 1e-6
+"""Advance a radian, relative to a surface's radius, that is rounding."""
+
+# pair/wholes: two parts with all their facets
+
+SHORT_STEP = 0.01
+"""Steps below this are short."""
+SPHERES_FAR = 0.1
+"""Spheres whose distance is more than this need no closer look."""
+STEPS_MOST = 60
+"""Steps that are taken as wholes."""
+CERTAIN = 1.0 - 1e-6
+"""Share of a distance that is trusted."""
+WHOLES_TOUCH = 1e-6
+"""Wholes nearer to each other than this share of a short step touch."""
+
+# pair/surface_points, deep_points: points of one part inside the other
+
+POINTS_SURFACE = 24
+"""Points on one surface."""
+POINTS_PART = 480
+"""Points on one part."""
+POINTS_FINE = 6
+"""A surface's largest facets are divided until they are about so many times smaller than it."""
+POINTS_FAR = 0.05
+"""Share of the other part's diagonal beyond whose box a point needs no closer look."""
+SPECK = 1e-8
+"""By this much a point is inside."""
+UNSEEN = 0.5
+"""Share of what mates may be deep that points may travel unseen."""
+SPARSE = 0.016
+"""So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
+came in is found by halving anyhow."""
+
+# pair/pair_test: crossings, depths
+
+DEPTH_ENDS = 32
+"""Ends of crossing segments between which the depth is looked for."""
+DEPTH_MIDDLES = 64
+"""Places between them that are asked whether they are inside both parts."""
+DEPTH_INSIDE = 40
+"""Of those that are, at which the depth is measured."""
+DEPTH_FINER = 4
+"""So many times as many places for a depth that is reported."""
+FACET_GRID = 12
+"""Points along the side of a facet that are asked whether they are inside the other part."""
+DIRECTIONS_ROUND = np.stack([np.cos(np.arange(8) * np.pi / 4), np.sin(np.arange(8) * np.pi / 4)], axis=1)
+"""(8, 2) directions about a point in a plane."""
+CROSSING_LEAST = 1e-9
+"""Facets cross, and are apart, by more than this."""
+CROSSINGS_MOST = 200_000
+"""Crossing facets that one question may return."""
+MATE_ROUNDING = 1e-6
+"""By so much more than chord errors, gap and uncertainty points may be off the surface of a mate."""
+
+# pair/advancement: the first crossing along a motion
+
+WORK = 4000
+"""Poses of one pair that one question may try."""
+RESOLUTION = 4e-3
+"""So far a part may travel unseen where others are in touch."""
+TOGETHER = 8.0
+"""Surfaces that come to cross within so many chord errors of travel belong to one collision."""
+OVERLAPPING = 5.0
+"""Steps are so much longer while parts overlap: all that is asked is whether they part."""
+AHEAD = (0.0, 1.0, 2.0, 4.0)
+"""Where points of a part are deep inside the other, facets are looked for that cross too deeply up to so much further,
+as multiples of what mates may be deep: facets may have met before."""
+BEHIND_FACE = (1.0, 0.2, 0.04)
+"""Shares of the resolution behind a face at which it is asked what is inside: parts may be thinner."""
+BEHIND_LEAST = 4.0
+"""Nothing is asked behind a face nearer than this many times what a contact is found to."""
+BEHIND_DEPTH = 0.4
+"""Share of the way behind a face by which its points are then inside."""
+RISE = 0.02
+"""Share of what may be overlap of mates or chord errors by which the depth has to grow."""
+
+# pair/posed_pairs: pairs of bodies that move along given poses
+
+HIGHER_KINDS = ("point", "line")
+"""Patches whose place on the parts changes as they move."""
+LOWER_TYPES = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "screw")
+"""Joints whose twists stay the same in both bodies."""
+STILL = 1e-9
+"""rad, and share of the assembly's size, that bodies at rest to each other move by rounding."""
+REMEMBERED = 64
+"""Displacements of a pair that are kept: the same are asked for several times."""
+CHORD_SLACK = 1.05
+"""Points between two poses may travel more than their straight distance."""
+
+# driving/alone: a joint outside of loops
+
+STOP_ANGLE = math.radians(2e-5)
+"""rad: to which a stop of a turn is found."""
+STOP_LENGTH = 1e-5
+"""To which a stop of a slide is found."""
+SCREW_TURNS = 20
+"""Turns of a screw that are tried at once to each side."""
+SCREW_TURNS_MOST = 400
+"""Turns of a screw that are tried in all, where its threads end."""
+MEETING_MARGIN = 1e-6
+"""Facets whose swept profiles come no nearer than this never meet."""
+
+# driving/loop_motion: the one motion of joints that loops tie together
+
+STEP = 0.04
+"""Arc length of a step: rad, and share of the block's size."""
+PATH_STEPS = 900
+"""Steps to each side at most."""
+STEP_KEPT = 0.3
+"""Share of a step that has to be left of it where the loops are closed again."""
+STEPS_AWAY = 8
+"""Steps after which the motion may be back where it began."""
+CLOSING_STEPS = 12
+"""Newton steps that close the loops."""
+LOOP_RANK = 1e-4
+"""Singular values of the closure below this leave motions."""
+SINGULAR = 2e-3
+"""One more of them within this is a branching."""
+LONG_STEP = 0.4
+"""rad: the longest step where a motion goes on evenly: screws and slides along one line, on which there is nothing to
+be passed over."""
+EVEN_TRIED = 30
+"""Steps after which it is believed that a motion goes on evenly."""
+EVEN_STEPS = 6000
+"""Steps of an even motion in all."""
+JACOBIAN_SAME = 1e-9
+"""Change of the closure's Jacobian within which a motion goes on evenly."""
+RETURN_MISS = 1e-5
+"""rad and share of the size by which a motion may miss where it began and be back there."""
+NARROW = 1e-2
+"""Share of the assembly's size that a block's size is at least: its joints may be on one point."""
+NODES_THROUGH = 6
+"""Nodes that the motion between two of them is taken through."""
+SMOOTH = 1e-9
+"""rad and share of the size that loops may be open between nodes."""
+CLOSED = 1e-6
+"""rad, and share of the size: loops that are left open by less close, as far as their axes fit."""
+CLOSED_EXACTLY = 1e-12
+"""rad, and share of the size: loops that are left open by less need no more steps."""
+RATE_SAME = 0.99
+"""Rates of an idle freedom from this share of the greatest are the same but for rounding, and go by their order."""
+TURNED_ROUND = 2.0 * math.pi - 0.2
+"""rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+LOOP_STOP = 1e-3
+"""Share of a step to which a contact along a motion of loops is found."""
+
+# run_collisions: collisions along a run
+
+CONTACT_TIME = 1e-4
+"""Share of the time between two outputs to which a first contact is found."""
+OUTPUT_TURN = 0.2
+"""rad that a joint may turn between outputs: then arcs are as good as straight."""
+OUTPUT_SLIDE = 0.05
+"""The same of a slide, as a share of the assembly's size."""
+OUTPUTS_MOST = 50_000
+"""Outputs up to which a run is asked for again."""
+RUN_ASKED = 3
+"""How often: with more outputs more of the motion is seen."""
+OVERLAP_SAME = 1.25
+"""Parts that overlapped at the start, and come to overlap by no more than this share of it, come back to where they
+were."""
+DEPTH_SOON = 17
+"""Times within an output step of the first contact at which the depth is measured too."""
+DEPTH_TIMES = 12
+"""Output times after the first contact at which the depth is measured: so many spread over the rest, and about the
+worst."""

@@ -1,0 +1,82 @@
+"""Guides of slides and screws: which patches a joint runs along, and at which of its values the last of them is left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics.constants import PRESERVED_SHARE
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.kinematics import Joint
+from kinform.model.surfaces import MeshSurfaces
+
+__all__ = ["guide", "joint_twist", "preserved"]
+
+
+def joint_twist(joint: Joint) -> Array:
+    """(6,) twist of a joint's value: |ω| 1 for turns, |v| 1 for slides, in the sense of its axis."""
+    axis, point = joint.axis, joint.point
+    assert axis is not None
+    if joint.type == "prismatic":
+        return np.concatenate([np.zeros(3), axis])
+    assert point is not None
+    pitch = joint.pitch or 0.0
+    return np.concatenate([axis, cross(point, axis) + pitch / (2.0 * math.pi) * axis])
+
+
+def preserved(patch: Patch, twists: Array) -> bool:
+    """Whether the relative motions `twists` (k, 6) leave the two sides of a patch in contact."""
+    for twist in twists:
+        velocity = twist[3:] + cross(np.broadcast_to(twist[:3], patch.points.shape), patch.points)
+        fastest = float(np.linalg.norm(velocity, axis=1).max(initial=0.0))
+        if np.any(np.abs(np.einsum("ij,ij->i", velocity, patch.normals)) > PRESERVED_SHARE * fastest):
+            return False
+    return True
+
+
+def guide(
+    assembly: Assembly,
+    surfaces: Mapping[str, MeshSurfaces],
+    contacts: Contacts | None,
+    joint: Joint,
+    second: Collection[str],
+) -> tuple[float, float]:
+    """Values (rad or m) at which the last of the patches along which a joint slides is left; ±inf without patches.
+    `second`: names of the parts of its second body."""
+    if contacts is None or joint.axis is None:
+        return -math.inf, math.inf
+    rate = 1.0 if joint.type == "prismatic" else (joint.pitch or 0.0) / (2.0 * math.pi)
+    ends = []
+    for k in joint.patches:
+        patch = contacts.patches[k]
+        if not preserved(patch, joint_twist(joint)[None]):
+            continue
+        spans = [
+            _span(assembly, surfaces, name, n, joint.axis) for name, n in zip(patch.parts, patch.surfaces, strict=True)
+        ]
+        if patch.parts[1] not in second:
+            spans.reverse()
+        (a0, a1), (b0, b1) = spans
+        ends.append((a0 - b1, a1 - b0))
+    if not ends or rate == 0.0:
+        return -math.inf, math.inf
+    low, high = min(e[0] for e in ends), max(e[1] for e in ends)
+    pair = (low / rate, high / rate)
+    return min(pair), max(pair)
+
+
+def _span(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], name: str, surface: int, axis: Array
+) -> tuple[float, float]:
+    """Lowest and highest place (m) along `axis` of a surface of a part."""
+    part = assembly.part(name)
+    assert part.mesh is not None
+    mesh, X = part.mesh, part.X_WP
+    corners = mesh.vertices[np.unique(mesh.faces[surfaces[mesh.digest].labels == surface])]
+    heights = (corners @ X[:3, :3].T + X[:3, 3]) @ axis
+    return float(heights.min()), float(heights.max())
