@@ -30,10 +30,14 @@ WRONG = {
     "bounds the wrong way round": ('kind = "mass"\nminimum = 2\nmaximum = 1', "minimum, 2, is above", 2),
     "fit the wrong way round": ('kind = "fit"\nbetween = ["a", "b"]\nminimum = 0.2\nmaximum = -0.1', "is above", 3),
     "no bounds": ('kind = "inertia"\naxis = [0, 0, 1]', "neither minimum nor maximum", 0),
-    "point and direction": (POINT + "direction = [1, 0, 0]\nregion = {type = 'poses', " + ORIGIN + "}", "either a point or a direction", 0),
+    "point and direction": (
+        POINT + "direction = [1, 0, 0]\nregion = {type = 'poses', " + ORIGIN + "}", "either a point or a direction", 0,
+    ),
     "neither point nor direction": ('kind = "reach"\npart = "b"\n' + CONE, "either a point or a direction", 0),
     "cone of points": (POINT + CONE, "region of directions", 4),
-    "box of directions": (DIRECTION + "region = {type = 'box', lower = [0, 0, 0], upper = [1, 1, 1]}", "region of points", 4),
+    "box of directions": (
+        DIRECTION + "region = {type = 'box', lower = [0, 0, 0], upper = [1, 1, 1]}", "region of points", 4,
+    ),
     "box inside out": (POINT + "region = {type = 'box', lower = [0, 2, 0], upper = [1, 1, 1]}", "lower corner", 4),
     "no poses": (POINT + "region = {type = 'poses', points = []}", "list no points", 4),
     "poses that would not be looked at": (
@@ -41,8 +45,12 @@ WRONG = {
     ),
     "tolerance that says nothing": (DIRECTION + "tolerance = 1\n" + CONE, "says nothing", 4),
     "reaction without limit": ('kind = "reaction"\njoint = "j"', "neither force nor torque", 0),
-    "balance without axis": ('kind = "balance"\nof = "b"\naxis = [0, 0, 1]\nlimit = 1', "neither a joint nor axis and point", 0),
-    "balance with two axes": ('kind = "balance"\nof = "b"\njoint = "j"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\nlimit = 1', "too", 3),
+    "balance without axis": (
+        'kind = "balance"\nof = "b"\naxis = [0, 0, 1]\nlimit = 1', "neither a joint nor axis and point", 0,
+    ),
+    "balance with two axes": (
+        'kind = "balance"\nof = "b"\njoint = "j"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\nlimit = 1', "too", 3,
+    ),
     "fit of a part with itself": ('kind = "fit"\nbetween = ["a", "a"]\nminimum = 0', 'both sides are "a"', 2),
     "clear of a part with itself": ('kind = "clear"\nbetween = ["a", "a"]', 'both sides are "a"', 2),
 }  # fmt: skip

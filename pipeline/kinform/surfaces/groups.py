@@ -12,12 +12,16 @@ from kinform.model.arrays import Array, Ints
 __all__ = [
     "Ragged",
     "distinct",
+    "group_mean",
+    "group_range",
     "group_sum",
+    "members",
     "normal_equations",
     "occurrences",
     "ordered_quantile",
     "quantile",
     "solve_normal",
+    "spheres_through",
     "starts_of",
 ]
 

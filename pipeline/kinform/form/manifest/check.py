@@ -10,13 +10,11 @@ from kinform.form.manifest.common import Reference, Table
 
 __all__ = ["CheckTable", "IgnoreTable"]
 
-Rule = Annotated[str, StringConstraints(min_length=1)]
-
 
 class IgnoreTable(Table):
     """`[[check.ignore]]`: findings that are accepted."""
 
-    code: Rule = Field(description="code or name of a rule, such as KF303")
+    code: Reference = Field(description="code or name of a rule, such as KF303")
     subject: Reference | None = Field(
         None, description="part, joint or requirement that the finding is about; default all of the rule"
     )
@@ -28,7 +26,9 @@ class IgnoreTable(Table):
 class CheckTable(Table):
     """`[check]`: how the rules are applied."""
 
-    select: list[Rule] = Field([], description="rules to run: codes, names, or beginnings such as KF2; default all")
+    select: list[Reference] = Field(
+        [], description="rules to run: codes, names, or beginnings such as KF2; default all"
+    )
     severity: dict[str, Literal["note", "warning", "error"]] = Field(
         {}, description="severity of the findings of a rule, by its code or name"
     )

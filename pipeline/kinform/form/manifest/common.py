@@ -34,6 +34,7 @@ Vector = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
 Name = Annotated[str, StringConstraints(min_length=1, pattern=r"^[^/\x00]+$")]
 Reference = Annotated[str, StringConstraints(min_length=1)]
+"""Of a part, joint, material, file or rule."""
 Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 JointType = Literal["fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal"]

@@ -75,9 +75,7 @@ class CsvTable(Table):
     """Linear between the rows of a CSV file of time and value; the first and last value hold outside."""
 
     type: Literal["table"]
-    file: Annotated[str, Field(min_length=1)] = Field(
-        description="CSV file of time (s) and value, relative to the manifest"
-    )
+    file: Reference = Field(description="CSV file of time (s) and value, relative to the manifest")
 
 
 LawTable = Annotated[Constant | Sine | Ramp | CsvTable, Field(discriminator="type")]

@@ -52,10 +52,8 @@ class Part(Posed):
     """`[[part]]`."""
 
     name: Name = Field(description="name of the part, any text but '/', which separates sub-assemblies")
-    mesh: Annotated[str, Field(min_length=1)] | None = Field(
-        None, description="STL or OBJ file, relative to the manifest; absent: a stick body"
-    )
-    body: Annotated[str, Field(min_length=1)] | None = Field(
+    mesh: Reference | None = Field(None, description="STL or OBJ file, relative to the manifest; absent: a stick body")
+    body: Reference | None = Field(
         None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
     )
     units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
@@ -80,7 +78,7 @@ class Subassembly(Posed):
     """`[[subassembly]]`: another manifest, placed as a whole."""
 
     name: Name = Field(description="prefix of its parts, groups and joints, any text but '/'")
-    file: Annotated[str, Field(min_length=1)] = Field(description="manifest, relative to this one")
+    file: Reference = Field(description="manifest, relative to this one")
 
 
 class Assume(Table):

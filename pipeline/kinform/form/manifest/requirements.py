@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest.common import Finite, Name, NonNegative, Positive, Quantity, Reference, Table, Vector
+from kinform.form.manifest.common import Finite, Name, NonNegative, Pair, Positive, Quantity, Reference, Table, Vector
 
 __all__ = ["Require"]
 
@@ -66,7 +66,7 @@ class Follow(_Require):
     kind: Literal["follow"]
     part: Annotated[Reference, Place] = Field(description="part or group that carries the point")
     point: Annotated[Vector, Point] = Field(description="point, at the pose of the meshes")
-    path: Annotated[str, Field(min_length=1), Quantity("path")] = Field(
+    path: Annotated[Reference, Quantity("path")] = Field(
         description="CSV file of time (s), x, y, z and optionally qw, qx, qy, qz, relative to the manifest"
     )
     tolerance: Annotated[Positive, Length] = Field(description="greatest distance from the path")
@@ -172,9 +172,7 @@ class Fit(_Require):
     """A clearance between two parts within bounds; negative is press."""
 
     kind: Literal["fit"]
-    between: Annotated[list[Reference], Field(min_length=2, max_length=2), Place] = Field(
-        description="two parts or groups"
-    )
+    between: Annotated[Pair, Place] = Field(description="two parts or groups")
     minimum: Annotated[Finite | None, Length] = Field(None, description="least clearance")
     maximum: Annotated[Finite | None, Length] = Field(None, description="greatest clearance")
 

@@ -48,7 +48,10 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         tag = context["discriminator"].strip("'")
         if kind == "union_tag_not_found":
-            return f"{where}: {tag} is missing", f"add {tag}: {_choices(node)}"
+            return (
+                f"{where}: {tag} is missing",
+                f"add {tag}: {first_names(sorted(node.get('discriminator', {}).get('mapping', {})))}",
+            )
         choices = [c.strip("'") for c in context["expected_tags"].split(", ")]
         remedy = did_you_mean(str(context["tag"]), choices, f"the values of {tag}")
         return f"{where}: {tag} cannot be {in_quotes(context['tag'])}", remedy
@@ -96,7 +99,7 @@ def names_of(paths: Iterable[Path], raw: Any) -> Iterator[str]:
     for path in paths:
         value = raw
         for step in path:
-            value = _entry(value, step) if _has(value, step) else None
+            value = _entry(value, step)
         if isinstance(value, dict) and isinstance(value.get("name"), str):
             yield value["name"]
 
@@ -122,15 +125,11 @@ def _real_path(loc: tuple[str | int, ...], raw: Any) -> Path:
     path: list[str | int] = []
     value: Any = raw
     for i, step in enumerate(loc):
-        if (isinstance(value, dict) and step in value) or (
-            isinstance(value, list) and isinstance(step, int) and step < len(value)
-        ):
-            value = _entry(value, step)
-        elif i < len(loc) - 1:
-            continue
-        else:
+        if _has(value, step):
+            value = value[step]
+            path.append(step)
+        elif i == len(loc) - 1:
             break
-        path.append(step)
     return tuple(path)
 
 
@@ -139,13 +138,12 @@ def _label(path: Path, raw: Any) -> str:
     keys: list[str] = []
     name, value, listed_table = "", raw, False
     for step in path:
-        value = _entry(value, step) if _has(value, step) else None
-        if isinstance(step, int):
-            if isinstance(value, dict):
-                listed_table = True
-        else:
+        value = _entry(value, step)
+        if isinstance(step, str):
             keys.append(step)
             listed_table = False
+        elif isinstance(value, dict):
+            listed_table = True
         if isinstance(value, dict) and isinstance(value.get("name"), str):
             name = value["name"]
     if not keys:
@@ -155,7 +153,7 @@ def _label(path: Path, raw: Any) -> str:
 
 
 def _entry(value: Any, step: str | int) -> Any:
-    return value[step]
+    return value[step] if _has(value, step) else None
 
 
 def _has(value: Any, step: str | int) -> bool:
@@ -183,28 +181,17 @@ def _value(value: Any) -> str:
     return str(value) if len(str(value)) <= VALUE_LENGTH else f"{str(value)[: VALUE_LENGTH - 3]}…"
 
 
-def _choices(node: dict[str, Any]) -> str:
-    return first_names(_tags(node))
-
-
-def _tags(node: dict[str, Any]) -> Iterator[str]:
-    yield from sorted(node.get("discriminator", {}).get("mapping", {}))
-
-
 def _node(schema: dict[str, Any], loc: tuple[str | int, ...]) -> dict[str, Any]:
     """The part of the JSON Schema that a location stands for; {} where there is none."""
     node = schema
-    described: dict[str, Any] = {}
     for step in loc:
-        node = _resolved(node, schema)
-        described = _below(node, step, schema)
-        node = described
+        node = _below(_resolved(node, schema), step)
         if not node:
             return {}
-    return {**_resolved(node, schema), **{k: v for k, v in described.items() if k == "description"}}
+    return _resolved(node, schema)
 
 
-def _below(node: dict[str, Any], step: str | int, schema: dict[str, Any]) -> dict[str, Any]:
+def _below(node: dict[str, Any], step: str | int) -> dict[str, Any]:
     tags = node.get("discriminator", {}).get("mapping", {})
     if step in tags:
         return {"$ref": tags[step]}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 
 __all__ = ["LineTable", "Path"]
 
@@ -131,30 +131,25 @@ class LineTable:
             self._skip(_SCALAR)
 
     def _array(self, path: Path) -> None:
-        self._position += 1
-        index = 0
-        while True:
-            self._skip(_GAP)
-            if self._peek("]"):
-                break
-            if self._peek(","):
-                self._position += 1
-                continue
+        for index, _ in enumerate(self._entries("]")):
             self._lines[(*path, index)] = self._here()
             self._value((*path, index))
-            index += 1
-        self._position += 1
 
     def _inline(self, path: Path) -> None:
+        for _ in self._entries("}"):
+            self._pair(path)
+
+    def _entries(self, closing: str) -> Iterator[None]:
+        """Stops at each entry between brackets, which whoever asks reads, and behind the closing one."""
         self._position += 1
         while True:
             self._skip(_GAP)
-            if self._peek("}"):
+            if self._peek(closing):
                 break
             if self._peek(","):
                 self._position += 1
                 continue
-            self._pair(path)
+            yield
         self._position += 1
 
     def _peek(self, character: str) -> bool:
