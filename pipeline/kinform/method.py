@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from kinform import stages
     from kinform.reuse.ledger import Ledger
 
+if TYPE_CHECKING:
+    from kinform.results import Earlier
+
 __all__ = ["Progress", "run"]
 
 Progress = Callable[[str, int, int], None]
@@ -48,10 +51,11 @@ def run(
     from kinform import stages  # not before: seeing that nothing changed takes less time than importing them
     from kinform.reuse.ledger import Ledger
 
-    ledger = Ledger.of(output)
+    earlier = _earlier(output)
+    ledger = Ledger(earlier)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
-    design = stages.joints(design, jobs=jobs, ledger=ledger)
+    design = stages.joints(design, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
     design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
     design = stages.check(design, ledger=ledger)
@@ -59,7 +63,8 @@ def run(
     if output is not None:
         from kinform import results
 
-        ledger.close()
+        if earlier is not None:
+            earlier.close()
         results.write(design, output)
     return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
 
@@ -77,6 +82,15 @@ def _import(
         problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
         raise InputError([problem])
     return stages.import_(paths[0], allow_outside=allow_outside, ledger=ledger)
+
+
+def _earlier(output: str | Path | None) -> Earlier | None:
+    """What an earlier run has left in `output`, if anything. Raises ResultsError where it could not be written."""
+    if output is None:
+        return None
+    from kinform import results
+
+    return results.earlier(output)
 
 
 def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:

@@ -18,7 +18,7 @@ import kinform
 from kinform.design import Design
 from kinform.model.assembly import Assembly
 from kinform.model.function import Function
-from kinform.reuse import fingerprints, inputs
+from kinform.reuse import dependence, fingerprints
 from kinform.reuse.digest import digest
 
 PACKAGE = Path(kinform.__file__).parent
@@ -87,26 +87,28 @@ def _imports(package: str) -> set[str]:
 
 @pytest.mark.parametrize("stage", ["surfaces", "contacts", "joints", "mass", "simulation", "findings"])
 def test_the_version_of_all_code_that_a_stage_imports_is_in_its_fingerprint(stage: str) -> None:
-    counted = set(fingerprints._CODE[stage])
+    counted = set(dependence.CODE[stage])
     for package in counted:
         assert _imports(package) <= counted
 
 
-@pytest.mark.parametrize("stage", ["contacts", "joints", "mass", "simulation", "findings"])
-def test_a_fingerprint_covers_every_field_of_the_assembly(stage: str) -> None:
-    fields = {field.name for field in dataclasses.fields(Assembly)}
-    assert set(fingerprints._ASSEMBLY_FIELDS) == fields
+@SETTINGS
+@given(design=designs())
+def test_a_fingerprint_covers_every_field_of_the_assembly(design: Design) -> None:
+    fields = {field.name.replace("_", " ") for field in dataclasses.fields(Assembly)}
+    for stage in dependence.STAGES:
+        assert fields <= set(fingerprints.of_stage(stage, design, {}))
 
 
 @SETTINGS
 @given(design=designs())
 def test_what_a_stage_sees_has_no_files_and_lines_except_for_the_findings(design: Design) -> None:
-    for stage in ("contacts", "joints", "mass", "simulation"):
-        view = inputs.assembly_for(stage, design.assembly)
+    for stage in (dependence.CONTACTS, dependence.JOINTS, dependence.MASS, dependence.SIMULATION):
+        view = stage.view(design.assembly)
         function, request = view.function, view.simulation
         placed = [*function.joints, *function.couplings, *function.drives, *function.loads]
         assert all(item.file == "" and item.line is None for item in placed)
         assert request is None or (request.file is None and request.line is None)
         assert not any(item.source.line for item in (view, *view.parts, *view.groups, *view.assumptions))
         assert [part.name for part in view.parts] == [part.name for part in design.assembly.parts]
-    assert inputs.assembly_for("findings", design.assembly) is design.assembly
+    assert dependence.FINDINGS.view(design.assembly) is design.assembly

@@ -125,12 +125,12 @@ def test_stages_on_results_of_other_code_do_not_pass_for_a_run(pair: Path, monke
 def test_versions_are_read_without_importing_and_are_those_of_the_packages() -> None:
     import importlib
 
-    from kinform.reuse import fingerprints
+    from kinform.reuse import dependence, fingerprints
 
-    for packages in fingerprints._CODE.values():
+    for packages in dependence.CODE.values():
         for package in packages:
             stated = importlib.import_module(f"kinform.{package}").CODE_VERSION
-            assert fingerprints._stated_version(package) == stated
+            assert fingerprints.stated_version(package) == stated
 
 
 def test_a_mesh_that_changed_while_it_was_read_leaves_no_lineage(pair: Path, monkeypatch: pytest.MonkeyPatch) -> None:

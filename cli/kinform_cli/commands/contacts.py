@@ -24,13 +24,14 @@ def contacts(source: Results, output: Output, jobs: Jobs = None) -> None:
 
     What is still valid in an earlier output is reused.
     """
-    from kinform import stages
+    from kinform import results, stages
     from kinform.reuse.ledger import Ledger
 
     def stage(design: Design, working: Working) -> Design:
-        ledger = Ledger.of(output)
-        design = stages.contacts(design, jobs=cores(jobs), progress=working, ledger=ledger)
-        ledger.close()
+        earlier = results.earlier(output)
+        design = stages.contacts(design, jobs=cores(jobs), progress=working, ledger=Ledger(earlier))
+        if earlier is not None:
+            earlier.close()
         return design
 
     contacts = files.advance(source, output, "contacts", stage).contacts

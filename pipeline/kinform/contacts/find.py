@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 from kinform.contacts.fastening import suggest
 from kinform.contacts.overlap.solids import SolidStore
 from kinform.contacts.pair import PairContacts, pair_contacts
 from kinform.contacts.search.candidates import Pair, candidate_pairs
 from kinform.foundation.meshes.index import MeshStore
+from kinform.foundation.processes import map_in_processes
 from kinform.foundation.progress import Progress
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
@@ -36,38 +36,6 @@ class _Work:
         return pair_contacts(parts, self.surfaces, self.store, self.solids, self.tolerance[pair], tolerances)
 
 
-_worker: _Work | None = None
-
-
-def _start_worker(work: _Work) -> None:
-    global _worker
-    _worker = work
-
-
-def _in_worker(pair: Pair) -> PairContacts:
-    assert _worker is not None
-    return _worker.contacts(pair)
-
-
-def _compute(work: _Work, pairs: list[Pair], jobs: int) -> Iterator[PairContacts]:
-    """Contacts of the pairs, in their order, whatever the number of jobs."""
-    if jobs <= 1 or len(pairs) < 2:
-        yield from map(work.contacts, pairs)
-        return
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-
-    pool: Any
-    if "fork" in multiprocessing.get_all_start_methods():
-        context = multiprocessing.get_context("fork")
-        pool = ProcessPoolExecutor(jobs, context, initializer=_start_worker, initargs=(work,))
-        task: Callable[[Pair], PairContacts] = _in_worker
-    else:
-        pool, task = ThreadPoolExecutor(jobs), work.contacts
-    with pool:
-        yield from pool.map(task, pairs)
-
-
 def find(
     assembly: Assembly,
     surfaces: dict[str, MeshSurfaces],
@@ -88,11 +56,8 @@ def find(
     reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance)
-    done: dict[Pair, PairContacts] = {}
-    for count, (pair, of_pair) in enumerate(zip(wanted, _compute(work, wanted, jobs), strict=True), start=1):
-        done[pair] = of_pair
-        if progress is not None:
-            progress(count, len(wanted))
+    computed = map_in_processes(work.contacts, wanted, jobs, progress)
+    done: dict[Pair, PairContacts] = dict(zip(wanted, computed, strict=True))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)
     contacts = Contacts(

@@ -1,7 +1,8 @@
 """Steps that depend on nothing but what they are given: somebody may know their results from an earlier run.
 
-Steps: what contact decides of a pair ("pair"), how it comes apart ("leaving", "opened"), what a body does idly
-("idle"), how the loops of a block move ("finite"). Who knows, and how long, is not known here."""
+Steps: what contact decides of a pair ("pair"), and which contacts of a block can open together ("opened"). Who
+knows, and how long, is not known here.
+"""
 
 from __future__ import annotations
 

@@ -27,8 +27,6 @@ AT_REST = 1e-9
 
 # --- derivation -----------------------------------------------------------------------------------------------------
 
-MANY_JOINTS = 48
-"""Joints from which it pays to begin another process."""
 MOST_BASIS_NUMBERS = 1_000_000
 """Largest dense basis of freedoms that is kept; the named freedoms are sparse."""
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +16,7 @@ from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import fasten, label_inferred, turn_about_suggested_axes
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import intended_joints, stated_joints
-from kinform.kinematics.constants import MANY_JOINTS, MOST_BASIS_NUMBERS
+from kinform.kinematics.constants import MOST_BASIS_NUMBERS
 from kinform.kinematics.loops.closure import Closure, body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.mobility.couplings import couplings_between
@@ -41,10 +39,6 @@ from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["derive", "functional", "mobility_within"]
-
-
-Beside = Callable[[Callable[[], Any], Callable[[], Any]], tuple[Any, Any]]
-"""Gives what two computations give."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +72,12 @@ def derive(
     surfaces: Mapping[str, MeshSurfaces],
     contacts: Contacts,
     answers: Answers | None = None,
-    beside: Beside | None = None,
 ) -> Kinematics:
     """Bodies, joints, J and mobility of an assembly whose contacts are known.
 
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function]. What is asked of
-    single pairs, and of all together, may be known to `answers`. What needs nothing of each other may be computed
-    `beside` each other.
+    single pairs, and of all together, may be known to `answers`.
     """
     merger, extents = Merger(assembly), Extents(assembly)
     patches, size = bare_patches(contacts.patches), extents.assembly
@@ -115,7 +107,7 @@ def derive(
         answers=answers,
     )
     misaligned = ((name, a.angle, a.offset) for name, a in by_contact.items() if a.angle > 0.0 or a.offset > 0.0)
-    return replace(_moves_and_parts(mechanism, beside), misfit=misfit, misaligned=tuple(misaligned))
+    return replace(_moves_and_parts(mechanism), misfit=misfit, misaligned=tuple(misaligned))
 
 
 def functional(assembly: Assembly) -> Kinematics:
@@ -159,13 +151,10 @@ def _clusters(assembly: Assembly, contacts: Contacts) -> tuple[Body, ...]:
     return merger.bodies()
 
 
-def _moves_and_parts(mechanism: _Mechanism, beside: Beside | None = None) -> Kinematics:
-    """The kinematics of a mechanism: mobility and separations need nothing of each other."""
-    moving, parting = partial(_mobility, mechanism), partial(_separations, mechanism)
-    if beside is None or len(mechanism.graph.joints) < MANY_JOINTS:
-        (matrix, joints, apart, reason), (mobility, couplings) = parting(), moving()
-    else:
-        (matrix, joints, apart, reason), (mobility, couplings) = beside(parting, moving)
+def _moves_and_parts(mechanism: _Mechanism) -> Kinematics:
+    """The kinematics of a mechanism."""
+    matrix, joints, apart, reason = _separations(mechanism)
+    mobility, couplings = _mobility(mechanism)
     bodies = mechanism.graph.bodies
     return Kinematics(bodies, joints, matrix, mobility, Misfit(), (), apart, reason, couplings)
 
@@ -179,11 +168,11 @@ def _mobility(mechanism: _Mechanism) -> tuple[Mobility, tuple[Coupling, ...]]:
     count = closure.mobility
     hard = [strict.get(joint.name, joint.twists) for joint in joints]
     blocked = graph.close(size, doubts, hard).mobility if strict else count
-    turns = idle_turns(assembly, graph, patches, size, mechanism.balls, mechanism.answers)
+    turns = idle_turns(assembly, graph, patches, size, mechanism.balls)
     idle = sum(map(len, turns.values()))
     couplings = couplings_between(assembly, graph, patches, closure)
     constant = {coupling.through for coupling in couplings if coupling.meshing is not None}
-    finite = finite_mobility(graph.edges, joints, nodes, count, size, couplings, mechanism.answers)
+    finite = finite_mobility(graph.edges, joints, nodes, count, size, couplings)
     within = [redundancy_within(joint, patches, assembly.tolerances) for joint in joints]
     mobility = Mobility(
         instantaneous=count,
@@ -213,7 +202,7 @@ def _separations(
     matrix = constraint_matrix(bodies, mechanism.graph.joints, patches, mechanism.extremes)
     rows = ContactRows(matrix, bodies, patches)
     cones = pair_cones(rows, mechanism.graph.joints)
-    joints = with_releases(mechanism.graph.joints, cones, mechanism.answers)
+    joints = with_releases(mechanism.graph.joints, cones)
     links = links_between(clusters, bodies, joints, patches, rows)
     ground = next(k for k, cluster in enumerate(clusters) if cluster.ground)
     apart, reason = separations([cluster.name for cluster in clusters], ground, links, mechanism.answers)

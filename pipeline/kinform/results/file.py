@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from kinform.model.simulation import Simulation
     from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["SCHEMA", "Earlier", "check_output", "files_of", "read", "read_if_current", "to_bytes", "write"]
+__all__ = ["SCHEMA", "Earlier", "check_output", "earlier", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
 SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"
@@ -92,6 +92,16 @@ def read(path: str | Path) -> Design:
     """
     with Earlier(path) as found:
         return found.design
+
+
+def earlier(path: str | Path) -> Earlier | None:
+    """What an earlier run has left at `path`, which is about to be written; None where there is nothing.
+
+    Raises ResultsError when `write` would refuse this path.
+    """
+    check_output(path)
+    target = Path(path)
+    return Earlier(path) if target.exists() and target.stat().st_size > 0 else None
 
 
 class Earlier:

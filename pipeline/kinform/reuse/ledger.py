@@ -4,46 +4,52 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from kinform.design import Design
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.fingerprints import Fingerprints
+from kinform.model.mass import MassReport
+from kinform.model.surfaces import MeshSurfaces
+from kinform.reuse.fingerprints import few
 
-if TYPE_CHECKING:
-    from kinform.results import Earlier
+__all__ = ["EarlierResults", "Ledger"]
 
-__all__ = ["Ledger"]
+
+class EarlierResults(Protocol):
+    """A design, whole or read as it is asked for (`kinform.results.Earlier`); further fields as of Design."""
+
+    @property
+    def assembly(self) -> Assembly: ...
+
+    @property
+    def surfaces(self) -> dict[str, MeshSurfaces]: ...
+
+    @property
+    def contacts(self) -> Contacts | None: ...
+
+    @property
+    def mass(self) -> MassReport | None: ...
+
+    @property
+    def fingerprints(self) -> Fingerprints: ...
 
 
 @dataclass
 class Ledger:
     """Earlier results of the same output, if any, and the account of what became of them."""
 
-    previous: Design | Earlier | None = None
+    previous: EarlierResults | None = None
     reused: list[str] = field(default_factory=list)
     """Sentences, in the order of the stages."""
     recomputed: list[str] = field(default_factory=list)
     """Sentences with the reason, in the order of the stages."""
     _computed: list[str] = field(default_factory=list)
 
-    @classmethod
-    def of(cls, output: str | Path | None) -> Ledger:
-        """The ledger of a run that writes to `output`: checked now, before any work is done.
-
-        Raises ResultsError when `output` cannot be written or holds something else than results.
-        """
-        if output is None:
-            return cls()
-        from kinform import results
-
-        results.check_output(output)
-        path = Path(output)
-        return cls(results.Earlier(path) if path.exists() and path.stat().st_size > 0 else None)
-
-    def close(self) -> None:
-        """Let go of the earlier file: it is about to be replaced."""
-        if self.previous is not None and not isinstance(self.previous, Design):
-            self.previous.close()
+    @property
+    def fingerprints(self) -> Fingerprints:
+        """Those of the earlier results; empty ones where there are none."""
+        return Fingerprints() if self.previous is None else self.previous.fingerprints
 
     def keep(self, what: str) -> None:
         """Note that `what` is taken over."""
@@ -62,16 +68,16 @@ class Ledger:
         return f"{self._cause(files)} → {', '.join(self._computed)}"
 
     def _cause(self, files: Mapping[str, str]) -> str:
-        from kinform.reuse.fingerprints import listed
-
         if self.previous is None:
             return "no earlier results"
-        before = self.previous.fingerprints.files
+        before = self.fingerprints.files
         if not before or not files:
             return "earlier results do not say which files they were made of"
         changed = sorted(name for name in files if name in before and files[name] != before[name])
-        causes = [f"{listed(changed)} changed"] if changed else []
         new, gone = sorted(set(files) - set(before)), sorted(set(before) - set(files))
-        causes += [f"{listed(new)} added"] if new else []
-        causes += [f"{listed(gone)} left out"] if gone else []
+        causes = [
+            f"{few(names)} {what}"
+            for names, what in ((changed, "changed"), (new, "added"), (gone, "left out"))
+            if names
+        ]  # fmt: skip
         return ", ".join(causes) or "other settings, or another version of kinform"

@@ -13,13 +13,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from kinform.reuse import fingerprints
+from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.digest import digest
 from kinform.version import __version__
 
-__all__ = ["STAGES", "current", "following", "of_files"]
-
-STAGES = ("assembly", "contacts", "joints", "mass", "simulation", "findings")
-_CODE = {stage: (stage,) for stage in STAGES} | {"contacts": ("surfaces", "contacts")}
+__all__ = ["before", "current", "following", "of_files"]
 
 
 def of_files(manifest: str, files: Mapping[str, str]) -> str:
@@ -29,10 +27,16 @@ def of_files(manifest: str, files: Mapping[str, str]) -> str:
     return digest("assembly", __version__, fingerprints.versions_of("assembly"), manifest, dict(files))
 
 
-def following(stage: str, previous: str, level: str | None = None) -> str:
-    """The lineage of a stage's result, from that of the stage before; "" where that is not known."""
-    versions = [fingerprints.versions_of(part) for part in _CODE[stage]]
-    return digest(stage, versions, level, previous) if previous else ""
+def following(stage: Stage, previous: str, asked: str | None = None) -> str:
+    """The lineage of a stage's result, from that of the stage before; "" where that is not known. `asked` as of `advance`."""
+    versions = [fingerprints.versions_of(kind) for kind in stage.code]
+    return digest(stage.name, versions, asked, previous) if previous else ""
+
+
+def before(stage: Stage) -> str:
+    """The name of the stage before."""
+    place = STAGES.index(stage)
+    return STAGES[place - 1].name if place else "assembly"
 
 
 def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
@@ -63,7 +67,7 @@ def current(manifest: Path, files: Mapping[str, str], *, allow_outside: bool) ->
     """The lineage that the findings of a run would have now, if it read the same files as before; "" otherwise."""
     if manifest.name not in files or not _same(manifest.parent, files, allow_outside=allow_outside):
         return ""
-    found = of_files(manifest.name, files)
-    for stage in STAGES[1:]:
-        found = following(stage, found)
-    return found
+    descent = of_files(manifest.name, files)
+    for stage in STAGES:
+        descent = following(stage, descent)
+    return descent

@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.words import counted, listed
-from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import LEAST_FRAME, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.kinematics.mobility.closed_pose import first_order
@@ -51,7 +49,6 @@ def finite_mobility(
     instantaneous: int,
     size: float,
     ties: Sequence[Coupling] = (),
-    answers: Answers | None = None,
 ) -> Finite:
     """Finite mobility of joints between bodies 0 … nodes−1 (`edges`, in the order of `joints`) that have
     `instantaneous` freedoms of first order; `size` of the assembly (m); `ties`: couplings of constant ratio, which
@@ -67,8 +64,7 @@ def finite_mobility(
             open_ended += joints[block[0]].freedoms
             continue
         couplings = tuple(tie for tie in ties if any(joints[k].name == tie.through for k in block))
-        question = ([edges[k] for k in block], [joints[k] for k in block], size, couplings)
-        certificate = ask(answers, "finite", question, partial(_block, *question))
+        certificate = _block([edges[k] for k in block], [joints[k] for k in block], size, couplings)
         if certificate is not None:
             certificates.append(certificate)
     first = [c.instantaneous for c in certificates if c.instantaneous is not None]

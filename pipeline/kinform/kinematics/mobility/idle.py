@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, perpendicular
-from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.constants import (
     IDLE_AXIS,
@@ -64,7 +62,6 @@ def idle_turns(
     patches: Sequence[Patch],
     size: float,
     balls: Mapping[tuple[int, PartName], Array],
-    answers: Answers | None,
 ) -> dict[BodyName, Array]:
     """(k, 6) independent idle turns (ω; v at the world's origin) of each body whose joints all come from contact.
 
@@ -92,7 +89,7 @@ def idle_turns(
             centres = {n: balls[k, p] for n, k in enumerate(indices) for p in body.parts if (k, p) in balls}
         named = [w for j in joints for w in intended[j.bodies]]
         held = _Held(body.ground, joints, [patches[k] for k in indices], named, size, centres)
-        out[body.name] = ask(answers, "idle", tuple(vars(held).values()), partial(_idle_turns, held))
+        out[body.name] = _idle_turns(held)
     return out
 
 

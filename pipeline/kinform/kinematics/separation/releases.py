@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import (
     CONE_FREE,
     CONE_HELD,
@@ -38,9 +36,7 @@ class Leaving:
     held_reason: str = ""
 
 
-def with_releases(
-    joints: Sequence[Joint], cones: Sequence[Cone | None], answers: Answers | None = None
-) -> tuple[Joint, ...]:
+def with_releases(joints: Sequence[Joint], cones: Sequence[Cone | None]) -> tuple[Joint, ...]:
     """The joints with whether contact holds them, and how they come apart."""
     certain = iter(certainly_held([cone for cone in cones if cone is not None]))
     out = []
@@ -50,7 +46,7 @@ def with_releases(
         elif next(certain):
             out.append(replace(joint, held=True))
         else:
-            out.append(replace(joint, **vars(ask(answers, "leaving", (cone,), partial(leaving_of, cone)))))
+            out.append(replace(joint, **vars(leaving_of(cone))))
     return tuple(out)
 
 

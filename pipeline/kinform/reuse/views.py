@@ -1,45 +1,30 @@
 """What each stage sees of the assembly, which is also what its fingerprint covers.
 
-A stage is given these reduced assemblies instead of the whole one, so it cannot come to depend on
-something that its fingerprint leaves out: a moved line in the manifest or a requirement that was added
-reaches the findings and nothing before them.
+A stage is given these reduced assemblies instead of the whole one, so it cannot come to depend on something that its
+fingerprint leaves out: a moved line in the manifest or a requirement that was added reaches the findings and nothing
+before them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from kinform.model.assembly import Assembly, Mesh, Part, Source
+from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
 
-if TYPE_CHECKING:
-    pass
+__all__ = ["everything", "for_contacts", "for_joints", "for_mass", "for_motion"]
 
-__all__ = ["assembly_for", "bare_mesh"]
-
-_NOWHERE = Source("")
+NOWHERE = Source("")
 
 
-def assembly_for(stage: str, assembly: Assembly) -> Assembly:
-    """The assembly as the stage contacts, joints, mass, simulation or findings sees it."""
-    return _VIEWS[stage](assembly)
-
-
-def bare_mesh(mesh: Mesh) -> Mesh:
-    """The shape, without the file that it came from."""
-    return mesh.bare
-
-
-def _shapes(assembly: Assembly) -> Assembly:
+def for_contacts(assembly: Assembly) -> Assembly:
     """Shapes and poses, groups, and pairs that are declared not to touch."""
     return replace(
         _bare(assembly),
         parts=_weightless(_bare(assembly).parts),
         assumptions=tuple(
-            replace(a, type=None, axis=None, point=None, pitch=None, reason="", source=_NOWHERE)
+            replace(a, type=None, axis=None, point=None, pitch=None, reason="", source=NOWHERE)
             for a in assembly.assumptions
             if a.ignore
         ),
@@ -50,7 +35,7 @@ def _shapes(assembly: Assembly) -> Assembly:
     )
 
 
-def _bodies_and_joints(assembly: Assembly) -> Assembly:
+def for_joints(assembly: Assembly) -> Assembly:
     """What decides bodies and joints: of the function, only the joints that it names, and where there are no meshes its
     couplings; densities, only where the heaviest body becomes the ground."""
     bare, function = _bare(assembly), _bare_function(assembly.function)
@@ -60,7 +45,7 @@ def _bodies_and_joints(assembly: Assembly) -> Assembly:
     return replace(bare, parts=parts, function=Function(joints=joints, couplings=couplings), simulation=None)
 
 
-def _densities(assembly: Assembly) -> Assembly:
+def for_mass(assembly: Assembly) -> Assembly:
     """Shapes, poses, densities and stated masses."""
     return replace(
         _bare(assembly),
@@ -73,37 +58,28 @@ def _densities(assembly: Assembly) -> Assembly:
     )
 
 
-def _motion(assembly: Assembly) -> Assembly:
+def for_motion(assembly: Assembly) -> Assembly:
     """Everything but requirements and the intended mobility."""
     function = replace(_bare_function(assembly.function), mobility=None, requirements=())
     request = None if assembly.simulation is None else _bare_request(assembly.simulation)
     return replace(_bare(assembly), function=function, simulation=request)
 
 
-def _everything(assembly: Assembly) -> Assembly:
+def everything(assembly: Assembly) -> Assembly:
+    """All of it: findings say where in the manifest things are."""
     return assembly
-
-
-_VIEWS: dict[str, Callable[[Assembly], Assembly]] = {
-    "contacts": _shapes,
-    "joints": _bodies_and_joints,
-    "mass": _densities,
-    "simulation": _motion,
-    "findings": _everything,
-}
 
 
 def _bare(assembly: Assembly) -> Assembly:
     """Without names of files, lines and materials; meshes stay shared."""
-    meshes = {id(part.mesh): bare_mesh(part.mesh) for part in assembly.parts if part.mesh is not None}
     return replace(
         assembly,
         name="",
-        parts=tuple(_bare_part(part, meshes.get(id(part.mesh))) for part in assembly.parts),
-        groups=tuple(replace(group, source=_NOWHERE) for group in assembly.groups),
-        assumptions=tuple(replace(a, source=_NOWHERE) for a in assembly.assumptions),
+        parts=tuple(map(_bare_part, assembly.parts)),
+        groups=tuple(replace(group, source=NOWHERE) for group in assembly.groups),
+        assumptions=tuple(replace(a, source=NOWHERE) for a in assembly.assumptions),
         subassemblies=(),
-        source=_NOWHERE,
+        source=NOWHERE,
         files=(),
         notes=(),
         check=CheckSettings(),
@@ -114,8 +90,9 @@ def _weightless(parts: tuple[Part, ...]) -> tuple[Part, ...]:
     return tuple(replace(part, density=None, override=None) for part in parts)
 
 
-def _bare_part(part: Part, mesh: Mesh | None) -> Part:
-    return replace(part, mesh=mesh, material=None, units="m", source=_NOWHERE)
+def _bare_part(part: Part) -> Part:
+    mesh = part.mesh and part.mesh.bare
+    return replace(part, mesh=mesh, material=None, units="m", source=NOWHERE)
 
 
 def _bare_function(function: Function) -> Function:
