@@ -11,15 +11,13 @@ from kinform.design import Design
 from kinform.errors import Problem, ResultsError, StageError
 
 if TYPE_CHECKING:
+    from kinform.behaviour import Behaviour
     from kinform.model.assembly import Assembly, Part
     from kinform.model.contacts import Contacts
     from kinform.model.findings import CheckReport, Finding
     from kinform.model.kinematics import Body, Joint, Mobility
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
-
-if TYPE_CHECKING:
-    from kinform.behaviour import Behaviour
 
 __all__ = ["Named", "Outcome", "Results", "open_results"]
 
@@ -30,7 +28,7 @@ class _HasName(Protocol):
 
 
 Item = TypeVar("Item", bound=_HasName, covariant=True)
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 class Named(Mapping[str, Item], Generic[Item]):
@@ -82,7 +80,7 @@ class Results:
     @property
     def contacts(self) -> Contacts:
         """Contact patches between surfaces, and interferences."""
-        return _known(self.design.contacts, "contacts", "contacts")
+        return _computed(self.design.contacts, "contacts", "contacts")
 
     @property
     def parts(self) -> Named[Part]:
@@ -92,39 +90,39 @@ class Results:
     @property
     def bodies(self) -> Named[Body]:
         """Parts that move as one, by name."""
-        found = _known(self.design.kinematics, "bodies", "joints").bodies
-        return Named("body", found, lambda body: ", ".join(body.parts) + (" (ground)" if body.ground else ""))
+        bodies = _computed(self.design.kinematics, "bodies", "joints").bodies
+        return Named("body", bodies, lambda body: ", ".join(body.parts) + (" (ground)" if body.ground else ""))
 
     @property
     def joints(self) -> Named[Joint]:
         """Joints between bodies, by name: type, axis, point, freedoms, status, evidence."""
-        found = _known(self.design.kinematics, "joints", "joints").joints
+        found = _computed(self.design.kinematics, "joints", "joints").joints
         return Named("joint", found, lambda joint: f"{joint.type} ({joint.status})")
 
     @property
     def mobility(self) -> Mobility:
         """Mobility of the whole, relative to ground."""
-        return _known(self.design.kinematics, "mobility", "joints").mobility
+        return _computed(self.design.kinematics, "mobility", "joints").mobility
 
     @property
     def mass(self) -> Named[MassProperties]:
         """Mass properties of the bodies, by name (kg, m, kg·m², world axes)."""
-        return Named("body", _known(self.design.mass, "mass", "mass").bodies, _describe_mass)
+        return Named("body", _computed(self.design.mass, "mass", "mass").bodies, _describe_mass)
 
     @property
     def part_mass(self) -> Named[MassProperties]:
         """Mass properties of the parts, by name."""
-        return Named("part", _known(self.design.mass, "mass", "mass").parts, _describe_mass)
+        return Named("part", _computed(self.design.mass, "mass", "mass").parts, _describe_mass)
 
     @property
     def behaviour(self) -> Behaviour:
         """The port model: components with ports, joined at nodes, flat (`system`) and in systems (`nested`)."""
-        return _known(self.design.behaviour, "behaviour", "simulate")
+        return _computed(self.design.behaviour, "behaviour", "simulate")
 
     @property
     def simulation(self) -> Simulation:
         """Trajectories, joint values and efforts, energy over time."""
-        return _known(self.design.simulation, "simulation", "simulate")
+        return _computed(self.design.simulation, "simulation", "simulate")
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -134,7 +132,7 @@ class Results:
     @property
     def report(self) -> CheckReport:
         """Findings, and which rules ran, were skipped, or could not decide."""
-        return _known(self.design.report, "findings", "check")
+        return _computed(self.design.report, "findings", "check")
 
     def summary(self, topic: str | None = None) -> dict[str, Any]:
         """What `kinform show --format json` prints of a topic, or of all; see `kinform.reports.summary`."""
@@ -143,7 +141,7 @@ class Results:
         return reports.summary(self.design, topic)
 
     def save(self, path: str | Path) -> None:
-        """Write the results file; see the contract of the results file. Raises ResultsError."""
+        """Write the results file, whole or not at all. Raises ResultsError."""
         from kinform import results
 
         results.write(self.design, path)
@@ -204,10 +202,10 @@ class Outcome(Results):
             return None
 
         def read() -> Design:
-            found = results.read(output)
-            if found.fingerprints.lineage != gist.fingerprints.lineage:
+            design = results.read(output)
+            if design.fingerprints.lineage != gist.fingerprints.lineage:
                 raise ResultsError(Problem("was replaced after the run that found it unchanged", str(output)))
-            return found
+            return design
 
         reused = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")
         return cls(read, reused, account="nothing changed: everything is reused", gist=gist)
@@ -228,7 +226,7 @@ def open_results(path: str | Path) -> Results:
     return Results(results.read(path))
 
 
-def _known(found: Found | None, what: str, command: str) -> Found:
-    if found is None:
+def _computed(result: Result | None, what: str, command: str) -> Result:
+    if result is None:
         raise StageError(what, command)
-    return found
+    return result

@@ -39,18 +39,13 @@ class Design:
     @property
     def ranged(self) -> Kinematics | None:
         """The kinematics with the ranges of joints that the simulation found."""
-        found = self.simulation.ranges if self.simulation is not None else None
-        if self.kinematics is None or found is None:
+        ranges = self.simulation.ranges if self.simulation is not None else None
+        if self.kinematics is None or ranges is None:
             return self.kinematics
-        known = {item.joint: item for item in found}
+        of_joint = {item.joint: item for item in ranges}
         joints = tuple(
-            replace(
-                joint,
-                range_lower=known[joint.name].lower.value,
-                range_upper=known[joint.name].upper.value,
-                range_status=known[joint.name].status,
-            )
-            if joint.name in known
+            replace(joint, range_lower=item.lower.value, range_upper=item.upper.value, range_status=item.status)
+            if (item := of_joint.get(joint.name)) is not None
             else joint
             for joint in self.kinematics.joints
         )

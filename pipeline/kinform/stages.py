@@ -1,8 +1,8 @@
 """The stages of the method, one function each: a design goes in, a design with more in it comes out.
 
-A stage takes over what an earlier run has left in the ledger where it is known that it would come out the same, computes it
-otherwise, and drops whatever later stages had made of the old result (`kinform.reuse`). Packages are imported by the stage
-that needs them.
+A stage takes over what an earlier run has left in the ledger where it is known that it would come out the same,
+computes it otherwise, and drops whatever later stages had made of the old result (`kinform.reuse`). Packages are
+imported by the stage that needs them.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
-Known = TypeVar("Known")
+Computed = TypeVar("Computed")
 
 
 def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger | None = None) -> Design:
@@ -120,8 +120,8 @@ def simulate(
     say: Callable[[str], None] | None = None,
     ledger: Ledger | None = None,
 ) -> Design:
-    """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint goes:
-    where `ranges` says so, else where the function states ranges or requirements. Raises StageError without mass
+    """Motion at the level that is known, or at `level`, with what the parts collide with in it; and how far each joint
+    goes: where `ranges` says so, else where the function states ranges or requirements. Raises StageError without mass
     properties.
 
     `say` is told what takes long besides the steps that `progress` counts.
@@ -171,7 +171,7 @@ def check(design: Design, *, ledger: Ledger | None = None) -> Design:
     return advance(FINDINGS, design, judge, ledger or Ledger())
 
 
-def _needed(result: Known | None, stage: str, command: str) -> Known:
+def _needed(result: Computed | None, stage: str, command: str) -> Computed:
     if result is None:
         raise StageError(f"`{stage}`", command)
     return result
@@ -210,8 +210,8 @@ def _read(
 def _with_collisions(
     design: Design, view: Assembly, run: Simulation, ranges: bool, finer: Callable[[int], Simulation]
 ) -> Simulation:
-    """The run with its collisions and, with `ranges`, how far joints go, as far as there are meshes. `finer` gives the run
-    with so many times as many output times."""
+    """The run with its collisions and, with `ranges`, how far joints go, as far as there are meshes. `finer` gives the
+    run with so many times as many output times."""
     if not design.surfaces or design.kinematics is None or all(part.mesh is None for part in view.parts):
         return run
     if len(run.time) > 1:

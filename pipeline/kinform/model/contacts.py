@@ -23,9 +23,9 @@ class Patch:
     surfaces: Annotated[tuple[int, int], columns("surface_a", "surface_b")]
     """Index of the surface in each part's MeshSurfaces."""
     kind: str
-    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus, revolution, extrusion: of facets, so
-    that the common turn or slide stays free; helicoid: of the profile, so that the common screw does. Else: other (planes
-    that touch askew), freeform (normals of facets), point and line (higher pairs)."""
+    """plane, cylinder, cone, sphere, …: of the analytic surface(s) that gave the normals. torus, revolution, extrusion:
+    of facets, so that the common turn or slide stays free; helicoid: of the profile, so that the common screw does.
+    Else: other (planes that touch askew), freeform (normals of facets), point and line (higher pairs)."""
     one_sided: bool
     """True: analytic on one side, facets of no known surface on the other."""
     points: Array

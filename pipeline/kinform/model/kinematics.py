@@ -247,7 +247,8 @@ class Freedom:
     looped: bool
     """Whether loops must close for it: other joints follow."""
     drives: tuple[Annotated[tuple[JointName, int, RateRatio], columns("joint", "twist", "rate")], ...]
-    """(joint, index of its twist, rate) where not zero, the driver's rate being ±1 (rad/s, m/s); empty without driver."""
+    """(joint, index of its twist, rate) where not zero, the driver's rate being ±1 (rad/s, m/s); empty without
+    driver."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,7 +273,7 @@ class Redundancy:
 
 @dataclass(frozen=True, eq=False)
 class Mobility:
-    """Mobility relative to ground, defined in the results contract."""
+    """How many independent motions the bodies have together, relative to ground, and which."""
 
     instantaneous: int
     finite: int | None
@@ -317,7 +318,8 @@ class Meshing:
     pitches: Annotated[tuple[float, float], "rad or m", columns("pitch_a", "pitch_b")]
     """rad or m."""
     deviation: JointValue
-    """rad or m of the first: by how much the motion of the meshes leaves the ratio while one tooth passes, peak to peak."""
+    """rad or m of the first: by how much the motion of the meshes leaves the ratio while one tooth passes, peak to
+    peak."""
     play: JointValue
     """rad or m of the first, the second held: the least while one tooth passes."""
     reach: Annotated[tuple[float, float], "rad or m", columns("reach_lower", "reach_upper")]

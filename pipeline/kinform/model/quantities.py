@@ -1,7 +1,7 @@
 """What the numbers of a record measure, said where its fields are declared.
 
-`area: Annotated[float, "m²"]` is a float to everybody; whoever writes records down reads the unit from the annotation, and
-where one field holds several numbers, what each of them is called (`Columns`). The types below are those that occur
+`area: Annotated[float, "m²"]` is a float to everybody; whoever writes records down reads the unit from the annotation,
+and where one field holds several numbers, what each of them is called (`Columns`). The types below are those that occur
 often. A field without a unit is a text, a flag, a count, or a pure number that is said to be one ("1").
 
 Nothing here knows how or where records are written: that is `kinform.results`.

@@ -1,9 +1,8 @@
 """The results file as a whole: which group holds what, and what makes a file one of ours.
 
-`kinform.results.groups` has a module for each group; the attributes of a group say under which schema it was written, and
-what it was made of (`Fingerprints`). The bytes depend on the design and on the
-versions of kinform and HDF5 alone: groups are written in one order, nothing is compressed, no times are
-kept, byte order and file format are pinned.
+`kinform.results.groups` has a module for each group; the attributes of a group say under which schema it was written,
+and what it was made of (`Fingerprints`). The bytes depend on the design and on the versions of kinform and HDF5 alone:
+groups are written in one order, nothing is compressed, no times are kept, byte order and file format are pinned.
 """
 
 from __future__ import annotations

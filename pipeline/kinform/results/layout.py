@@ -15,8 +15,8 @@ class (`records`):
         Table("misfit"),                                    # one record: one row
     )
 
-Whatever holds fields is given all records that have them: one for the group as a whole, many inside of a `Table`. What an
-older file lacks leaves a field to its default; where there is none, the file is damaged (KeyError). What is None is
+Whatever holds fields is given all records that have them: one for the group as a whole, many inside of a `Table`. What
+an older file lacks leaves a field to its default; where there is none, the file is damaged (KeyError). What is None is
 not written.
 """
 

@@ -1,8 +1,8 @@
 """Columns of a table from the annotations of a record's fields, so that a field is declared in one place, its class.
 
 A text, flag, count, number, list of texts or dict of values is one column. Several numbers in one field, a tuple, or a
-record inside a record take a column each, labelled as the annotation says (`kinform.model.quantities`). Everything else,
-tuples of records and arrays of any length first of all, has no place in a row: `layout` says where it goes.
+record inside a record take a column each, labelled as the annotation says (`kinform.model.quantities`). Everything
+else, tuples of records and arrays of any length first of all, has no place in a row: `layout` says where it goes.
 """
 
 from __future__ import annotations

@@ -261,7 +261,8 @@ def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], fields: 
 def read_rows(
     group: h5py.Group, name: str, columns: Sequence[Column], later: Container[str] = ()
 ) -> list[dict[str, Any]]:
-    """The rows that `write_rows` wrote: field → value. Fields that came `later` are left out where the file lacks them."""
+    """The rows that `write_rows` wrote: field → value. Fields that came `later` are left out where the file lacks
+    them."""
     table = read_columns(group, name)
     labels = set(table.dtype.names or ())
     columns = [column for column in columns if column.field not in later or labels.issuperset(column.labels)]

@@ -36,8 +36,8 @@ def advance(
 ) -> Design:
     """The design with the result of the stage; that of later stages is dropped.
 
-    `compute` is given what the stage sees of the assembly. `settings` are those that the result depends on, by their names
-    in words; `asked` is what was asked for beside what the design says, None for what a run does.
+    `compute` is given what the stage sees of the assembly. `settings` are those that the result depends on, by their
+    names in words; `asked` is what was asked for beside what the design says, None for what a run does.
     """
     start = without(stage, design)
     inputs = fingerprints.of_stage(stage, start, settings or {})

@@ -1,7 +1,7 @@
 """Reuse inside the contacts stage: surfaces mesh by mesh, contacts pair by pair.
 
-Patches are kept in the world frame, so the contacts of a pair are reused only where shape and pose of both parts are the
-same to the last bit.
+Patches are kept in the world frame, so the contacts of a pair are reused only where shape and pose of both parts are
+the same to the last bit.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Reuse inside the joints stage: what contact decides of single pairs, and which contacts of a block open together.
 
-A result is found by the hash of all that its step was given and of the versions of the code, and only where its seal says
-that it is what was kept. A new one is packed and unpacked before it is used, so that it is, to the last bit, what a later
-run will find.
+A result is found by the hash of all that its step was given and of the versions of the code, and only where its seal
+says that it is what was kept. A new one is packed and unpacked before it is used, so that it is, to the last bit, what
+a later run will find.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """From what a result was computed, as one hash a result; and in words, what changed since.
 
-A fingerprint covers the content of a stage's inputs, the settings, and the version of the code that runs (`dependence`):
-no time of a file, no path, no order of events. Equal fingerprints are the licence to reuse.
+A fingerprint covers the content of a stage's inputs, the settings, and the version of the code that runs
+(`dependence`): no time of a file, no path, no order of events. Equal fingerprints are the licence to reuse.
 """
 
 from __future__ import annotations

@@ -28,7 +28,8 @@ def of_files(manifest: str, files: Mapping[str, str]) -> str:
 
 
 def following(stage: Stage, previous: str, asked: str | None = None) -> str:
-    """The lineage of a stage's result, from that of the stage before; "" where that is not known. `asked` as of `advance`."""
+    """The lineage of a stage's result, from that of the stage before; "" where that is not known. `asked` as of
+    `advance`."""
     versions = [fingerprints.versions_of(kind) for kind in stage.code]
     return digest(stage.name, versions, asked, previous) if previous else ""
 

@@ -14,8 +14,8 @@ __all__ = ["earlier_masses"]
 
 
 def earlier_masses(design: Design, view: Assembly, ledger: Ledger) -> dict[str, MassProperties]:
-    """Of earlier results of the present code, the mass properties of unchanged parts, by name; `view`: the assembly as the
-    mass stage sees it."""
+    """Of earlier results of the present code, the mass properties of unchanged parts, by name; `view`: the assembly as
+    the mass stage sees it."""
     previous, marks = ledger.previous, ledger.fingerprints
     if previous is None or previous.assembly.tolerances != view.tolerances or "mass" not in marks.inputs:
         return {}
