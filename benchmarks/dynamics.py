@@ -23,7 +23,8 @@ from support.port_models import DOWN, Model, bricard, four_bars  # noqa: E402
 from kinform.behaviour import RigidBody  # noqa: E402
 from kinform.foundation.algebra.spatial import to_matrix  # noqa: E402
 from kinform.simulation import Course, SolverSettings, simulate_system  # noqa: E402
-from kinform.simulation.solver.engine import Engine, engine  # noqa: E402
+from kinform.simulation.kernel.calls import engine  # noqa: E402
+from kinform.simulation.solver.run import Run  # noqa: E402
 
 REPEATS = 5
 TOLERANCES = (1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9, 1e-10)
@@ -61,20 +62,20 @@ CASES = {
 def timed(model, gravity, initial, tracked, duration, rtol):
     """(best milliseconds a simulated second, place of the tracked point at the end)."""
     best, name, point = np.inf, *tracked
-    advance = Engine.advance
+    advance = Run.advance
     for _ in range(REPEATS):
         spent = [0.0]
 
-        def measured(self, run, spent=spent):
+        def measured(run, spent=spent):
             start = time.process_time()
-            status = advance(self, run)
+            status = advance(run)
             spent[0] += time.process_time() - start
             return status
 
-        Engine.advance = measured
+        Run.advance = measured
         settings = SolverSettings(rtol=rtol, atol=rtol * 1e-2)
         run = simulate_system(model, Course(duration, duration, gravity), initial=initial, settings=settings)
-        Engine.advance = advance
+        Run.advance = advance
         if run.status != "done":
             return np.nan, np.full(3, np.nan)
         best = min(best, spent[0] / duration * 1e3)

@@ -23,18 +23,18 @@ SEEKER = ROOT / "fixtures" / "seekers" / "seeker_2dof"
 
 RUN = """
 import sys, time
-from kinform.simulation import solve
-run = solve.run_dynamic
+from kinform.simulation import of_system
+run = of_system.run_dynamic
 def timed(*given):
     start = time.process_time()
     out = run(*given)
     print("solver", time.process_time() - start, "numba" in sys.modules, len(out.time), file=sys.stderr)
     return out
-solve.run_dynamic = timed
+of_system.run_dynamic = timed
 from kinform_cli.main import main
 sys.exit(main(sys.argv[1:]))
 """
-COMPILE = "from kinform.simulation.solver.engine import engine; engine(compiled=True)"
+COMPILE = "from kinform.simulation.kernel.calls import engine; engine(compiled=True)"
 
 
 def started(caches, *command):

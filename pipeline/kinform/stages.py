@@ -136,7 +136,7 @@ def simulate(
     def move(view: Assembly) -> Result:
         from kinform import simulation
 
-        behaviour = simulation.modelled(view, kinematics, masses, level=level)
+        behaviour = simulation.port_model(view, kinematics, masses, level=level)
 
         def run(view: Assembly, progress: Progress | None = None) -> Simulation:
             return simulation.simulate(

@@ -11,7 +11,7 @@ from kinform.behaviour import build
 from kinform.behaviour.joints import KINDS
 from kinform.foundation.algebra.spatial import cross_motion, quaternions, rotation_vector, to_matrix
 from kinform.foundation.algebra.vectors import perpendicular
-from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.construction import assemble
 
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 POINT = np.array([0.3, -0.2, 0.5])

@@ -28,12 +28,11 @@ from kinform.behaviour import (
 from kinform.model.function import SimulationRequest
 from kinform.simulation import Course, SolverSettings, simulate, simulate_system
 from kinform.simulation.kernel import layout
-from kinform.simulation.kernel.uncompiled import plainly
+from kinform.simulation.kernel.calls import Engine, engine, plainly
 from kinform.simulation.mechanism.actuation import Actuation
-from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.solver import integration as integrate
-from kinform.simulation.solver.engine import Engine, engine
+from kinform.simulation.solver import dynamic
 
 SHORT = """
 import sys
@@ -82,7 +81,7 @@ def test_compiled_and_plain_functions_give_the_same_bits(name, monkeypatch):
     make, settings, duration = MODELS[name]
     runs = []
     for plain, loaded in ((10**9, False), (0, True)):
-        monkeypatch.setattr(integrate, "PLAIN", plain)
+        monkeypatch.setattr(dynamic, "PLAIN", plain)
         monkeypatch.setattr(Engine, "loaded", loaded)
         runs.append(simulate_system(make().system(), Course(duration, 0.02, DOWN), settings=settings))
     assert runs[0].status == runs[1].status == "done"
@@ -100,7 +99,7 @@ def compilations(monkeypatch):
         asked.extend([True] * compiled)
         return engine(compiled=False)
 
-    monkeypatch.setattr(integrate, "engine", made)
+    monkeypatch.setattr(dynamic, "engine", made)
     monkeypatch.setattr(Engine, "loaded", False)
     return asked
 
@@ -108,7 +107,7 @@ def compilations(monkeypatch):
 @pytest.mark.parametrize("ready", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations, derive_design, monkeypatch):
-    monkeypatch.setattr(integrate, "ready", lambda: ready)
+    monkeypatch.setattr(dynamic, "ready", lambda: ready)
     found = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     function = found.assembly.function if drives else replace(found.assembly.function, drives=())
     assembly = replace(found.assembly, simulation=SimulationRequest(duration=10.0, step=0.01), function=function)
@@ -118,8 +117,8 @@ def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations,
 
 
 def test_a_run_of_few_steps_and_many_outputs_is_compiled(compilations, monkeypatch):
-    monkeypatch.setattr(integrate, "ready", lambda: True)
-    monkeypatch.setattr(integrate, "PLAIN", 3000)
+    monkeypatch.setattr(dynamic, "ready", lambda: True)
+    monkeypatch.setattr(dynamic, "PLAIN", 3000)
     for step, wanted in ((0.01, False), (0.0002, True)):
         assert simulate_system(hung().system(), Course(0.5, step, DOWN)).status == "done"
         assert bool(compilations) == wanted

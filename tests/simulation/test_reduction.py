@@ -6,22 +6,21 @@ import numpy as np
 import pytest
 from support.port_models import DOWN, bricard, four_bars, hung_chain, squeezer
 
-from kinform.simulation import Course, SolverSettings, simulate_system
-from kinform.simulation.kernel.addresses import address, addresses
-from kinform.simulation.solver import solution as solve
-from kinform.simulation.solver.engine import engine
-from kinform.simulation.solver.run_state import Run
+from kinform.simulation import Course, SolverSettings, of_system, simulate_system
+from kinform.simulation.kernel.calls import engine
+from kinform.simulation.kernel.tables import address, addresses
+from kinform.simulation.solver.run import Run
 
 
 def begun(model, monkeypatch):
     """(dynamics, start) with which the system would be simulated."""
-    caught, run = [], solve.run_dynamic
+    caught, run = [], of_system.run_dynamic
 
     def caught_run(dynamics, start, *rest):
         caught.append((dynamics, start))
         return run(dynamics, start, *rest)
 
-    monkeypatch.setattr(solve, "run_dynamic", caught_run)
+    monkeypatch.setattr(of_system, "run_dynamic", caught_run)
     assert simulate_system(model.system(), Course(1e-3, 1e-3, DOWN)).status == "done"
     return caught[0]
 
@@ -60,11 +59,11 @@ def test_units_give_the_same_by_addresses_as_from_arrays(make, monkeypatch):
     for _ in range(4):
         y = run.y + 0.03 * rng.normal(size=len(run.y))
         found = []
-        for way in (plain, compiled):
+        for run.engine in (plain, compiled):
             at, dy, out = y.copy(), np.zeros_like(y), np.zeros_like(run.out[0])
-            gap, kept = way.project(run, 0.3, at)
-            margin = way.derivative(run, 0.3, at, dy)
-            way.sample(run, 0.3, at, out)
+            gap, kept = run.project(0.3, at)
+            margin = run.derivative(0.3, at, dy)
+            run.sample(0.3, at, out)
             found.append(np.concatenate([[gap < 1e-13, kept, margin], at, dy, out]))
         np.testing.assert_allclose(found[1], found[0], rtol=1e-11, atol=1e-11)
 

@@ -23,7 +23,7 @@ from kinform.model.function import SimulationRequest
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassProperties
 from kinform.model.simulation import Simulation
-from kinform.simulation.mechanism.assembly import assemble
+from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 __all__ = ["BodyStart", "ExportModel", "export_model"]

@@ -9,21 +9,20 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from kinform.simulation.modelled import modelled
-from kinform.simulation.simulate import simulate
-from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.request import port_model, simulate
+from kinform.simulation.settings import SolverSettings
 
 if TYPE_CHECKING:
-    from kinform.simulation.solver.solution import Course, simulate_system
+    from kinform.simulation.of_system import Course, simulate_system
 
-__all__ = ["CODE_VERSION", "Course", "SolverSettings", "modelled", "simulate", "simulate_system"]
+__all__ = ["CODE_VERSION", "Course", "SolverSettings", "port_model", "simulate", "simulate_system"]
 
 CODE_VERSION: int = 8
 
-_SOLVING = ("Course", "simulate_system")
+_SOLVED = ("Course", "simulate_system")
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _SOLVING:
+    if name not in _SOLVED:
         raise AttributeError(f"module 'kinform.simulation' has no attribute {name!r}")
-    return getattr(importlib.import_module("kinform.simulation.solver.solution"), name)
+    return getattr(importlib.import_module("kinform.simulation.of_system"), name)

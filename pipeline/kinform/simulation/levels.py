@@ -11,6 +11,7 @@ from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
+from kinform.simulation.constants import WHOLE_TURN
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 __all__ = ["Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
@@ -47,8 +48,7 @@ def _obstacles(behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ..
     link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
     out = [(name, "no joints connect this body with the ground") for name in adrift]
     for body in behaviour.system.bodies:
-        moving = isinstance(body, RigidBody) and link_of[body.subject] > 0
-        if moving and isinstance(body, RigidBody) and body.mass is None:
+        if isinstance(body, RigidBody) and link_of[body.subject] > 0 and body.mass is None:
             out.append((body.subject, "its mass is not known"))
     out.extend(behaviour.forces_missing)
     return tuple(out)
@@ -102,7 +102,7 @@ def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
 
         notes.append(
             f"the teeth of {coupling.through} are taken for their ratio: {coupling.joints[0]} = {teeth.ratio:.6g} · "
-            f"{coupling.joints[1]}, from {_counted(teeth, types, coupling.joints)} (at the pose of the meshes their "
+            f"{coupling.joints[1]}, from {_teeth_counted(teeth, types, coupling.joints)} (at the pose of the meshes their "
             f"normals give {coupling.ratio:.6g} ± {coupling.uncertainty:.1g}); the meshes depart from it by up to "
             f"{shown(teeth.deviation)} of {coupling.joints[0]} within a tooth, and have play of {shown(teeth.play)}, "
             "which is left out"
@@ -110,11 +110,11 @@ def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, str]) -> str:
+def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, str]) -> str:
     """How many teeth were counted on either side."""
     parts = []
     for count, name, pitch in zip(teeth.teeth, joints, teeth.pitches, strict=True):
-        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < 1e-6
+        whole = types[name] != "prismatic" and abs(count * pitch - 2.0 * math.pi) < WHOLE_TURN
         parts.append(f"{count} teeth" if whole else f"{count} teeth in a row")
     return " and ".join(parts)
 
@@ -133,12 +133,7 @@ def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> list[str]:
 
 
 def notes_of_level(
-    assembly: Assembly,
-    kinematics: Kinematics,
-    behaviour: Behaviour,
-    level: str,
-    adrift: tuple[str, ...],
-    gears: bool,
+    assembly: Assembly, kinematics: Kinematics, level: str, adrift: tuple[str, ...], gears: bool
 ) -> tuple[str, ...]:
     """What plays no part at this level."""
     notes = []

@@ -8,25 +8,16 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.layout import (
-    CHOSEN,
-    CLOSURES,
-    COLUMNS,
-    COUNTS,
-    GEARS,
-    MODE,
-    ORDER,
-    PLACE,
-    RANK,
-    RATES,
-    REFERENCE,
-    ROWS,
-    SCALE,
-    SIGNAL,
-    VECTORS,
-)
+from kinform.simulation.constants import CLOSING_PIVOT
 from kinform.simulation.kernel.loops import gather
-from kinform.simulation.kernel.types import Nums, Work
+
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, COLUMNS, CLOSURES, MODE, SCALE, GEARS, ROWS, VECTORS,
+    RANK, RATES, SIGNAL, CHOSEN, ORDER, PLACE,
+    REFERENCE,
+    Nums, Work,
+)  # fmt: skip
+
 
 __all__ = ["choose"]
 
@@ -51,7 +42,7 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
         size[:, led] = -1.0
         size[:, dependent] = -1.0
         preferred = np.where(closing, size, -1.0)
-        best = preferred if preferred.max() > 0.3 else size
+        best = preferred if preferred.max() > CLOSING_PIVOT else size
         row, column = (int(k) for k in np.unravel_index(int(np.argmax(best)), best.shape))
         work[VECTORS][REFERENCE][len(chosen)] = max(float(best[row, column]), 1e-300)
         left[row] = False

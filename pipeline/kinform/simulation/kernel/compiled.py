@@ -21,36 +21,38 @@ from pathlib import Path
 from typing import Any
 
 from kinform.simulation.kernel import (
-    addresses,
     crossings,
     equations,
     explicit,
     forces,
-    layout,
     loops,
     masses,
     motion,
     reduction,
-    signals,
     steps,
+    tables,
     vectors,
 )
 
 __all__ = ["compiled", "is_cached"]
 
-_MODULES = (vectors, signals, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
+_MODULES = (vectors, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
 _UNITS = (
     motion.place_links, motion.twist_links, masses.inertias, masses.mass_matrix, loops.gather, loops.eliminate,
     reduction.reduce, reduction.settle, equations.derivative, equations.project, steps.try_step, explicit.sample,
-    explicit.advance,
+    explicit.attempt, explicit.pass_through, explicit.advance,
 )  # fmt: skip
 
 
+@cache
 def _digest() -> str:
-    rest = (Path(__file__).with_name("native.py"), *(Path(str(m.__file__)) for m in (layout, addresses)))
-    text = "".join(inspect.getsource(module) for module in (*_MODULES, sys.modules[__name__]))
-    text += "".join(path.read_text(encoding="utf-8") for path in rest)
+    """Of all that decides what is compiled: the source of the functions and of this module's, and the numbers that
+    functions read by name, which the compiler takes for constants."""
+    native = Path(__file__).with_name("native.py")  # read, not imported: it needs numba
+    text = "".join(inspect.getsource(module) for module in (*_MODULES, tables, sys.modules[__name__]))
+    numbers = {name: value for module in _MODULES for name, value in vars(module).items() if name.isupper()}
+    text += f"{native.read_text(encoding='utf-8')}{sorted(numbers.items())}"
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
@@ -94,7 +96,7 @@ def _kinds() -> dict[str, tuple[Any, Any]]:
 
 @cache
 def compiled() -> types.SimpleNamespace:
-    """The units, compiled; where they take arrays, they take addresses (`addresses`)."""
+    """The units, compiled; where they take arrays, they take addresses (`tables`)."""
     import numba
 
     config: Any = numba.config

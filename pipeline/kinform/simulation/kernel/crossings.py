@@ -11,19 +11,22 @@ at the evaluations of a step.
 
 from __future__ import annotations
 
-from kinform.simulation.kernel.layout import C_ROW, COEFFICIENTS, CROSSING, MARGINS, NOW
-from kinform.simulation.kernel.types import Nums, Row
+from kinform.simulation.constants import (
+    CROSSING_AHEAD,
+    CROSSING_CLEAR,
+    CROSSING_PASSED,
+    NEAREST_APPROACH,
+    SLOPES_ALIKE,
+    WIDEST_GAP,
+)
 
-ORDER = (0, 1, 2, 3, 6, 4, 7, 5, 9, 8, 10, 11)
-"""Evaluations in the order of their times."""
-MIDDLE = 0.4667
-"""Of the widest gap between evaluations: from a third to three fifths of the step."""
-CLEAR = 0.08
-"""A share of the step: evaluations nearer to a singular pose than this are to be avoided."""
-BEYOND = 1.2
-"""A pose so far, in steps, is near the step's end."""
-ALIKE = 0.5
-"""Slopes of a line agree when the lesser is more than this share of the greater."""
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COEFFICIENTS,
+    C_ROW, ORDER_ROW,
+    NOW, CROSSING, SPAN, MARGINS,
+    Row, Nums,
+)  # fmt: skip
+
 
 __all__ = ["alike", "laid", "tip"]
 
@@ -33,40 +36,42 @@ def alike(a: float, b: float) -> float:
     return min(a, b) / max(a, b) if a > 0.0 and b > 0.0 else 0.0
 
 
-def tip(nums: Nums, clock: Row, h: float) -> bool:
+def tip(nums: Nums, clock: Row) -> bool:
     """Writes the time of a singular pose in the step or just after it to clock[CROSSING], if there is one;
     whether it is too near to an evaluation."""
-    times = nums[COEFFICIENTS][C_ROW]
+    times, order = nums[COEFFICIENTS][C_ROW], nums[COEFFICIENTS][ORDER_ROW]
     low = 0
     for k in range(1, 12):
-        if clock[MARGINS + ORDER[k]] < clock[MARGINS + ORDER[low]]:
+        if clock[MARGINS + int(order[k])] < clock[MARGINS + int(order[low])]:
             low = k
     if low == 0:
         return False
-    x, f = times[ORDER[low]], clock[MARGINS + ORDER[low]]
-    left, before = x - times[ORDER[low - 1]], clock[MARGINS + ORDER[low - 1]]
+    tightest, last = int(order[low]), int(order[low - 1])
+    x, f = times[tightest], clock[MARGINS + tightest]
+    left, before = x - times[last], clock[MARGINS + last]
     if low == 11:
-        place = x + f * left / (before - f) if before > f else BEYOND
-        near = place < BEYOND
+        place = x + f * left / (before - f) if before > f else CROSSING_AHEAD
+        near = place < CROSSING_AHEAD
     else:
-        right, after = times[ORDER[low + 1]] - x, clock[MARGINS + ORDER[low + 1]]
+        later = int(order[low + 1])
+        right, after = times[later] - x, clock[MARGINS + later]
         # The tip is on that side where one line falls to it and another rises from it as steeply.
         ahead, behind = alike((before - f) / left, (f + after) / right), alike((after - f) / right, (before + f) / left)
-        if max(ahead, behind) < ALIKE:
+        if max(ahead, behind) < SLOPES_ALIKE:
             return False
         place = x + right * f / (f + after) if ahead > behind else x - left * f / (f + before)
         near = False
         for s in range(1, 12):
-            near = near or abs(times[s] - place) < CLEAR
-    if place < BEYOND:
-        clock[CROSSING] = clock[NOW] + place * h
+            near = near or abs(times[s] - place) < CROSSING_CLEAR
+    if place < CROSSING_AHEAD:
+        clock[CROSSING] = clock[NOW] + place * clock[SPAN]
     return near
 
 
 def laid(step: float, distance: float) -> float:
     """The step to take when `step` is wanted and a singular pose is `distance` ahead, negative behind."""
-    if distance <= 0.05 * step or distance > (1.0 + MIDDLE) * step:
+    if distance <= CROSSING_PASSED * step or distance > (1.0 + WIDEST_GAP) * step:
         return step
-    if distance <= MIDDLE * step:
-        return distance / MIDDLE
-    return max(distance - MIDDLE * step, 0.2 * distance)
+    if distance <= WIDEST_GAP * step:
+        return distance / WIDEST_GAP
+    return max(distance - WIDEST_GAP * step, NEAREST_APPROACH * distance)

@@ -5,56 +5,20 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.forces import between, drive, loads
-from kinform.simulation.kernel.layout import (
-    ACC,
-    ACTORS,
-    CHOSEN,
-    CLOSURES,
-    COLUMNS,
-    CONSTANTS,
-    COUNTS,
-    FORCE,
-    GAIN,
-    GAP,
-    GEARS,
-    KEPT,
-    KIND,
-    LAST,
-    LED,
-    LENGTH,
-    LINKS,
-    LOADS,
-    MASS,
-    MODE,
-    NEED,
-    PIECES,
-    POSITIONS,
-    RANK,
-    RATES,
-    SCREW,
-    SIGNAL,
-    SIGNALS,
-    SPRINGS,
-    STATE,
-    STATES,
-    TWIST,
-    VECTORS,
-    WIDTH,
-    Q,
-)
+from kinform.simulation.constants import FACTORS_STALE, MOST_CORRECTIONS, SLOW_CORRECTION, TORN_GAP
+from kinform.simulation.kernel.forces import between, drive, law, loads
 from kinform.simulation.kernel.loops import gained, gap_of
 from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, solve_cholesky, wrenches
 from kinform.simulation.kernel.motion import place_links, twist_links
 from kinform.simulation.kernel.reduction import factor, settle
-from kinform.simulation.kernel.signals import law
-from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
 
-TORN = 1e-4
-"""Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, LOADS, SPRINGS, MODE, CONSTANTS, GEARS, PIECES, STATE, MASS, VECTORS,
+    RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, TWIST, GAIN, CHOSEN,
+    FORCE, ACC, NEED, GAP, KEPT,
+    Row, Table, Index, Nums, Work,
+)  # fmt: skip
 
-SLOW = 0.05
-"""Corrections that leave more than this share of a gap are made by new factors."""
 
 __all__ = ["derivative", "impose", "move", "pace_of", "project", "torn"]
 
@@ -62,7 +26,7 @@ __all__ = ["derivative", "impose", "move", "pace_of", "project", "torn"]
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
     """Puts led joints where their laws have them."""
     for i in range(1, len(links)):
-        k = links[i][3]
+        k = links[i][FIRST]
         if links[i][KIND] == SCREW and columns[k][SIGNAL] >= 0:
             value, rate, _ = law(values, pieces, columns[k][SIGNAL], t)
             y[links[i][Q]], y[first + k] = value, rate
@@ -85,7 +49,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
     twist_links(ints, work, y)
     inertias(ints, nums, work)
     wrenches(ints, nums, work)
-    power = drive(ints[ACTORS], nums[ACTORS], values, pieces, vectors, t, y, dy, first, n)
+    power = drive(ints, nums, vectors, t, y, dy)
     power += loads(ints[LOADS], nums[LOADS], state)
     power += between(ints[SPRINGS], nums[SPRINGS], state)
     mass_matrix(ints, work, True)
@@ -110,7 +74,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
             if columns[k][SIGNAL] >= 0:
                 power += vectors[NEED][k] * y[first + k]
     for i in range(1, len(links)):
-        at, k = links[i][Q], first + links[i][3]
+        at, k = links[i][Q], first + links[i][FIRST]
         if links[i][KIND] == SCREW:
             dy[at] = y[k]
         else:
@@ -128,7 +92,7 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
 def move(links: Index, vectors: Table, y: Row) -> None:
     """Adds work[VECTORS][ACC], a displacement, to the positions in y."""
     for i in range(1, len(links)):
-        at, k = links[i][Q], links[i][3]
+        at, k = links[i][Q], links[i][FIRST]
         if links[i][KIND] == SCREW:
             y[at] += vectors[ACC][k]
             continue
@@ -152,10 +116,10 @@ def pace_of(ints: Ints, nums: Nums, state: Table, y: Row, row: int) -> float:
 
 def torn(ints: Ints, nums: Nums, work: Work, y: Row) -> float:
     """The greatest gap of the loops or of their rates in y, where `derivative` was just called."""
-    state, length, most = work[STATE], nums[CONSTANTS][0][LENGTH], 0.0
+    state, most = work[STATE], 0.0
     for r in range(ints[COUNTS][0][RANK]):
         row = ints[MODE][CHOSEN][r]
-        gap = gap_of(ints[COUNTS], ints[CLOSURES], nums[CLOSURES], nums[GEARS], state, y, length, row)
+        gap = gap_of(ints, nums, state, y, row)
         most = max(most, abs(gap), abs(pace_of(ints, nums, state, y, row)))
     return most
 
@@ -168,8 +132,7 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     length. Returns the gap left, −1 when a free motion has no mass; writes how good the pivots still are to
     work[VECTORS][KEPT].
     """
-    counts, links, closures, mode = ints[COUNTS], ints[LINKS], ints[CLOSURES], ints[MODE]
-    state, vectors, length = work[STATE], work[VECTORS], nums[CONSTANTS][0][LENGTH]
+    counts, links, mode, state, vectors = ints[COUNTS], ints[LINKS], ints[MODE], work[STATE], work[VECTORS]
     n, rank, first = counts[0][RATES], counts[0][RANK], counts[0][POSITIONS]
     if counts[0][LED] > 0:
         impose(links, ints[COLUMNS], nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0][LAST]), y, first)
@@ -186,13 +149,13 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     for k in range(n):
         vectors[FORCE][k] = 0.0
     before, size = 1e300, 1e300
-    for count in range(10):
+    for count in range(MOST_CORRECTIONS):
         place_links(ints, nums, work, y)
         size = 0.0
         for r in range(rank):
-            vectors[GAP][r] = -gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, mode[CHOSEN][r])
+            vectors[GAP][r] = -gap_of(ints, nums, state, y, mode[CHOSEN][r])
             size = max(size, abs(vectors[GAP][r]))
-        stale = count > 0 and size > SLOW * before if factored else before > 1e-9
+        stale = count > 0 and size > SLOW_CORRECTION * before if factored else before > FACTORS_STALE
         if stale:
             inertias(ints, nums, work)
             mass_matrix(ints, work, False)
@@ -207,10 +170,10 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
         settle(ints, work)
         move(links, vectors, y)
     if not factored:
-        for row in range(6 * len(closures) + len(nums[GEARS])):
+        for row in range(6 * len(ints[CLOSURES]) + len(nums[GEARS])):
             # The rows that depend on the others at the start must stay closed too.
-            rest = abs(gap_of(counts, closures, nums[CLOSURES], nums[GEARS], state, y, length, row))
-            if rest > TORN:
+            rest = abs(gap_of(ints, nums, state, y, row))
+            if rest > TORN_GAP:
                 size = max(size, rest)
     for _ in range(2 if factored else 1):
         twist_links(ints, work, y)

@@ -2,7 +2,7 @@
 
 Control of steps and the test for stiffness are those of Hairer, Nørsett and Wanner's program DOP853
 (Solving Ordinary Differential Equations I, sections II.4 and IV.2). Loops are closed again after every
-accepted step.
+accepted step. How the stages of a step follow each other is told at the head of `kinform.simulation.kernel`.
 """
 
 from __future__ import annotations
@@ -10,75 +10,46 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
+from kinform.simulation.constants import (
+    CROSSING_AROUND,
+    CROSSING_NARROWINGS,
+    EASY_ERROR,
+    ERROR_ROOT,
+    GREATEST_GROWTH,
+    HOPELESS_ERROR,
+    LAID_ALIKE,
+    LEAST_REAL_MARGIN,
+    LEAST_SHRINK,
+    LEAST_SHRINK_AT_CROSSING,
+    MOST_LAYINGS,
+    REAL_ROUGHNESS,
+    REOPENED_SHRINK,
+    ROUNDING_NOISE,
+    ROUNDINGS_EVERY,
+    SAFETY,
+    SHORTEST_CLOSING_STEP,
+    SHORTEST_STEP,
+    STABLE_DECAY,
+    STOP_HALVINGS,
+    STOP_PARTS,
+    STOP_PASSED,
+    TURN_HALVINGS,
+)
 from kinform.simulation.kernel.crossings import laid, tip
 from kinform.simulation.kernel.equations import derivative, project
-from kinform.simulation.kernel.layout import (
-    ACC,
-    BUDGET,
-    CLOSED,
-    COUNTS,
-    CROSSING,
-    DONE,
-    END,
-    FRESH,
-    GIVEN,
-    HIT,
-    KEEP,
-    KEPT,
-    LEAST,
-    MARGIN,
-    MARGINS,
-    MASSLESS,
-    NEED,
-    NEW,
-    NEXT,
-    NOISE,
-    NOW,
-    OPEN,
-    OPENED,
-    OUT,
-    PATIENCE,
-    PAUSE,
-    PAUSED,
-    POSITIONS,
-    RANK,
-    RATES,
-    SIZE,
-    SPENT,
-    STAGES,
-    STEP,
-    STEPS,
-    STIFF,
-    STIFFENED,
-    STOPPED,
-    STOPS,
-    STUCK,
-    TIGHTEST,
-    TIMES,
-    TRIED,
-    VECTORS,
-    WORN,
-)
 from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slope, try_step
-from kinform.simulation.kernel.types import Counts, Nums, Row, Work
 
-EDGE = 3.0
-"""Step times the fastest decay: the method is stable up to about 6."""
-LAYINGS = 4
-"""Times that a step is laid anew to avoid a singular pose."""
-AGAIN = 20
-"""Steps after which roundings are looked at again."""
-GROWTH = 2.5
-"""Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, STOPS, VECTORS, STAGES, TIMES, OUT,
+    RANK, POSITIONS, RATES, SIZE, STOP_Q, STOP_V, SENSE, HELD, AT_END, TRIED, NEW, FAILED,
+    ACC, NEED, GIVEN, KEPT,
+    NOW, END, STEP, CLOSED, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING, SPAN, REACHED, ERROR, WEAR,
+    GROWTH, MARGINS,
+    STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS,
+    DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED,
+    Row, Counts, Nums, Work,
+)  # fmt: skip
 
-PARTS = 4
-"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
-AROUND = 0.1
-"""Share of the step about the place where a singular pose is expected, within which it is."""
-NARROWED = 12
-"""Times that this is narrowed, to two thirds each."""
-PASSED = 1e-12
-"""Of a limit (rad or m) that is passed: less is rounding."""
 
 __all__ = ["advance", "look", "sample", "stop_reached"]
 
@@ -96,56 +67,65 @@ def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out
         out[size + 2 * n + k] = vectors[NEED][k]
 
 
-def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row, x: float) -> tuple[int, float]:
-    """(stop that is passed first before the share x of the step, where); −1 and x when none is.
+def beyond(ints: Ints, nums: Nums, work: Work, y: Row, k: int, x: float) -> float:
+    """How far beyond stop k (rad or m) its joint is at the share x of the step from y."""
+    stop = ints[STOPS][k]
+    return float(stop[SENSE] * (interpolate(work, y, stop[STOP_Q], x) - nums[STOPS][k][0]))
+
+
+def passing(ints: Ints, nums: Nums, work: Work, y: Row, k: int, end: float) -> tuple[float, float]:
+    """Shares of the step, up to `end`, between which stop k is passed; the second is −1 when it is not.
 
     A joint that passes its stop and is back before the step ends has passed it: where it turns is looked at too.
     """
-    stops, limits, first = ints[STOPS], nums[STOPS], ints[COUNTS][0][POSITIONS]
-    found, end = -1, x
-    for k in range(len(stops)):
-        if stops[k][3] != 0:
+    rate, sense = ints[COUNTS][0][POSITIONS] + ints[STOPS][k][STOP_V], float(ints[STOPS][k][SENSE])
+    low, pace = 0.0, sense * y[rate]
+    for part in range(1, STOP_PARTS + 1):
+        high = end * float(part) / float(STOP_PARTS)
+        later = sense * interpolate(work, y, rate, high)
+        if beyond(ints, nums, work, y, k, high) > STOP_PASSED:
+            return low, high
+        if pace > 0.0 and later < 0.0:
+            out, back = low, high
+            for _ in range(TURN_HALVINGS):
+                middle = 0.5 * (out + back)
+                if sense * interpolate(work, y, rate, middle) > 0.0:
+                    out = middle
+                else:
+                    back = middle
+            if beyond(ints, nums, work, y, k, out) > STOP_PASSED:
+                return low, out
+        low, pace = high, later
+    return low, -1.0
+
+
+def stop_reached(ints: Ints, nums: Nums, work: Work, y: Row) -> tuple[int, float]:
+    """(stop that is passed first in the step from y, at which share of it); −1 and 1 when none is."""
+    first, end = -1, 1.0
+    for k in range(len(ints[STOPS])):
+        if ints[STOPS][k][HELD] != 0:
             continue
-        at, rate, sense = stops[k][0], first + stops[k][1], float(stops[k][2])
-        low, past, pace = 0.0, -1.0, sense * y[rate]
-        for part in range(1, PARTS + 1):
-            high = end * float(part) / float(PARTS)
-            later = sense * interpolate(work, y, rate, high)
-            if sense * (interpolate(work, y, at, high) - limits[k][0]) > PASSED:
-                past = high
-                break
-            if pace > 0.0 and later < 0.0:
-                out, back = low, high
-                for _ in range(40):
-                    middle = 0.5 * (out + back)
-                    if sense * interpolate(work, y, rate, middle) > 0.0:
-                        out = middle
-                    else:
-                        back = middle
-                if sense * (interpolate(work, y, at, out) - limits[k][0]) > PASSED:
-                    past = out
-                    break
-            low, pace = high, later
-        if past < 0.0:
+        low, high = passing(ints, nums, work, y, k, end)
+        if high < 0.0:
             continue
-        high = past
-        for _ in range(60):
+        for _ in range(STOP_HALVINGS):
             middle = 0.5 * (low + high)
-            if sense * (interpolate(work, y, at, middle) - limits[k][0]) > 0.0:
+            if beyond(ints, nums, work, y, k, middle) > 0.0:
                 high = middle
             else:
                 low = middle
-        found, end = k, high
-    return found, end
+        first, end = k, high
+    return first, end
 
 
-def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row, h: float) -> None:
+def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row) -> None:
     """Finds the least margin where a singular pose is crossed in the step: its evaluations keep away from there."""
-    state, slopes = work[STAGES][TRIED], work[STAGES][TRIED + 2]
+    state, slopes, h = work[STAGES][TRIED], work[STAGES][TRIED + 2], clock[SPAN]
     place = (clock[CROSSING] - clock[NOW]) / h
-    low, high = max(0.0, place - AROUND), min(1.0, place + AROUND)
+    low, high = max(0.0, place - CROSSING_AROUND), min(1.0, place + CROSSING_AROUND)
     first = 0.0
-    for k in range(2 * NARROWED):
+    for k in range(2 * CROSSING_NARROWINGS):
+        # The two places of a golden section, one after the other.
         x = low + (0.382 if k % 2 == 0 else 0.618) * (high - low)
         for i in range(ints[COUNTS][0][SIZE]):
             state[i] = interpolate(work, y, i, x)
@@ -160,17 +140,143 @@ def look(ints: Ints, nums: Nums, work: Work, clock: Row, y: Row, h: float) -> No
             low = low + 0.382 * (high - low)
 
 
+def shrink(error: float, least: float) -> float:
+    """Share of a step of that error over the tolerance to try next, `least` at least."""
+    return max(least, SAFETY * error**-ERROR_ROOT) if error < HOPELESS_ERROR else least
+
+
+def set_out(clock: Row) -> bool:
+    """Lays out the next step, to clock[SPAN] and [REACHED]; False when it would be too short to be one."""
+    now, end = clock[NOW], clock[END]
+    h = min(laid(clock[STEP], clock[CROSSING] - now), end - now)
+    later = now + h
+    if end - later < SHORTEST_STEP * max(1.0, abs(later)):
+        later = end
+    clock[SPAN], clock[REACHED] = h, later
+    return not (h < SHORTEST_STEP * max(1.0, abs(now)) and h < end - now)
+
+
+def lay_anew(nums: Nums, clock: Row, tally: Counts) -> bool:
+    """Whether the step tried had an evaluation too near to a singular pose, and laying it differently helps."""
+    error, h = clock[ERROR], clock[SPAN]
+    if not (error < FAILED and tally[LAYINGS] < MOST_LAYINGS and tip(nums, clock)):
+        return False
+    if error > 1.0:
+        # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
+        clock[STEP] *= shrink(error, LEAST_SHRINK_AT_CROSSING)
+    again = laid(clock[STEP], clock[CROSSING] - clock[NOW])
+    return abs(again - h) > LAID_ALIKE * h and clock[NOW] + again < clock[END]
+
+
+def attempt(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts) -> int:
+    """One step tried from y: TAKEN, its end with loops closed in stage NEW and its slope in stage AT_END; REJECTED,
+    with the length to try next in clock[STEP]; or why the run cannot go on."""
+    slopes, rank = work[STAGES], ints[COUNTS][0][RANK]
+    if not set_out(clock):
+        return STUCK
+    clock[ERROR] = try_step(ints, nums, work, clock, tally, y)
+    if rank > 0 and lay_anew(nums, clock, tally):
+        tally[LAYINGS] += 1
+        return REJECTED
+    tally[LAYINGS] = 0
+    if not clock[ERROR] < 1.0:
+        clock[STEP] = clock[SPAN] * shrink(clock[ERROR], LEAST_SHRINK)
+        clock[GROWTH] = 1.0
+        return REJECTED
+    gap = project(ints, nums, work, clock[REACHED], slopes[NEW], clock[CLOSED], False)
+    clock[WEAR] = work[VECTORS][KEPT][0]
+    if rank > 0 and not 0.0 <= gap < clock[OPEN]:
+        clock[STEP] = REOPENED_SHRINK * clock[SPAN]
+        if clock[SPAN] < SHORTEST_CLOSING_STEP:
+            return MASSLESS if gap == -1.0 else OPENED
+        return REJECTED
+    tally[SLOPES] += 1
+    margin = slope(ints, nums, work, clock, clock[REACHED], slopes[NEW], slopes[AT_END])
+    clock[MARGINS + AT_END] = margin
+    return TAKEN if margin >= 0.0 else MASSLESS
+
+
+def fastest_decay(ints: Ints, work: Work, clock: Row, tally: Counts) -> float:
+    """Fastest decay (1/s) that the last two evaluations of the step show; tally[STIFF] counts the steps in a row that
+    it keeps short."""
+    slopes, rough, moved = work[STAGES], 0.0, 0.0
+    for i in range(ints[COUNTS][0][SIZE]):
+        change, way = slopes[AT_END][i] - slopes[AT_END - 1][i], slopes[NEW][i] - slopes[TRIED][i]
+        rough += change * change
+        moved += way * way
+    # What rounding leaves near a singular pose is no decay.
+    least = max(clock[LEAST], LEAST_REAL_MARGIN)
+    real = math.sqrt(rough) > REAL_ROUGHNESS * ROUNDING_NOISE / (least * least)
+    fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
+    tally[STIFF] = tally[STIFF] + 1 if clock[SPAN] * fastest > STABLE_DECAY else 0
+    return fastest
+
+
+def pass_through(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts, outputs: Nums) -> int:
+    """Goes through the step taken, by its dense output: fills the outputs that are due and finds the least margin.
+
+    TAKEN, or STOPPED where an end stop is passed in it: y and clock[NOW] are then where and when, tally[HIT] which.
+    """
+    times, out, size = outputs[TIMES][0], outputs[OUT], ints[COUNTS][0][SIZE]
+    later, tried = clock[REACHED], work[STAGES][TRIED]
+    due = tally[NEXT] < len(out) and times[tally[NEXT]] <= later
+    crossed = ints[COUNTS][0][RANK] > 0 and clock[NOW] < clock[CROSSING] <= later
+    if not (due or crossed or len(ints[STOPS]) > 0):
+        return TAKEN
+    prepare(ints, nums, work, clock, tally, y)
+    if crossed:
+        look(ints, nums, work, clock, y)
+    hit, share = stop_reached(ints, nums, work, y)
+    if hit >= 0:
+        later = clock[NOW] + share * clock[SPAN]
+    while tally[NEXT] < len(out) and times[tally[NEXT]] <= later:
+        t = times[tally[NEXT]]
+        x = min(1.0, (t - clock[NOW]) / clock[SPAN])
+        for i in range(size):
+            tried[i] = interpolate(work, y, i, x)
+        sample(ints, nums, work, clock, t, tried, out[tally[NEXT]])
+        tally[NEXT] += 1
+    if hit < 0:
+        return TAKEN
+    for i in range(size):
+        tried[i] = interpolate(work, y, i, share)
+    for i in range(size):
+        y[i] = tried[i]
+    clock[NOW] = later
+    tally[HIT], tally[FRESH] = hit, 1
+    return STOPPED
+
+
+def accept(ints: Ints, work: Work, y: Row, clock: Row, fastest: float) -> None:
+    """Goes on from the end of the step, with the length of the next by the error of this and the fastest decay."""
+    slopes, h, wanted, error = work[STAGES], clock[SPAN], clock[STEP], clock[ERROR]
+    for i in range(ints[COUNTS][0][SIZE]):
+        y[i] = slopes[NEW][i]
+        slopes[0][i] = slopes[AT_END][i]
+    clock[MARGINS] = clock[MARGINS + AT_END]
+    clock[NOW] = clock[REACHED]
+    growth = clock[GROWTH]
+    step = h * (min(growth, SAFETY * error**-ERROR_ROOT) if error > 0.0 else growth)
+    if h < wanted and error < EASY_ERROR:
+        # Laid shorter than the error called for: the next need not be.
+        step = max(step, wanted)
+    if fastest * step > STABLE_DECAY:
+        # Within half the region of stability, for the dense output too.
+        step = STABLE_DECAY / fastest
+    clock[STEP] = step
+    clock[GROWTH] = GREATEST_GROWTH
+
+
 def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Counts, outputs: Nums) -> int:
     """Integrates y from clock[NOW] towards clock[END], filling outputs; says why it came back."""
-    slopes, times, out = work[STAGES], outputs[TIMES][0], outputs[OUT]
-    rank, size = ints[COUNTS][0][RANK], ints[COUNTS][0][SIZE]
     if tally[FRESH] == 1:
-        clock[MARGINS] = slope(ints, nums, work, clock, tally, clock[NOW], y, slopes[0])
+        tally[SLOPES] += 1
+        clock[MARGINS] = slope(ints, nums, work, clock, clock[NOW], y, work[STAGES][0])
         if clock[MARGINS] < 0.0:
             return MASSLESS
         roundings(ints, nums, work, tally, y, clock[NOW])
         tally[FRESH] = 0
-    spent, growth, layings = 0, GROWTH, 0
+    clock[GROWTH], tally[LAYINGS], spent = GREATEST_GROWTH, 0, 0
     while clock[NOW] < clock[END]:
         if tally[NEXT] >= tally[PAUSE]:
             return PAUSED
@@ -178,88 +284,18 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
             return SPENT
         spent += 1
         tally[STEPS] += 1
-        if tally[STEPS] % AGAIN == 0:
+        if tally[STEPS] % ROUNDINGS_EVERY == 0:
             roundings(ints, nums, work, tally, y, clock[NOW])
-        wanted = clock[STEP]
-        h = min(laid(wanted, clock[CROSSING] - clock[NOW]), clock[END] - clock[NOW])
-        if h < 1e-13 * max(1.0, abs(clock[NOW])) and h < clock[END] - clock[NOW]:
-            return STUCK
-        error = try_step(ints, nums, work, clock, tally, y, h)
-        if rank > 0 and error < 1e300 and layings < LAYINGS and tip(nums, clock, h):
-            if error > 1.0:
-                # Perhaps the evaluation near the pose is to blame, perhaps the step is too long besides.
-                wanted *= max(0.6, 0.9 * error**-0.125) if error < 1e30 else 0.6
-                clock[STEP] = wanted
-            again = laid(wanted, clock[CROSSING] - clock[NOW])
-            if abs(again - h) > 0.01 * h and clock[NOW] + again < clock[END]:
-                layings += 1
-                continue
-        layings = 0
-        if not error < 1.0:
-            clock[STEP] = h * (max(0.2, 0.9 * error**-0.125) if error < 1e30 else 0.2)
-            growth = 1.0
+        status = attempt(ints, nums, work, y, clock, tally)
+        if status == REJECTED:
             continue
-        later = clock[NOW] + h
-        if clock[END] - later < 1e-13 * max(1.0, abs(later)):
-            later = clock[END]
-        gap = project(ints, nums, work, later, slopes[NEW], clock[CLOSED], False)
-        kept = work[VECTORS][KEPT][0]
-        if rank > 0 and not 0.0 <= gap < clock[OPEN]:
-            clock[STEP] = 0.25 * h
-            if h < 1e-9:
-                return MASSLESS if gap == -1.0 else OPENED
-            continue
-        rough, moved = 0.0, 0.0
-        margin = slope(ints, nums, work, clock, tally, later, slopes[NEW], slopes[12])
-        if margin < 0.0:
-            return MASSLESS
-        for i in range(size):
-            change, way = slopes[12][i] - slopes[11][i], slopes[NEW][i] - slopes[TRIED][i]
-            rough += change * change
-            moved += way * way
-        # What rounding leaves near a singular pose is no decay.
-        least = max(clock[LEAST], 1e-6)
-        real = math.sqrt(rough) > 10.0 * NOISE / (least * least)
-        fastest = math.sqrt(rough / moved) if moved > 0.0 and real else 0.0
-        tally[STIFF] = tally[STIFF] + 1 if h * fastest > EDGE else 0
-        hit, share = -1, 1.0
-        due = tally[NEXT] < len(out) and times[tally[NEXT]] <= later
-        crossed = rank > 0 and clock[NOW] < clock[CROSSING] <= later
-        if due or crossed or len(ints[STOPS]) > 0:
-            prepare(ints, nums, work, clock, tally, y, h)
-            if crossed:
-                look(ints, nums, work, clock, y, h)
-            hit, share = stop_reached(ints, nums, work, y, 1.0)
-            reached = later if hit < 0 else clock[NOW] + share * h
-            while tally[NEXT] < len(out) and times[tally[NEXT]] <= reached:
-                t = times[tally[NEXT]]
-                x = min(1.0, (t - clock[NOW]) / h)
-                for i in range(size):
-                    slopes[TRIED][i] = interpolate(work, y, i, x)
-                sample(ints, nums, work, clock, t, slopes[TRIED], out[tally[NEXT]])
-                tally[NEXT] += 1
-            if hit >= 0:
-                for i in range(size):
-                    slopes[TRIED][i] = interpolate(work, y, i, share)
-                for i in range(size):
-                    y[i] = slopes[TRIED][i]
-                clock[NOW] = reached
-                tally[HIT], tally[FRESH] = hit, 1
-                return STOPPED
-        for i in range(size):
-            y[i] = slopes[NEW][i]
-            slopes[0][i] = slopes[12][i]
-        clock[MARGINS] = margin
-        clock[NOW] = later
-        clock[STEP] = h * (min(growth, 0.9 * error**-0.125) if error > 0.0 else growth)
-        if h < wanted and error < 0.4:
-            # Laid shorter than the error called for: the next need not be.
-            clock[STEP] = max(clock[STEP], wanted)
-        if fastest * clock[STEP] > EDGE:
-            # Within half the region of stability, for the dense output too.
-            clock[STEP] = EDGE / fastest
-        growth = GROWTH
-        if kept < clock[KEEP]:
+        if status != TAKEN:
+            return status
+        fastest = fastest_decay(ints, work, clock, tally)
+        if pass_through(ints, nums, work, y, clock, tally, outputs) == STOPPED:
+            return STOPPED
+        accept(ints, work, y, clock, fastest)
+        if clock[WEAR] < clock[KEEP]:
             return WORN
         if tally[STIFF] >= clock[PATIENCE]:
             tally[FRESH] = 1

@@ -1,4 +1,4 @@
-"""What acts: on shafts, on links, and between points of two links.
+"""What acts: laws of time, efforts on shafts, wrenches on links, and between points of two links.
 
 Efforts of drives go to work[VECTORS][FORCE] and [GIVEN], wrenches to the links as less that they need.
 """
@@ -7,100 +7,93 @@ from __future__ import annotations
 
 import math
 
-from kinform.simulation.kernel.layout import (
-    AT_Q,
-    AT_V,
-    DAMPER,
-    DOES,
-    EFFORT,
-    FIRST_STATE,
-    FORCE,
-    GIVEN,
-    LAW,
-    MOTOR,
-    SECOND_STATE,
-    SERVO,
-    SPRING,
-    TWIST,
-    WRENCH,
-)
-from kinform.simulation.kernel.signals import law
-from kinform.simulation.kernel.types import Counts, Index, Row, Table
+from kinform.model.arrays import Ints
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, six, three
 
-__all__ = ["between", "controlled", "drive", "loads", "pace", "push"]
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, SIGNALS, ACTORS, PIECES,
+    POSITIONS, RATES, TWIST, WRENCH, DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE, EFFORT, SPRING, DAMPER, SERVO,
+    MOTOR, STRAIGHT, WAVE, SHAPE, FIRST_PIECE, PIECE_COUNT,
+    FORCE, GIVEN,
+    Row, Table, Index, Nums, Vector,
+)  # fmt: skip
 
 
-def controlled(
-    actor: Counts,
-    numbers: Row,
-    values: Table,
-    pieces: Table,
-    first: int,
-    at: int,
-    held: float,
-    t: float,
-    q: float,
-    v: float,
-    dy: Row,
-) -> float:
-    """Output of the controller whose kp, ki, kd, limit begin in column `first` of the actor."""
-    target, rate, _ = law(values, pieces, actor[LAW], t)
+__all__ = ["between", "control", "drive", "law", "loads", "pace", "push"]
+
+
+def law(values: Table, pieces: Table, k: int, t: float) -> Vector:
+    """(value, rate, acceleration) of signal k at time t."""
+    signal = values[k]
+    if signal[SHAPE] == STRAIGHT:
+        return signal[0] + signal[1] * t, signal[1], 0.0
+    if signal[SHAPE] == WAVE:
+        offset, amplitude, speed, phase = signal[0], signal[1], signal[2], signal[3]
+        s, c = math.sin(speed * t + phase), math.cos(speed * t + phase)
+        return offset + amplitude * s, amplitude * speed * c, -amplitude * speed * speed * s
+    low, high = int(signal[FIRST_PIECE]), int(signal[FIRST_PIECE] + signal[PIECE_COUNT])
+    while high - low > 1:
+        middle = (low + high) // 2
+        if pieces[middle][0] <= t:
+            low = middle
+        else:
+            high = middle
+    piece = pieces[low]
+    x, a, b, c, d = t - piece[0], piece[1], piece[2], piece[3], piece[4]
+    return ((a * x + b) * x + c) * x + d, (3.0 * a * x + 2.0 * b) * x + c, 6.0 * a * x + 2.0 * b
+
+
+def control(ints: Ints, nums: Nums, k: int, t: float, y: Row, dy: Row) -> float:
+    """Output of the controller of actor k; the rate of its integral, where it has one, goes to dy."""
+    actor, numbers = ints[ACTORS][k], nums[ACTORS][k]
+    q, v = y[actor[AT_Q]], y[ints[COUNTS][0][POSITIONS] + actor[AT_V]]
+    # kp, ki, kd and limit are the first numbers of a servo, and come after those of a motor.
+    first, at = (0, actor[FIRST_STATE]) if actor[DOES] == SERVO else (4, actor[SECOND_STATE])
+    target, rate, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
     wanted = numbers[first] * (target - q) + numbers[first + 2] * (rate - v)
     limit = numbers[first + 3]
     if at >= 0:
-        wanted += numbers[first + 1] * held
+        wanted += numbers[first + 1] * y[at]
         # The integral rests while the output is at its limit and it would push further (anti-windup).
         stuck = (wanted > limit and target > q) or (wanted < -limit and target < q)
         dy[at] = 0.0 if stuck else target - q
     return float(min(max(wanted, -limit), limit))
 
 
-def drive(
-    actors: Index,
-    numbers: Table,
-    values: Table,
-    pieces: Table,
-    force: Table,
-    t: float,
-    y: Row,
-    dy: Row,
-    first: int,
-    n: int,
-) -> float:
-    """Efforts on the shafts; rates of the actors' states go to dy. The power that they put in, springs
-    apart, which store."""
-    power = 0.0
-    for k in range(n):
-        force[FORCE][k] = 0.0
-        force[GIVEN][k] = 0.0
+def drive(ints: Ints, nums: Nums, vectors: Table, t: float, y: Row, dy: Row) -> float:
+    """Efforts on the shafts, into [FORCE] and [GIVEN]; rates of the actors' states go to dy. The power that they put
+    in, springs apart, which store."""
+    actors, power = ints[ACTORS], 0.0
+    for k in range(ints[COUNTS][0][RATES]):
+        vectors[FORCE][k] = 0.0
+        vectors[GIVEN][k] = 0.0
     for k in range(len(actors)):
-        actor, number = actors[k], numbers[k]
-        q, v = y[actor[AT_Q]], y[first + actor[AT_V]]
-        does, one, two = actor[DOES], actor[FIRST_STATE], actor[SECOND_STATE]
+        actor, number = actors[k], nums[ACTORS][k]
+        q, v = y[actor[AT_Q]], y[ints[COUNTS][0][POSITIONS] + actor[AT_V]]
+        does, current_at = actor[DOES], actor[FIRST_STATE]
         effort = 0.0
         if does == EFFORT:
-            effort, _, _ = law(values, pieces, actor[LAW], t)
+            effort, _, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
         elif does == SPRING:
             effort = number[0] * (number[1] - q)
         elif does == DAMPER:
             effort = -number[0] * v
         elif does == SERVO:
-            effort = controlled(actor, number, values, pieces, 0, one, y[one], t, q, v, dy)
+            effort = control(ints, nums, k, t, y, dy)
         elif does >= MOTOR:
             if does == MOTOR:
-                voltage, _, _ = law(values, pieces, actor[LAW], t)
+                voltage, _, _ = law(nums[SIGNALS], nums[PIECES], actor[LAW], t)
             else:
-                voltage = controlled(actor, number, values, pieces, 4, two, y[two], t, q, v, dy)
+                voltage = control(ints, nums, k, t, y, dy)
             constant = number[2] * number[3]
-            if one >= 0:
-                current = y[one]
-                dy[one] = (voltage - number[0] * current - constant * v) / number[1]
+            if current_at >= 0:
+                current = y[current_at]
+                dy[current_at] = (voltage - number[0] * current - constant * v) / number[1]
             else:
                 current = (voltage - constant * v) / number[0]
             effort = constant * current
-        force[FORCE][actor[AT_V]] += effort
-        force[GIVEN][actor[AT_V]] += effort
+        vectors[FORCE][actor[AT_V]] += effort
+        vectors[GIVEN][actor[AT_V]] += effort
         if does != SPRING:
             power += effort * v
     return power

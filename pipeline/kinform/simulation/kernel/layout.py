@@ -1,13 +1,33 @@
 """Where the numbers of the kernel are: tables in three tuples, and the columns of each table.
 
+Functions import from here what they use, grouped by the table that it belongs to: tables, their columns and kinds, rows
+of [VECTORS], the clock, the tally, what the integrator returns, types.
+
 The kernel takes `ints` and `nums`, the constants of a mechanism, and `work`, scratch space, as tuples of
 two-dimensional tables, lists of rows where they are not compiled: few arguments of few types are what keeps
 compilation short. Rates are numbered in the order of the tree, so that what carries a rate has a lower number.
 
 State: y = (q, v, x, w): positions, rates, states of controllers and motors, work put in so far.
+
+The names of the types below are what the signatures of the compiled functions are made from (`compiled`). Not compiled,
+tables are lists of rows, which Python reads and writes several times faster than arrays.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+Row: TypeAlias = list[float]
+"""Compiled, it knows not its length."""
+Counts: TypeAlias = list[int]
+"""Compiled, it knows not its length."""
+Table: TypeAlias = list[Row]
+Index: TypeAlias = list[Counts]
+Ints: TypeAlias = Sequence[Index]
+Nums: TypeAlias = Sequence[Table]
+Work: TypeAlias = Sequence[Table]
+Vector: TypeAlias = tuple[float, float, float]
 
 # Tables of integers.
 COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, ACTORS, LOADS, SPRINGS, MODE, STOPS = range(10)
@@ -61,26 +81,42 @@ EFFORT, SPRING, DAMPER, SERVO, MOTOR, CONTROLLED = range(6)
 # nums[SIGNALS]: four numbers, the kind, first of its pieces and how many. Kinds: polynomial of degree one,
 # sine, pieces of cubics.
 STRAIGHT, WAVE, CURVE = range(3)
+SHAPE, FIRST_PIECE, PIECE_COUNT = 4, 5, 6
+"""Columns of the kind and of the pieces."""
 
 COEFFICIENTS = 11
-"""nums: of the integrator. Rows 0 to 15 a_ij, then b, c, both error estimates, and four of dense output."""
-B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW = 16, 17, 18, 19, 20
+"""nums: of the integrator. Rows 0 to 15 a_ij, then b, c, both error estimates, four of dense output, and the numbers of
+the evaluations of a step in the order of their times."""
+B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW, ORDER_ROW = 16, 17, 18, 19, 20, 24
+
+# ints[STOPS]; nums[STOPS] holds the limits.
+STOP_Q, STOP_V, SENSE, HELD = range(4)
+"""Position and rate of the joint, in which direction it may not go on (1 or −1), whether it is held there."""
 
 # work[STAGES]: sixteen slopes, then the state tried, the new state, scratch, and what rounding does to slopes.
-TRIED, NEW, ROUND = 16, 17, 19
+AT_END, TRIED, NEW, ROUND = 12, 16, 17, 19
+"""AT_END: the slope at the end of the step; those before and after are of the method and of its dense output."""
 
-# clock: times (s) and tolerances; tally: counts; both are rows that the integrator changes.
-NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE = range(13)
-CROSSING, MARGINS, CLOCK = 13, 14, 26
-"""Time of a singular pose ahead; margins at the twelve evaluations of a step; how many numbers."""
-STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT = range(8)
+# clock: times (s), tolerances, and what is known of the step on trial; tally: counts. Both are rows that the
+# integrator changes.
+NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING = range(14)
+"""STEP: the length to try next. MARGIN: the least of the run, at the time TIGHTEST. LEAST: the least margin in the step.
+CROSSING: time of a singular pose ahead. The others are settings, see `Run`."""
+SPAN, REACHED, ERROR, WEAR, GROWTH, MARGINS, CLOCK = 14, 15, 16, 17, 18, 19, 32
+"""SPAN and REACHED: length and end of the step on trial. ERROR: its error over the tolerance. WEAR: smallest pivot over
+that of its choice at its end. GROWTH: what the next may be longer by. MARGINS: at its twelve evaluations and its end.
+CLOCK: how many numbers."""
+STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS, TALLY = range(10)
+"""Steps tried; how many may be in one call; the next output, and which to come back before; steps in a row that a decay
+kept short; evaluations; whether stage 0 is to be computed; the stop reached; times that a step was laid anew; how many
+counts."""
 
-NOISE = 1e-13
-"""Relative rounding of accelerations, times the pivots' ratio: what remains of closed loops."""
+FAILED = 1e300
+"""Error of a step whose evaluations could not be made."""
 
 # What the integrator fills.
 TIMES, OUT = range(2)
 """A row of the times (s) at which outputs are due; a row of output for each."""
 
-# What the integrator returns.
-DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN = range(9)
+# What the integrator returns, and what one attempt at a step does.
+DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED = range(11)

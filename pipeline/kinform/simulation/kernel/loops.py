@@ -8,40 +8,16 @@ order dependent d, free i, led l the loops say x_d = g − B x_il; motions E = (
 from __future__ import annotations
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.layout import (
-    BEFORE,
-    CHOSEN,
-    CLOSURES,
-    COLUMNS,
-    CONSTANTS,
-    COUNTS,
-    GAP,
-    GEARS,
-    KEPT,
-    LENGTH,
-    LINKS,
-    LOWEST,
-    MODE,
-    ORDER,
-    PIVOT,
-    PLACE,
-    POSITIONS,
-    RANK,
-    RATES,
-    REACH,
-    REFERENCE,
-    ROWS,
-    SCALE,
-    SCREWS,
-    STATE,
-    TIP,
-    VECTORS,
-)
-from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
+from kinform.simulation.constants import PIVOT_SWAP
 from kinform.simulation.kernel.vectors import along, cross, dot, place, six
 
-SWAP = 1.5
-"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, LINKS, COLUMNS, CLOSURES, MODE, CONSTANTS, SCALE, GEARS, STATE, SCREWS, ROWS, VECTORS,
+    RANK, POSITIONS, RATES, LENGTH, TIP, BEFORE, CHOSEN, ORDER, PLACE, LOWEST, REACH,
+    GAP, PIVOT, REFERENCE, KEPT,
+    Row, Table, Index, Nums, Work,
+)  # fmt: skip
+
 
 __all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
@@ -72,17 +48,16 @@ def gained(closures: Index, numbers: Table, state: Table, length: float, row: in
     return total
 
 
-def gap_of(
-    counts: Index, closures: Index, numbers: Table, gears: Table, state: Table, y: Row, length: float, row: int
-) -> float:
-    """What row `row` has open in the positions."""
+def gap_of(ints: Ints, nums: Nums, state: Table, y: Row, row: int) -> float:
+    """What row `row` of the loops has open in the positions of y, which the links' poses have."""
+    counts, closures, total = ints[COUNTS][0], ints[CLOSURES], 0.0
     loop, axis = row // 6, row % 6
-    total = 0.0
     if loop >= len(closures):
-        for k in range(counts[0][POSITIONS]):
-            total += gears[row - 6 * len(closures)][counts[0][RATES] + k] * y[k]
+        gear = nums[GEARS][row - 6 * len(closures)]
+        for k in range(counts[POSITIONS]):
+            total += gear[counts[RATES] + k] * y[k]
         return total
-    a, b, frame = state[closures[loop][0]], state[closures[loop][1]], numbers[loop]
+    a, b, frame = state[closures[loop][0]], state[closures[loop][1]], nums[CLOSURES][loop]
     e0, e1, e2 = along(a, frame, 3 * (axis % 3))
     if axis < 3:
         # Half the sum of cross products of the axes: the sine of the turn along its axis.
@@ -92,7 +67,7 @@ def gap_of(
         return total
     x0, x1, x2 = place(a, frame, 9)
     z0, z1, z2 = place(b, frame, 9)
-    return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / length
+    return dot(e0, e1, e2, z0 - x0, z1 - x1, z2 - x2) / nums[CONSTANTS][0][LENGTH]
 
 
 def gather(ints: Ints, nums: Nums, work: Work, count: int) -> None:
@@ -156,7 +131,7 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
         last = lowest[k] if lowest[k] > last else last
         lowest[k] = last
         for i in range(k + 1, last + 1):
-            if abs(rows[i][k]) > SWAP * abs(rows[best][k]):
+            if abs(rows[i][k]) > PIVOT_SWAP * abs(rows[best][k]):
                 best = i
         if best != k:
             # The same rows in an order that suits the pose, kept for the next: else a chain of loops

@@ -9,31 +9,15 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.layout import (
-    BEFORE,
-    COLUMNS,
-    COM,
-    CONSTANTS,
-    FIRST,
-    FORCE,
-    GAIN,
-    GRAVITY,
-    HEAVY,
-    INERT,
-    LINKS,
-    MASS,
-    PARENT,
-    SCREWS,
-    STATE,
-    TENSOR,
-    TWIST,
-    VECTORS,
-    WEIGHT,
-    WIDTH,
-    WRENCH,
-)
-from kinform.simulation.kernel.types import Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import add, along, cross, dot, place, put, six, three
+
+from kinform.simulation.kernel.layout import (  # isort: skip
+    LINKS, COLUMNS, CONSTANTS, STATE, SCREWS, MASS, VECTORS,
+    GRAVITY, PARENT, FIRST, WIDTH, HEAVY, WEIGHT, COM, TENSOR, BEFORE, TWIST, GAIN, WRENCH, INERT,
+    FORCE,
+    Row, Table, Nums, Work,
+)  # fmt: skip
+
 
 __all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]
 

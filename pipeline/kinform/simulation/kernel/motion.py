@@ -9,28 +9,14 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.layout import (
-    AXIS,
-    BALL,
-    COUNTS,
-    FIRST,
-    GAIN,
-    KIND,
-    LINKS,
-    PARENT,
-    POINT,
-    POS,
-    POSITIONS,
-    SCREW,
-    SCREWS,
-    SLIDE,
-    STATE,
-    TWIST,
-    WIDTH,
-    Q,
-)
-from kinform.simulation.kernel.types import Nums, Row, Table, Work
 from kinform.simulation.kernel.vectors import along, cross, place, put, six, turned
+
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, LINKS, STATE, SCREWS,
+    POSITIONS, PARENT, KIND, Q, FIRST, WIDTH, SCREW, BALL, AXIS, POINT, SLIDE, POS, TWIST, GAIN,
+    Row, Nums, Work,
+)  # fmt: skip
+
 
 __all__ = ["place_ball", "place_links", "place_screw", "twist_links"]
 
@@ -62,10 +48,11 @@ def place_screw(numbers: Row, parent: Row, link: Row, screw: Row, q: float) -> N
     put(screw, 3, m0 + s0, m1 + s1, m2 + s2)
 
 
-def place_ball(
-    numbers: Row, parent: Row, link: Row, screws: Table, k: int, forward: bool, a: float, b: float, c: float, d: float
-) -> None:
-    """Pose and three screws, from number k, of a link at the quaternion (a, b, c, d)."""
+def place_ball(ints: Ints, nums: Nums, work: Work, y: Row, i: int) -> None:
+    """Pose and three screws of link i, which is a ball, at its quaternion in y."""
+    row, numbers, link, screws = ints[LINKS][i], nums[LINKS][i], work[STATE][i], work[SCREWS]
+    parent, k, at, forward = work[STATE][row[PARENT]], row[FIRST], row[Q], row[KIND] == BALL
+    a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
     twice = 2.0 / (a * a + b * b + c * c + d * d)
     x0, x1, x2 = place(parent, numbers, POINT)
     turn = 1.0 if forward else -1.0
@@ -93,12 +80,10 @@ def place_links(ints: Ints, nums: Nums, work: Work, y: Row) -> None:
     links, numbers, state, screws = ints[LINKS], nums[LINKS], work[STATE], work[SCREWS]
     for i in range(1, len(links)):
         link = links[i]
-        at, k, parent = link[Q], link[FIRST], state[link[PARENT]]
         if link[KIND] == SCREW:
-            place_screw(numbers[i], parent, state[i], screws[k], y[at])
+            place_screw(numbers[i], state[link[PARENT]], state[i], screws[link[FIRST]], y[link[Q]])
         else:
-            forward = link[KIND] == BALL
-            place_ball(numbers[i], parent, state[i], screws, k, forward, y[at], y[at + 1], y[at + 2], y[at + 3])
+            place_ball(ints, nums, work, y, i)
 
 
 def twist_links(ints: Ints, work: Work, y: Row) -> None:

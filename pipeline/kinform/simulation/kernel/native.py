@@ -3,7 +3,7 @@
 An array of numba's is nine numbers with a count of who holds it, and its indices may be negative: with
 thirty of them as arguments, most of the time of compiling, and a third of that of the equations of a
 small mechanism, went into handing them on. Here a row is an address, a table an address with its rows and
-columns, and a tuple of tables the address of a list of those (`addresses`). Nothing is checked: indices
+columns, and a tuple of tables the address of a list of those (`tables.addresses`). Nothing is checked: indices
 must lie within, and nothing keeps the arrays but who calls.
 """
 

@@ -8,31 +8,16 @@ when there are none: Eᵀ (M x − f) vanishes for the free ones, and is the eff
 from __future__ import annotations
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.layout import (
-    ACC,
-    BEFORE,
-    COLUMNS,
-    COUNTS,
-    FORCE,
-    GAP,
-    HALF,
-    LED,
-    MASS,
-    MODE,
-    MOTIONS,
-    NEED,
-    ORDER,
-    RANK,
-    RATES,
-    REDUCED,
-    RIGHT,
-    ROWS,
-    TRIAL,
-    VECTORS,
-)
 from kinform.simulation.kernel.loops import back_substitute, eliminate, gather
 from kinform.simulation.kernel.masses import cholesky, solve_cholesky
-from kinform.simulation.kernel.types import Index, Nums, Row, Table, Work
+
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, COLUMNS, MODE, MASS, ROWS, HALF, REDUCED, VECTORS, MOTIONS,
+    RANK, LED, RATES, BEFORE, ORDER,
+    FORCE, ACC, NEED, GAP, TRIAL, RIGHT,
+    Row, Table, Index, Nums, Work,
+)  # fmt: skip
+
 
 __all__ = ["factor", "reduce", "settle", "weigh"]
 

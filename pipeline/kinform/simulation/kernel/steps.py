@@ -9,50 +9,30 @@ from __future__ import annotations
 import math
 
 from kinform.model.arrays import Ints
-from kinform.simulation.kernel.equations import derivative, project, torn
-from kinform.simulation.kernel.layout import (
-    ATOL,
-    B_ROW,
-    C_ROW,
-    CLOSED,
-    COEFFICIENTS,
-    COUNTS,
-    D_ROW,
-    DENSE,
-    E3_ROW,
-    E5_ROW,
-    LEAST,
-    MARGIN,
-    MARGINS,
-    NEAR,
-    NEW,
-    NOISE,
-    NOW,
-    RANK,
-    ROUND,
-    RTOL,
-    SIZE,
-    SLOPES,
-    STAGES,
-    TIGHTEST,
-    TRIED,
+from kinform.simulation.constants import (
+    CLOSED_SHARE,
+    DISTURBANCE,
+    LEAST_NOISY_MARGIN,
+    ROUGHER_SLOPES,
+    ROUNDING_NOISE,
+    THIRD_ORDER_SHARE,
 )
-from kinform.simulation.kernel.types import Counts, Nums, Row, Work
+from kinform.simulation.kernel.equations import derivative, project, torn
 
-CLOSE = 1e-4
-"""Loops at an evaluation of a step are closed to this share of the tolerance."""
+from kinform.simulation.kernel.layout import (  # isort: skip
+    COUNTS, STAGES, DENSE, COEFFICIENTS,
+    RANK, SIZE, B_ROW, C_ROW, E3_ROW, E5_ROW, D_ROW, AT_END, TRIED, NEW, ROUND, FAILED,
+    NOW, RTOL, ATOL, CLOSED, NEAR, MARGIN, TIGHTEST, LEAST, SPAN, MARGINS,
+    SLOPES,
+    Row, Counts, Nums, Work,
+)  # fmt: skip
 
-EPSILON = 2.0**-51
-"""A rounding or two of a number, as a share of it."""
-ROUGH = 4.0
-"""Times what one disturbance does to the slopes: others do more."""
 
 __all__ = ["interpolate", "prepare", "roundings", "slope", "stage", "try_step"]
 
 
-def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: float, y: Row, dy: Row) -> float:
+def slope(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, dy: Row) -> float:
     """The derivative, in y closed first when a singular pose is near: accelerations depend on it there."""
-    tally[SLOPES] += 1
     margin = derivative(ints, nums, work, t, y, dy)
     clock[LEAST] = min(clock[LEAST], abs(margin))
     if 0.0 <= margin < clock[NEAR] and ints[COUNTS][0][RANK] > 0:
@@ -60,7 +40,7 @@ def slope(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, t: floa
             clock[MARGIN], clock[TIGHTEST] = margin, t
         # An error of accelerations grows with the inverse square of the margin.
         share = margin / clock[NEAR]
-        closed = max(clock[CLOSED], CLOSE * clock[RTOL] * share * share)
+        closed = max(clock[CLOSED], CLOSED_SHARE * clock[RTOL] * share * share)
         if margin == 0.0 or torn(ints, nums, work, y) > closed:
             project(ints, nums, work, t, y, closed, margin > 0.0)
             margin = derivative(ints, nums, work, t, y, dy)
@@ -78,34 +58,35 @@ def roundings(ints: Ints, nums: Nums, work: Work, tally: Counts, y: Row, t: floa
         slopes[TRIED][i] = y[i]
     derivative(ints, nums, work, t, slopes[TRIED], slopes[ROUND])
     for i in range(size):
-        slopes[TRIED][i] = y[i] * (1.0 + (EPSILON if i % 3 != 1 else -EPSILON))
+        slopes[TRIED][i] = y[i] * (1.0 + (DISTURBANCE if i % 3 != 1 else -DISTURBANCE))
     if derivative(ints, nums, work, t, slopes[TRIED], slopes[NEW]) < 0.0:
         return
     for i in range(size):
         slopes[ROUND][i] = abs(slopes[NEW][i] - slopes[ROUND][i])
 
 
-def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float, s: int) -> float:
-    """Evaluation number s of the step h from y, from those before; its state stays in row TRIED."""
-    slopes, shares, tried = work[STAGES], nums[COEFFICIENTS][s], work[STAGES][TRIED]
+def stage(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, s: int) -> float:
+    """Evaluation number s of the step from y, from those before; its state stays in row TRIED."""
+    slopes, shares, tried, h = work[STAGES], nums[COEFFICIENTS][s], work[STAGES][TRIED], clock[SPAN]
     for i in range(ints[COUNTS][0][SIZE]):
         total = 0.0
         for j in range(s):
             total += shares[j] * slopes[j][i]
         tried[i] = y[i] + h * total
-    return slope(ints, nums, work, clock, tally, clock[NOW] + nums[COEFFICIENTS][C_ROW][s] * h, tried, slopes[s])
+    tally[SLOPES] += 1
+    return slope(ints, nums, work, clock, clock[NOW] + nums[COEFFICIENTS][C_ROW][s] * h, tried, slopes[s])
 
 
-def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float) -> float:
-    """Slopes of one step and the new state; its error over the tolerance."""
-    slopes, new, size = work[STAGES], work[STAGES][NEW], ints[COUNTS][0][SIZE]
+def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> float:
+    """Slopes of the step from y and the new state; its error over the tolerance, FAILED where it has none."""
+    slopes, new, size, h = work[STAGES], work[STAGES][NEW], ints[COUNTS][0][SIZE], clock[SPAN]
     b_row, e3_row, e5_row = nums[COEFFICIENTS][B_ROW], nums[COEFFICIENTS][E3_ROW], nums[COEFFICIENTS][E5_ROW]
     clock[LEAST] = 1.0
     for s in range(1, 12):
-        margin = stage(ints, nums, work, clock, tally, y, h, s)
+        margin = stage(ints, nums, work, clock, tally, y, s)
         if margin < 0.0:
             # So far off the motion that numbers overflow, most often: with a shorter step it may be well.
-            return 1e300
+            return FAILED
         clock[MARGINS + s] = margin
     third, fifth = 0.0, 0.0
     for i in range(size):
@@ -117,27 +98,27 @@ def try_step(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: R
             five += e5_row[j] * value
         new[i] = y[i] + h * total
         # What rounding does to a slope no step can do better than.
-        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGH * slopes[ROUND][i]
+        allowed = clock[ATOL] + clock[RTOL] * max(abs(y[i]), abs(new[i])) + h * ROUGHER_SLOPES * slopes[ROUND][i]
         three, five = three / allowed, five / allowed
         third += three * three
         fifth += five * five
     if fifth == 0.0 and third == 0.0:
         return 0.0
     # Near a singular pose rounding errors of the accelerations grow: no step can do better than they.
-    noise = max(1.0, NOISE / max(clock[LEAST], 1e-5) / clock[RTOL])
-    return float(h * fifth / math.sqrt((fifth + 0.01 * third) * size) / noise)
+    noise = max(1.0, ROUNDING_NOISE / max(clock[LEAST], LEAST_NOISY_MARGIN) / clock[RTOL])
+    return float(h * fifth / math.sqrt((fifth + THIRD_ORDER_SHARE * third) * size) / noise)
 
 
-def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row, h: float) -> None:
+def prepare(ints: Ints, nums: Nums, work: Work, clock: Row, tally: Counts, y: Row) -> None:
     """Coefficients of the dense output of the step from y to the new state."""
-    slopes, table, dense = work[STAGES], nums[COEFFICIENTS], work[DENSE]
+    slopes, table, dense, h = work[STAGES], nums[COEFFICIENTS], work[DENSE], clock[SPAN]
     for s in range(13, 16):
-        stage(ints, nums, work, clock, tally, y, h, s)
+        stage(ints, nums, work, clock, tally, y, s)
     for i in range(ints[COUNTS][0][SIZE]):
         rise = slopes[NEW][i] - y[i]
         dense[0][i] = rise
         dense[1][i] = h * slopes[0][i] - rise
-        dense[2][i] = 2.0 * rise - h * (slopes[12][i] + slopes[0][i])
+        dense[2][i] = 2.0 * rise - h * (slopes[AT_END][i] + slopes[0][i])
         for r in range(4):
             total, shares = 0.0, table[D_ROW + r]
             for j in range(16):

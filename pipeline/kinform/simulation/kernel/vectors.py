@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from kinform.simulation.kernel.types import Row, Vector
+from kinform.simulation.kernel.layout import (  # isort: skip
+    Row, Vector,
+)  # fmt: skip
+
 
 __all__ = ["add", "along", "cross", "dot", "place", "put", "six", "three", "turned"]
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.mechanism import Mechanism
-from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.settings import SolverSettings
 
 __all__ = ["Factor", "factor", "rank_of", "settle"]
 

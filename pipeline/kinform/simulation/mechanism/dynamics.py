@@ -6,12 +6,14 @@ import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import MOVES_WITHOUT_MASS, NO_MASS
 from kinform.simulation.kernel import choice, equations, layout, masses, motion
-from kinform.simulation.kernel.types import Nums, Row, Work
-from kinform.simulation.kernel.uncompiled import plainly
+from kinform.simulation.kernel.calls import plainly
+from kinform.simulation.kernel.layout import Nums, Row, Work
+from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.closure import factor
-from kinform.simulation.mechanism.kernel_tables import Tables, tabulate
+from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
 
@@ -57,16 +59,15 @@ class Dynamics:
     def weightless(self, q: Array) -> tuple[str, ...]:
         """Joints that take part in free motions without mass: their acceleration is undetermined."""
         mechanism, free = self.mechanism, self.actuation.free
-        screws = mechanism.screws(mechanism.poses(q))
         scale = mechanism.scale[free]
-        null = factor(mechanism.closure(screws)[:, free], scale, self.rank).null
+        null = factor(mechanism.closure_at(q)[:, free], scale, self.rank).null
         if not null.shape[1]:
             return ()
         inner = null.T @ self.mass_matrix(q)[np.ix_(free, free)] @ null
         values, vectors = np.linalg.eigh(inner)
-        empty = null @ vectors[:, values <= 1e-13 * max(float(values.max()), 1e-300)]
-        moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > 1e-6]
-        return tuple(s.name for s in mechanism.slots if np.any((moving >= s.v.start) & (moving < s.v.stop)))
+        empty = null @ vectors[:, values <= NO_MASS * max(float(values.max()), 1e-300)]
+        moving = free[np.abs(empty / scale[:, None]).max(axis=1, initial=0.0) > MOVES_WITHOUT_MASS]
+        return mechanism.joints_of(moving)
 
     def energy(self, q: Array, states: States) -> tuple[Array, Array]:
         """(T,) kinetic, and potential energy relative to the pose of the meshes with springs (J)."""
@@ -75,8 +76,8 @@ class Dynamics:
         com = (R @ self.com[:, :, None])[..., 0] + p
         spin = V[..., :3]
         speed = V[..., 3:] + np.cross(spin, com)
-        own = (R.swapaxes(-1, -2) @ spin[..., None])[..., 0]
-        turning = np.einsum("tbi,bij,tbj->t", own, self.inertia, own)
+        local = (R.swapaxes(-1, -2) @ spin[..., None])[..., 0]
+        turning = np.einsum("tbi,bij,tbj->t", local, self.inertia, local)
         kinetic = 0.5 * (turning + (speed**2).sum(axis=2) @ self.mass)
         height = -((com - self.com) @ self.gravity) @ self.mass
         return kinetic, height + self.actuation.stored(q, states.poses)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
@@ -12,65 +9,11 @@ from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Spline, Tabl
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
-from kinform.simulation.kernel.addresses import addresses
+from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
 
-__all__ = ["Tables", "tabulate"]
-
-
-@dataclass(frozen=True, eq=False)
-class Tables:
-    """Constants and scratch of the kernel, and how its order of coordinates relates to the mechanism's."""
-
-    ints: tuple[Ints, ...]
-    nums: tuple[Array, ...]
-    work: tuple[Array, ...]
-    q_order: Ints
-    """(nq,) position of the mechanism that each of the kernel's is."""
-    v_order: Ints
-    """(n,) the same of rates."""
-    states: int
-    """How many states controllers and motors have."""
-
-    @cached_property
-    def addresses(self) -> tuple[Ints, Ints, Ints]:
-        """Where compiled functions find the tables, which stay where they are."""
-        return addresses(self.ints), addresses(self.nums), addresses(self.work)
-
-    @cached_property
-    def constants(self) -> list[list[list[float]]]:
-        """The tables of `nums` after the first, which nothing changes, as lists of rows."""
-        return [table.tolist() for table in self.nums[1:]]
-
-    @property
-    def size(self) -> int:
-        """Length of the kernel's state."""
-        return len(self.q_order) + len(self.v_order) + self.states + 1
-
-    def pack(self, q: Array, v: Array) -> Array:
-        """The kernel's state with these positions and rates, all else zero."""
-        y = np.zeros(self.size)
-        y[: len(q)] = q[self.q_order]
-        y[len(q) : len(q) + len(v)] = v[self.v_order]
-        return y
-
-    def unpack(self, y: Array) -> tuple[Array, Array]:
-        """Positions (…, nq) and rates (…, n) of the mechanism in states (…, size)."""
-        nq, n = len(self.q_order), len(self.v_order)
-        return self.positions(y[..., :nq]), self.rates(y[..., nq : nq + n])
-
-    def positions(self, values: Array) -> Array:
-        """Positions in the kernel's order put in the mechanism's."""
-        out = np.empty_like(values)
-        out[..., self.q_order] = values
-        return out
-
-    def rates(self, values: Array) -> Array:
-        """Rates, accelerations or efforts in the kernel's order put in the mechanism's."""
-        out = np.empty_like(values)
-        out[..., self.v_order] = values
-        return out
+__all__ = ["tabulate"]
 
 
 def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Actuation, rank: int) -> Tables:
@@ -287,7 +230,7 @@ def _coefficients() -> Array:
     """nums[COEFFICIENTS], from scipy's own integrator of this method."""
     from scipy.integrate import DOP853
 
-    out = np.zeros((24, 16))
+    out = np.zeros((25, 16))
     out[:12, :12] = DOP853.A[:12, :12]
     out[12, :12] = DOP853.B
     out[13:16] = DOP853.A_EXTRA
@@ -297,5 +240,6 @@ def _coefficients() -> Array:
     out[layout.C_ROW, 13:16] = DOP853.C_EXTRA
     out[layout.E3_ROW, :13] = DOP853.E3
     out[layout.E5_ROW, :13] = DOP853.E5
-    out[layout.D_ROW :] = DOP853.D
+    out[layout.D_ROW : layout.D_ROW + 4] = DOP853.D
+    out[layout.ORDER_ROW, :12] = np.argsort(DOP853.C[:12], kind="stable")
     return out

@@ -10,6 +10,7 @@ Positions q hold four numbers for a ball, rates v three; otherwise they agree.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -168,12 +169,23 @@ class Mechanism:
         return np.concatenate([loops.ravel(), self.gear_q @ q])
 
     def closure(self, screws: Array) -> Array:
-        """(6C + G, n) derivative of the gap by the rates, about the centre."""
+        """(…, 6C + G, n) derivative of the gap by the rates, about the centre, at screws (…, n, 6)."""
         if len(self.closures) == 0:
-            return self.gear_v
+            return np.broadcast_to(self.gear_v, (*screws.shape[:-2], *self.gear_v.shape))
         difference = self.moves[self.closures[:, 1]] - self.moves[self.closures[:, 0]]
-        rows = difference[:, None, :] * (screws / self._row_scale).T[None]
-        return np.concatenate([rows.reshape(-1, self.rates), self.gear_v])
+        rows = difference[:, None, :] * (screws / self._row_scale).swapaxes(-1, -2)[..., None, :, :]
+        rows = rows.reshape(*screws.shape[:-2], -1, self.rates)
+        gears = np.broadcast_to(self.gear_v, (*screws.shape[:-2], *self.gear_v.shape))
+        return np.concatenate([rows, gears], axis=-2)
+
+    def closure_at(self, q: Array) -> Array:
+        """(6C + G, n) derivative of the gap by the rates at positions (nq,)."""
+        return self.closure(self.screws(self.poses(q)))
+
+    def joints_of(self, rates: Iterable[int]) -> tuple[str, ...]:
+        """Names of the joints that have any of these rates, in order."""
+        wanted = set(rates)
+        return tuple(slot.name for slot in self.slots if not wanted.isdisjoint(range(slot.v.start, slot.v.stop)))
 
     def closure_bias(self, accelerations: Array) -> Array:
         """(6C + G,) what the loops gain in acceleration from the links' (L, 6) at rates held fixed."""

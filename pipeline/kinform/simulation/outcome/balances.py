@@ -13,16 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array
+from kinform.simulation.constants import DEPENDENT_GEARS, VANISHING_WRENCH
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.outcome.gear_forces import toothed
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, applied
 
 __all__ = ["Balance", "imbalance"]
-
-
-VANISHING = 1e-6
-"""Share of the greatest wrench of the run below which wrenches are no measure of errors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,22 +38,22 @@ class Balance:
         return np.asarray(both.max(axis=1, initial=0.0))
 
 
-def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Array) -> Balance:
+def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: Array) -> Balance:
     """How far the nodes are from balance at the efforts (T, n) on their shafts."""
     mechanism, system, length = dynamics.mechanism, dynamics.system, dynamics.mechanism.length
     bodies = [mechanism.bodies[k] for k in dynamics.body_index]
-    wrench, points = found.on_second, found.points
+    wrench, points = reactions.on_second, reactions.points
     with np.errstate(over="ignore"):  # of a run that overflows
         couples = np.abs(wrench[..., :3]).max(axis=2) / length
     sizes = np.concatenate([couples, np.abs(wrench[..., 3:]).max(axis=2)], axis=1)
     external = applied(dynamics, states)
-    if found.gears is not None:
-        external = external + found.gears.wrenches[:, dynamics.body_index]
+    if reactions.gears is not None:
+        external = external + reactions.gears.wrenches[:, dynamics.body_index]
     weights = np.abs(dynamics.mass * np.linalg.norm(dynamics.gravity)).max(initial=0.0)
     scale = np.maximum(sizes.max(axis=1, initial=0.0), weights)
     scale = np.maximum(scale, np.abs(external[..., 3:]).max(axis=(1, 2), initial=0.0))
     # Where all wrenches pass zero at once, only rounding is left to be compared with rounding.
-    scale = np.maximum(scale, VANISHING * scale.max(initial=0.0))
+    scale = np.maximum(scale, VANISHING_WRENCH * scale.max(initial=0.0))
     errors = np.zeros((len(effort), len(mechanism.bodies)))
     for k, (body, link) in enumerate(zip(bodies, dynamics.body_links, strict=True)):
         X, V, A = states.poses[:, link], states.twists[:, link], states.accelerations[:, link]
@@ -66,9 +63,9 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
         rise = A[:, 3:] + np.cross(turn, com) + np.cross(spin, speed)
         force = external[:, k, 3:] + dynamics.mass[k] * (dynamics.gravity - rise)
         torque = external[:, k, :3] - np.cross(com, external[:, k, 3:])
-        own, faster = ((R.transpose(0, 2, 1) @ w[..., None])[..., 0] for w in (spin, turn))
+        omega, alpha = ((R.transpose(0, 2, 1) @ w[..., None])[..., 0] for w in (spin, turn))
         inertia = dynamics.inertia[k]
-        euler = faster @ inertia.T + np.cross(own, own @ inertia.T)
+        euler = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
         torque = torque - (R @ euler[..., None])[..., 0]
         for j, joint in enumerate(system.joints):
             for port, sign in (("a", -1.0), ("b", 1.0)):
@@ -77,18 +74,18 @@ def imbalance(dynamics: Dynamics, states: States, found: Reactions, effort: Arra
                     torque = torque + sign * (wrench[:, j, :3] + np.cross(points[:, j] - com, wrench[:, j, 3:]))
         errors[:, dynamics.body_index[k]] = np.maximum(np.abs(force).max(axis=1), np.abs(torque).max(axis=1) / length)
     least = np.where(scale > 0.0, scale, 1.0)[:, None]
-    return Balance(errors / least, _shafts(dynamics, states, found, effort) / least)
+    return Balance(errors / least, _shafts(dynamics, states, reactions, effort) / least)
 
 
-def _shafts(dynamics: Dynamics, states: States, found: Reactions, effort: Array) -> Array:
+def _shafts(dynamics: Dynamics, states: States, reactions: Reactions, effort: Array) -> Array:
     """(T, n) N, torques over the length: what the joints transmit along their rates less what acts on their shafts."""
     mechanism, length = dynamics.mechanism, dynamics.mechanism.length
     network = Network(dynamics)
-    rest = along_rates(network, states, found) - effort
+    rest = along_rates(network, states, reactions) - effort
     shafts = mechanism.gear_v[~toothed(dynamics.system)]
     if len(shafts):
         _, values, rows = np.linalg.svd(shafts)
-        passed = rows[: int(np.count_nonzero(values > 1e-12 * values[0]))]
+        passed = rows[: int(np.count_nonzero(values > DEPENDENT_GEARS * values[0]))]
         rest = rest - (rest @ passed.T) @ passed
     # A slide's effort is a force, a turn's a torque: its own screw has the unit.
     slides = ~states.screws[..., :3].any(axis=(0, 2)) if len(effort) else np.zeros(mechanism.rates, dtype=bool)

@@ -10,9 +10,9 @@ from kinform.model.simulation import DriveUse
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Acts
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.outcome.record import Record
+from kinform.simulation.solver.record import Record
 
-__all__ = ["uses"]
+__all__ = ["drive_uses"]
 
 
 _KINDS = {
@@ -21,7 +21,7 @@ _KINDS = {
 }  # fmt: skip
 
 
-def uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
+def drive_uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
     """What the drives did at the output times, prescribed motions first."""
     if not len(record.time):
         return ()
@@ -33,9 +33,11 @@ def uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
         out.append(_use(record.time, slots[v], kind, record.needed[:, v], record.v[:, v]))
     states = 0
     for actor in actuation.actors:
-        own = [record.extra[:, states + sum(actor.states[:k])] if has else None for k, has in enumerate(actor.states)]
+        columns = [
+            record.extra[:, states + sum(actor.states[:k])] if has else None for k, has in enumerate(actor.states)
+        ]
         states += sum(actor.states)
-        effort = _effort(actor, record, own)
+        effort = _effort(actor, record, columns)
         out.append(_use(record.time, actor.joint, _KINDS[actor.does], effort, record.v[:, actor.v]))
     return tuple(out)
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.components import Gear, System
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 
@@ -32,7 +31,7 @@ class Transmitted:
     """(T, B, 6) of all teeth on the bodies in the order of the system, about the mechanism's centre."""
 
 
-def toothed(system: System) -> NDArray[np.bool_]:
+def toothed(system: System) -> Flags:
     """(G,) which gears know where their teeth push."""
     return np.array([_sides(system, gear) is not None for gear in system.gears], dtype=np.bool_)
 
@@ -80,15 +79,15 @@ def transmitted(dynamics: Dynamics, states: States, sign: Array, rest: Array) ->
         twist = sense * sign[columns[0]] * states.screws[:, columns[0]]
         speed = twist[:, 3:] + np.cross(twist[:, :3], point)
         total = np.zeros((times, 6))
-        found = np.zeros(times)
+        between_teeth = np.zeros(times)
         for normal in (gear.flank, gear.back):
             along = X[:, :3, :3] @ np.asarray(normal)
             lever = np.einsum("tk,tk->t", along, speed)
             force = np.where(np.abs(lever) > 0.0, -efforts[:, k, 0] / np.where(lever != 0.0, lever, 1.0), 0.0)
             force = np.maximum(force, 0.0)
             total += force[:, None] * np.concatenate([np.cross(point, along), along], axis=1)
-            found += force
-        forces[:, k] = found
+            between_teeth += force
+        forces[:, k] = between_teeth
         wrenches[:, index[second]] += total
         wrenches[:, index[first]] -= total
     return Transmitted(efforts, forces, wrenches)

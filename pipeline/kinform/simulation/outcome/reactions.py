@@ -1,4 +1,4 @@
-"""Wrenches in the joints, from motion already known: Newton and Euler for every body, backwards.
+"""Wrenches in the joints, from motion already whole: Newton and Euler for every body, backwards.
 
 A tree of joints carries what its bodies need; joints left over close loops, and their wrenches λ are
 unknown. Every joint transmits along its freedoms what acts on its shaft: linear conditions on λ. Where
@@ -12,10 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.spatial import cross_force
-from kinform.model.arrays import Array
+from kinform.foundation.algebra.vectors import cross_matrix
+from kinform.model.arrays import Array, Flags
+from kinform.simulation.constants import CHUNK, UNDETERMINED_SHARE
 from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
@@ -23,12 +24,6 @@ from kinform.simulation.mechanism.topology import arrange
 from kinform.simulation.outcome.gear_forces import Transmitted, toothed, transmitted
 
 __all__ = ["Network", "Reactions", "along_rates", "applied", "joint_points", "needs", "reactions"]
-
-
-OPEN = 1e-6
-"""A component that the choice of λ changes by more than this share of itself is not determined."""
-CHUNK = 128
-"""Times solved at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +34,7 @@ class Reactions:
     """(T, J, 6) wrench (τ; f) on the second body of each joint; on the first it is the opposite."""
     points: Array
     """(T, J, 3) m, about the mechanism's centre: each joint's point as its first body carries it."""
-    undetermined: NDArray[np.bool_]
+    undetermined: Flags
     """(J, 6)."""
     gears: Transmitted | None = None
     """What gears pass on; None without any."""
@@ -50,21 +45,21 @@ def reactions(dynamics: Dynamics, states: States, effort: Array, free: float) ->
     network = Network(dynamics)
     needed = network.spread(needs(dynamics, states))
     points = joint_points(dynamics, states)
-    found = _in_chunks(network, dynamics, states, needed, points, effort, free)
+    wrenches = _in_chunks(network, dynamics, states, needed, points, effort, free)
     if not len(network.gears):
-        return found
-    given = transmitted(dynamics, states, network.sign, along_rates(network, states, found) - effort)
+        return wrenches
+    gears = transmitted(dynamics, states, network.sign, along_rates(network, states, wrenches) - effort)
     teeth = toothed(dynamics.system)
     if teeth.any():
         network.gears = network.gears[~teeth]
-        found = _in_chunks(network, dynamics, states, needed - given.wrenches, points, effort, free)
-    return replace(found, gears=given)
+        wrenches = _in_chunks(network, dynamics, states, needed - gears.wrenches, points, effort, free)
+    return replace(wrenches, gears=gears)
 
 
-def along_rates(network: Network, states: States, found: Reactions) -> Array:
+def along_rates(network: Network, states: States, wrenches: Reactions) -> Array:
     """(T, n) what the joints transmit along their rates."""
-    about = found.on_second[:, network.owner].copy()
-    about[..., :3] += np.cross(found.points[:, network.owner], about[..., 3:])
+    about = wrenches.on_second[:, network.owner].copy()
+    about[..., :3] += np.cross(wrenches.points[:, network.owner], about[..., 3:])
     return np.asarray(np.einsum("tnk,tnk->tn", states.screws * network.sign[:, None], about))
 
 
@@ -75,8 +70,8 @@ def _in_chunks(
     parts = []
     rank = _rank(dynamics, states, network.gears, free) if network.closing else 0
     for first in range(0, len(effort), CHUNK):
-        some = slice(first, first + CHUNK)
-        parts.append(_solve(network, states.screws[some], needed[some], points[some], effort[some], rank))
+        times = slice(first, first + CHUNK)
+        parts.append(_solve(network, states.screws[times], needed[times], points[times], effort[times], rank))
     if not parts:
         none = np.zeros((0, len(network.first), 6))
         return Reactions(none, points, np.zeros(none.shape[1:], dtype=np.bool_))
@@ -202,18 +197,15 @@ class Network:
 
 def _rank(dynamics: Dynamics, states: States, gears: Array, free: float) -> int:
     """Rank of the loops and these gears for all rates, fixed joints left over included, decided once."""
-    from kinform.simulation.outcome.record import closure_rows
-
     mechanism = dynamics.mechanism
-    some = States(*(getattr(states, name)[:1] for name in States.__dataclass_fields__))
-    rows = closure_rows(mechanism, some)[0]
+    rows = mechanism.closure(states.screws[0])
     rows = np.concatenate([rows[: len(rows) - len(mechanism.gear_v)], gears])
     return rank_of(rows, mechanism.scale, free)
 
 
 def _solve(
     network: Network, screws: Array, needed: Array, points: Array, effort: Array, rank: int
-) -> tuple[Array, NDArray[np.bool_]]:
+) -> tuple[Array, Flags]:
     """(T, J, 6) wrenches on the second bodies about the joints' points, and (J, 6) what is not determined."""
     count, joints = len(needed), len(network.first)
     carried = np.einsum("jb,tbk->tjk", network.by_needs, needed)
@@ -226,7 +218,7 @@ def _solve(
     # λ is sought about the points of its joints, torques over the length.
     lever = np.zeros((count, loops, 6, 6))
     lever[:] = np.diag(unit)
-    lever[..., :3, 3:] = _skew(points[:, network.closing])
+    lever[..., :3, 3:] = cross_matrix(points[:, network.closing])
     # Conditions: along every freedom, what acts on the shaft; gears pass efforts on among theirs.
     S = screws * network.sign[:, None] / network.scale[:, None]
     passed = np.einsum("nc,tnk,tckl->tncl", network.by_loops[network.owner], S, lever).reshape(count, -1, 6 * loops)
@@ -240,31 +232,23 @@ def _solve(
     chosen = np.einsum("tmr,tm->tr", left[:, :, :rank], rest) / np.maximum(values[:, :rank], 1e-300)
     special = np.einsum("trl,tr->tl", right[:, :rank], chosen)
     open_ = right[:, rank:].transpose(0, 2, 1)
-    # All wrenches about their points, torques over the length: known part, and what each λ adds.
-    known = _about(carried, points) / unit
+    # All wrenches about their points, torques over the length: whole part, and what each λ adds.
+    whole = _about(carried, points) / unit
     adds = np.einsum("jc,tckl->tjkcl", network.by_loops, lever).reshape(count, joints, 6, 6 * loops)
-    adds[:, :, :3] -= _skew(points) @ adds[:, :, 3:]
+    adds[:, :, :3] -= cross_matrix(points) @ adds[:, :, 3:]
     adds = (adds / unit[:, None]).reshape(count, 6 * joints, 6 * loops)
-    known = known.reshape(count, -1) + np.einsum("tml,tl->tm", adds, special)
+    whole = whole.reshape(count, -1) + np.einsum("tml,tl->tm", adds, special)
     freedom = adds @ open_
     if open_.shape[2]:
         inner = freedom.transpose(0, 2, 1) @ freedom
-        answer = np.linalg.solve(inner, np.einsum("tmz,tm->tz", freedom, known)[..., None])
-        known = known - (freedom @ answer)[..., 0]
-        loose = (np.abs(freedom).max(axis=(0, 2)) > OPEN).reshape(joints, 6)
-    return known.reshape(count, joints, 6) * unit, loose
+        answer = np.linalg.solve(inner, np.einsum("tmz,tm->tz", freedom, whole)[..., None])
+        whole = whole - (freedom @ answer)[..., 0]
+        loose = (np.abs(freedom).max(axis=(0, 2)) > UNDETERMINED_SHARE).reshape(joints, 6)
+    return whole.reshape(count, joints, 6) * unit, loose
 
 
 def _about(wrenches: Array, points: Array) -> Array:
     """Wrenches (T, J, 6) about the centre taken to points (T, J, 3)."""
     out = wrenches.copy()
     out[..., :3] -= np.cross(points, wrenches[..., 3:])
-    return out
-
-
-def _skew(p: Array) -> Array:
-    """(…, 3, 3) matrices of p × … ."""
-    out = np.zeros((*p.shape, 3))
-    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -p[..., 2], p[..., 1], -p[..., 0]
-    out[..., 1, 0], out[..., 2, 0], out[..., 2, 1] = p[..., 2], -p[..., 1], p[..., 0]
     return out

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import DETERMINED
 from kinform.simulation.mechanism.closure import factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import states_at
-from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.settings import SolverSettings
 
-__all__ = ["Follower", "Led", "Stop"]
+__all__ = ["Follower", "Led", "PathEnd"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +37,7 @@ class Led:
 
 
 @dataclass(frozen=True)
-class Stop:
+class PathEnd:
     """The path ends at `place`, and why."""
 
     place: float
@@ -50,14 +51,14 @@ class Follower:
         self.mechanism, self.led, self.settings = mechanism, led, settings
         self.q = q.copy()
         self.unknown: Ints = np.setdiff1d(np.arange(mechanism.rates), led.v)
-        rows = mechanism.closure(mechanism.screws(mechanism.poses(self.q)))
+        rows = mechanism.closure_at(self.q)
         scale = mechanism.scale
         self.rank = rank_of(rows[:, self.unknown], scale[self.unknown], settings.free)
         self.overdriven = self.rank < rank_of(rows, scale, settings.free)
         """The led joints cannot be chosen: the loops leave them no freedom at the start."""
         self.loose = factor(rows[:, self.unknown], scale[self.unknown], self.rank).null
         """(k, d) motions of the others that the led joints do not determine."""
-        still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < 1e-8
+        still = np.abs(self.loose / scale[self.unknown][:, None]).max(axis=1, initial=0.0) < DETERMINED
         touched = np.abs(rows[:, self.unknown]).max(axis=0, initial=0.0) > 0.0
         self._determined: Ints = self.unknown[still & touched]
         self.undetermined: Ints = self.unknown[~still & touched]
@@ -68,7 +69,7 @@ class Follower:
         v = np.zeros(self.mechanism.rates)
         v[self.led.v] = self.led.rate(place)
         if self.mechanism.closed and self.rank:
-            rows = self._rows(self.q)
+            rows = self.mechanism.closure_at(self.q)
             gap = -rows @ v
             v[self.unknown] = factor(rows[:, self.unknown], self._scale, self.rank).solve(gap)
         return v
@@ -79,7 +80,7 @@ class Follower:
         a = np.zeros(self.mechanism.rates)
         a[self.led.v] = led
         if self.mechanism.closed and self.rank:
-            rows = self._rows(self.q)
+            rows = self.mechanism.closure_at(self.q)
             carried = states_at(self.mechanism, self.q[None], v[None], np.zeros((1, len(v)))).accelerations[0]
             gap = -self.mechanism.closure_bias(carried) - rows @ a
             a[self.unknown] = factor(rows[:, self.unknown], self._scale, self.rank).solve(gap)
@@ -88,9 +89,9 @@ class Follower:
 
     def open_rates(self, place: float) -> float:
         """Greatest speed at which the loops would open at the rates of `place`."""
-        return float(np.abs(self._rows(self.q) @ self.rates(place)).max(initial=0.0))
+        return float(np.abs(self.mechanism.closure_at(self.q) @ self.rates(place)).max(initial=0.0))
 
-    def go(self, start: float, end: float) -> Stop | None:
+    def go(self, start: float, end: float) -> PathEnd | None:
         """Move from `start` to `end` on the path; None when it got there."""
         if not self.mechanism.closed:
             self.q[self.led.q] = self.led.value(end)
@@ -104,12 +105,12 @@ class Follower:
                 place += step
                 step *= 2.0
                 if self._margin() < self.settings.singular:
-                    return Stop(place, self._singular())
+                    return PathEnd(place, self._singular())
                 continue
             step *= 0.5
             if step < shortest:
                 stuck = self._margin() < self.settings.doubtful
-                return Stop(place, self._singular() if stuck else why)
+                return PathEnd(place, self._singular() if stuck else why)
         return None
 
     def _step(self, place: float, step: float) -> str | None:
@@ -134,16 +135,13 @@ class Follower:
         columns, scale = self._determined, self.mechanism.scale[self._determined]
         if len(columns) == 0:
             return False
-        before = self._rows(self.q)[:, columns] * scale
+        before = self.mechanism.closure_at(self.q)[:, columns] * scale
         left, _, _ = np.linalg.svd(before, full_matrices=False)
-        after = self._rows(q)[:, columns] * scale
+        after = self.mechanism.closure_at(q)[:, columns] * scale
         return bool(np.linalg.det(left.T @ before) * np.linalg.det(left.T @ after) <= 0.0)
 
     def _margin(self) -> float:
-        return factor(self._rows(self.q)[:, self.unknown], self._scale, self.rank).margin
-
-    def _rows(self, q: Array) -> Array:
-        return self.mechanism.closure(self.mechanism.screws(self.mechanism.poses(q)))
+        return factor(self.mechanism.closure_at(self.q)[:, self.unknown], self._scale, self.rank).margin
 
     @property
     def _scale(self) -> Array:
@@ -153,6 +151,6 @@ class Follower:
         return f"{gap:.3g} rad or {gap * self.mechanism.length:.3g} m"
 
     def _singular(self) -> str:
-        names = [s.name for s in self.mechanism.slots if np.isin(np.arange(s.v.start, s.v.stop), self.led.v).any()]
+        names = self.mechanism.joints_of(self.led.v)
         led = " and ".join(names) if names else "the driven joints"
         return f"the loop is singular: {led} no longer determines the other joints (a dead point)"

@@ -1,7 +1,11 @@
-"""The implicit path, for stiff models: Radau IIA of order 5 on the kernel's derivative.
+"""Stiff models: how they are recognised, and the implicit method that goes on with them.
 
-Loops are closed again after every accepted step, as on the explicit path (Hairer and Wanner, Solving
-Ordinary Differential Equations II, sections IV.8 and VII.2).
+At tight tolerances the error estimate of an explicit method keeps its steps well inside the region of
+stability, so that the usual test at its edge finds nothing. The eigenvalues of the derivative do: a decay
+as fast as the steps are short, in a run that has many steps to go.
+
+The method is Radau IIA of order 5 on the kernel's derivative. Loops are closed again after every accepted step, as on
+the explicit path (Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.8 and VII.2).
 """
 
 from __future__ import annotations
@@ -13,29 +17,62 @@ from typing import Any
 import numpy as np
 
 from kinform.model.arrays import Array
+from kinform.simulation.constants import (
+    FAST_DECAY,
+    FIRST_IMPLICIT_STEP,
+    JACOBIAN_STEP,
+    REAL_ROOT,
+    STOP_HALVINGS,
+    STOP_PASSED,
+)
 from kinform.simulation.kernel import layout
-from kinform.simulation.kernel.explicit import PASSED
-from kinform.simulation.solver.engine import Engine
-from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.stiffness import jacobian
+from kinform.simulation.solver.run import Run
 from kinform.simulation.solver.stops import Contact
 
-__all__ = ["run_implicit"]
+__all__ = ["is_stiff", "run_implicit"]
 
 
-def run_implicit(run: Run, engine: Engine, contact: Contact, report: Callable[[], None]) -> str:
+def is_stiff(run: Run) -> bool:
+    """Whether the present state decays along some direction within about a step."""
+    t, step = float(run.clock[layout.NOW]), float(run.clock[layout.STEP])
+    if step <= 0.0 or (run.clock[layout.END] - t) / step < run.settings.ahead:
+        return False
+    matrix = _jacobian(run, t, run.y)
+    if not np.all(np.isfinite(matrix)):
+        return False
+    values = np.linalg.eigvals(matrix)
+    return bool(np.any((-values.real * step > FAST_DECAY) & (np.abs(values.imag) < -values.real)))
+
+
+def _jacobian(run: Run, t: float, at: Array) -> Array:
+    """Central differences of the derivative by the state (size,), at a state."""
+    size = len(at)
+    out = np.zeros((size, size))
+    ends = np.zeros((2, size))
+    for k in range(size):
+        h = JACOBIAN_STEP * max(1.0, abs(at[k]))
+        for side, sign in enumerate((1.0, -1.0)):
+            y = at.copy()
+            y[k] += sign * h
+            run.derivative(t, y, ends[side])
+        out[:, k] = (ends[0] - ends[1]) / (2.0 * h)
+    run.tally[layout.FRESH] = 1
+    return out
+
+
+def run_implicit(run: Run, contact: Contact, report: Callable[[], None]) -> str:
     """Integrate from the present state to the end of the stretch; why it stopped, or ""."""
     note = f"from t = {run.clock[layout.NOW]:.4g} s on the model is stiff and solved by an implicit method"
-    if not any("implicit method" in known for known in run.notes):
+    if not any("implicit method" in told for told in run.notes):
         run.notes.append(note)
     while run.clock[layout.NOW] < run.clock[layout.END]:
-        why = _until_change(run, engine, contact, report)
+        why = _until_change(run, contact, report)
         if why:
             return why
     return ""
 
 
-def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[], None]) -> str:
+def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str:
     """Integrate until the end of the stretch or an end stop."""
     from scipy.integrate import Radau
 
@@ -44,12 +81,12 @@ def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[
     def rates(t: float, y: Array) -> Array:
         dy = np.zeros_like(y)
         # A trial state may be far from any motion; what is not finite makes the method shorten its step.
-        return dy if engine.derivative(run, t, y.copy(), dy) > 0.0 else np.full_like(y, np.nan)
+        return dy if run.derivative(t, y.copy(), dy) > 0.0 else np.full_like(y, np.nan)
 
     start = float(run.clock[layout.NOW])
     solver: Any = Radau(
         rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
-        first_step=min(1e-6, end - start), max_step=contact.longest(), jac=lambda t, y: jacobian(run, engine, t, y),
+        first_step=min(FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(), jac=lambda t, y: _jacobian(run, t, y),
     )  # fmt: skip
     while solver.status == "running":
         contact.remember()
@@ -64,16 +101,16 @@ def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[
             return f"at t = {solver.t:.6g} s the motion becomes too fast to follow, also by the implicit method"
         hit, place = _passed(run, solver, before)
         dense = solver.dense_output()
-        _sample(run, engine, dense, place)
+        _sample(run, dense, place)
         run.y[:] = dense(place) if hit >= 0 else solver.y
         run.clock[layout.NOW] = place
         run.tally[layout.HIT] = hit
-        if contact.release_if_pulled(engine):
+        if contact.release_if_pulled():
             return ""
         if hit >= 0:
-            return contact.strike(engine)
+            return contact.strike()
         if run.dynamics.rank:
-            gap, kept = engine.project(run, place, run.y)
+            gap, kept = run.project(place, run.y)
             if not 0.0 <= gap < settings.open:
                 return f"at t = {place:.6g} s the loops cannot be closed any more: the pose is singular{run.loops()}"
             if kept < settings.keep:
@@ -89,21 +126,21 @@ def _until_change(run: Run, engine: Engine, contact: Contact, report: Callable[[
 def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
     """The stop that is passed first in the last step, and when; −1 and the end of the step."""
     tables, dense = run.dynamics.tables, solver.dense_output()
-    found, end = -1, float(solver.t)
+    hit, end = -1, float(solver.t)
     for k, (at, _, sense, held) in enumerate(tables.ints[layout.STOPS]):
         if held:
             continue
         # The curve over the step is a cubic: where it turns, and its ends, are where it reaches farthest.
         beyond = _Beyond(dense, int(at), int(sense), float(tables.nums[layout.STOPS][k, 0]))
-        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > PASSED), None)
+        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > STOP_PASSED), None)
         if past is None:
             continue
         low, high = before, past
-        for _ in range(60):
+        for _ in range(STOP_HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if beyond(middle) > 0.0 else (middle, high)
-        found, end = k, high
-    return found, end
+        hit, end = k, high
+    return hit, end
 
 
 @dataclass(frozen=True)
@@ -123,13 +160,13 @@ class _Beyond:
         share = np.linspace(0.0, 1.0, 4)
         cubic = np.linalg.solve(np.vander(share), [self(begin + x * (end - begin)) for x in share])
         roots = np.roots(np.polyder(cubic))
-        real = np.sort(roots[np.abs(roots.imag) < 1e-12].real)
+        real = np.sort(roots[np.abs(roots.imag) < REAL_ROOT].real)
         return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 
-def _sample(run: Run, engine: Engine, dense: Any, until: float) -> None:
+def _sample(run: Run, dense: Any, until: float) -> None:
     """Outputs up to a time in the last step."""
     while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= until:
         t = float(run.times[run.tally[layout.NEXT]])
-        engine.sample(run, t, np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]])
+        run.sample(t, np.ascontiguousarray(dense(t)), run.out[run.tally[layout.NEXT]])
         run.tally[layout.NEXT] += 1

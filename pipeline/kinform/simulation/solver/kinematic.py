@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
+from kinform.simulation.constants import DETERMINED
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
-from kinform.simulation.outcome.record import Record
+from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.solver.follow import Follower, Led
-from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.start import Start
 
-__all__ = ["resting", "run_kinematic"]
+__all__ = ["notes_of_rest", "run_kinematic"]
 
 
 def _follower(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> Follower:
@@ -26,27 +26,19 @@ def run_kinematic(
     actuation: Actuation,
     start: Start,
     times: Array,
-    settings: SolverSettings,
-    progress: Progress | None,
+    conduct: Conduct,
 ) -> Record:
     """Positions, rates and accelerations at `times` (s), until the end or until a loop stops."""
-    follower = _follower(mechanism, actuation, start, settings)
+    follower = _follower(mechanism, actuation, start, conduct.settings)
     q = np.zeros((len(times), len(start.q)))
     v, a = (np.zeros((len(times), mechanism.rates)) for _ in range(2))
 
     def record(done: int, stopped: str) -> Record:
         unknown = np.full((done, mechanism.rates), np.nan)
         return Record(
-            times[:done],
-            q[:done],
-            v[:done],
-            a[:done],
-            unknown,
-            unknown,
-            np.zeros((done, 0)),
-            np.full(done, np.nan),
-            stopped,
-        )
+            time=times[:done], q=q[:done], v=v[:done], acceleration=a[:done], effort=unknown, needed=unknown,
+            extra=np.zeros((done, 0)), work=np.full(done, np.nan), stopped=stopped,
+        )  # fmt: skip
 
     for k, t in enumerate(times):
         if k:
@@ -55,25 +47,26 @@ def run_kinematic(
                 return record(k, f"at t = {stop.place:.6g} s {stop.reason}")
         q[k], v[k] = follower.q, follower.rates(float(t))
         a[k] = follower.accelerations(v[k], actuation.led_accelerations(float(t)))
-        if progress is not None:
-            progress(k + 1, len(times))
+        if conduct.progress is not None:
+            conduct.progress(k + 1, len(times))
     return record(len(times), "")
 
 
-def resting(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> tuple[str, ...]:
+def notes_of_rest(
+    mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings
+) -> tuple[str, ...]:
     """What is assumed of joints that no motion drive determines, in sentences."""
     follower = _follower(mechanism, actuation, start, settings)
     scale = mechanism.scale[follower.unknown]
     size = np.abs(follower.loose / scale[:, None]).max(axis=1, initial=0.0)
-    loose = set(follower.unknown[size > 1e-8].tolist())
-    screws = mechanism.screws(mechanism.poses(start.q))
-    closing = np.abs(mechanism.closure(screws)).max(axis=0, initial=0.0) > 0.0
+    loose = set(follower.unknown[size > DETERMINED].tolist())
+    closing = np.abs(mechanism.closure_at(start.q)).max(axis=0, initial=0.0) > 0.0
     still: list[str] = []
     yielding: list[str] = []
     for slot in mechanism.slots:
-        own = [k for k in range(slot.v.start, slot.v.stop) if k in loose]
-        if own:
-            (yielding if closing[own].any() else still).append(slot.name)
+        rates = [k for k in range(slot.v.start, slot.v.stop) if k in loose]
+        if rates:
+            (yielding if closing[rates].any() else still).append(slot.name)
     notes = []
     if still:
         notes.append(f"what no drive prescribes stays at its initial position: {', '.join(still)}")

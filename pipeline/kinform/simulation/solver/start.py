@@ -1,35 +1,35 @@
-"""Where a simulation starts: stated positions and velocities, prescribed joints, closed loops."""
+"""Where a simulation starts: stated positions and velocities, prescribed joints, closed loops, and what stands in the
+way of a motion from there."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinform.behaviour import JointComponent, one_freedom
 from kinform.model.arrays import Array
-from kinform.model.assembly import Assembly
-from kinform.model.function import InitialValue
-from kinform.model.kinematics import Kinematics
+from kinform.simulation.constants import (
+    CONTRADICTION,
+    CONTRADICTION_LEAST,
+    LEAST_MOTION,
+    START_GAP,
+    START_NAMED,
+    START_SHARE,
+)
 from kinform.simulation.mechanism.actuation import Actuation
+from kinform.simulation.mechanism.closure import factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.follow import Follower, Led
-from kinform.simulation.solver.settings import SolverSettings
 
-__all__ = ["Start", "Stated", "begin", "stated_values"]
+__all__ = ["Start", "Stated", "begin", "loop_rank", "torn_at_start"]
 
 
 OVERDRIVEN = (
     "drives and initial values state more than the loops leave free and contradict each other, "
     "or the mechanism starts in a singular pose (a dead point)"
 )
-
-
-LEAST = 1e-9
-"""Relative: rates above this share of the greatest are motions."""
 
 
 @dataclass(frozen=True)
@@ -53,36 +53,6 @@ class Start:
     problem: tuple[str, str] | None = None
 
 
-def stated_values(
-    assembly: Assembly,
-    kinematics: Kinematics,
-    joints: Mapping[str, JointComponent],
-    mechanism: Mechanism,
-    values: tuple[InitialValue, ...],
-) -> tuple[tuple[Stated, ...], tuple[tuple[str, str], ...]]:
-    """The stated values of joints with one freedom, and (subject, why) of those that have no such joint."""
-    slots = {slot.name: slot for slot in mechanism.slots}
-    found: dict[str, Stated] = {}
-    failures = []
-    for value in values:
-        joint, sign, why = one_freedom(assembly, kinematics, joints, value.joint)
-        if joint is None:
-            failures.append((value.joint, f"initial value: {why}"))
-            continue
-        if joint.subject in found:
-            failures.append((value.joint, f'the joint "{joint.subject}" has two initial values'))
-            continue
-        unit = sign * (math.pi / 180.0 if joint.kind.coordinates[0][1] else value.metres_per_unit)
-        if not (math.isfinite(value.position) and math.isfinite(value.velocity)):
-            failures.append((value.joint, "its initial value is not a number"))
-            continue
-        slot = slots[joint.subject]
-        found[joint.subject] = Stated(
-            value.joint, slot.q.start, slot.v.start, unit * value.position, unit * value.velocity
-        )
-    return tuple(found.values()), tuple(failures)
-
-
 def begin(
     mechanism: Mechanism,
     actuation: Actuation,
@@ -98,8 +68,8 @@ def begin(
     """
     notes = _contradictions(actuation, stated)
     led = set(actuation.led.tolist())
-    own = [value for value in stated if value.v not in led]
-    places = [value for value in own if value.position != 0.0 or value.velocity == 0.0]
+    loose = [value for value in stated if value.v not in led]
+    places = [value for value in loose if value.position != 0.0 or value.velocity == 0.0]
     target = np.concatenate([actuation.led_values(0.0), [value.position for value in places]])
     q_index = np.concatenate([actuation.led_q, np.array([p.q for p in places], dtype=np.int64)])
     v_index = np.concatenate([actuation.led, np.array([p.v for p in places], dtype=np.int64)])
@@ -110,45 +80,52 @@ def begin(
         stop = follower.go(0.0, 1.0)
         if stop is not None:
             why = OVERDRIVEN if follower.overdriven else f"the loops cannot be brought there: {stop.reason}"
-            return Start(q, np.zeros(mechanism.rates), notes, (_named(mechanism, v_index), f"initial positions: {why}"))
+            return Start(
+                q,
+                np.zeros(mechanism.rates),
+                notes,
+                (", ".join(mechanism.joints_of(v_index)), f"initial positions: {why}"),
+            )
         q = follower.q
-    moving = [value for value in own if value.velocity != 0.0]
+    moving = [value for value in loose if value.velocity != 0.0]
     if moving and not coasting:
         names = ", ".join(sorted(value.name for value in moving))
         notes += (f"initial velocities of {names} play no part: without forces nothing keeps them going",)
         moving = []
-    follower = Follower(mechanism, _pace(actuation, moving), q, settings)
+    follower = Follower(mechanism, _led_rates(actuation, moving), q, settings)
     v = follower.rates(0.0)
     if _opens(follower, v):
         why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
-        return Start(q, v, notes, (_named(mechanism, follower.led.v), f"initial velocities: {why}"))
-    still = [value for value in own if value.velocity == 0.0 and value.v in follower.undetermined]
+        return Start(q, v, notes, (", ".join(mechanism.joints_of(follower.led.v)), f"initial velocities: {why}"))
+    still = [value for value in loose if value.velocity == 0.0 and value.v in follower.undetermined]
     if still:
         # joints whose velocity is stated or left at zero stay at rest where the loops allow it
-        held = Follower(mechanism, _pace(actuation, [*moving, *still]), q, settings)
+        held = Follower(mechanism, _led_rates(actuation, [*moving, *still]), q, settings)
         rates = held.rates(0.0)
         if not held.overdriven and not _opens(held, rates):
             follower, v = held, rates
     if coasting:
-        notes += _at_rest(mechanism, stated, led, q, v) + _least(mechanism, follower, v)
+        notes += _notes_of_rest(mechanism, stated, led, q, v) + _notes_of_least(mechanism, follower, v)
     return Start(q, v, notes)
 
 
-def _at_rest(mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q: Array, v: Array) -> tuple[str, ...]:
+def _notes_of_rest(
+    mechanism: Mechanism, stated: tuple[Stated, ...], led: set[int], q: Array, v: Array
+) -> tuple[str, ...]:
     """What begins at rest at the pose of the meshes because nobody said otherwise."""
-    told = led | {value.v for value in stated}
+    stated_rates = led | {value.v for value in stated}
     still = [
         slot.name
         for slot in mechanism.slots
         if slot.v.stop > slot.v.start
-        and slot.v.start not in told
+        and slot.v.start not in stated_rates
         and not v[slot.v].any()
         and np.array_equal(q[slot.q], mechanism.start[slot.q])
     ]
     return (f"no initial value is stated, so at rest at the pose of the meshes: {', '.join(still)}",) if still else ()
 
 
-def _pace(actuation: Actuation, moving: Sequence[Stated]) -> Led:
+def _led_rates(actuation: Actuation, moving: Sequence[Stated]) -> Led:
     """The rates of the prescribed joints at time zero, and those that are stated."""
     speed = np.concatenate([actuation.led_rates(0.0), [value.velocity for value in moving]])
     return Led(
@@ -164,22 +141,16 @@ def _opens(follower: Follower, v: Array) -> bool:
     return follower.open_rates(0.0) > follower.settings.open * max(1.0, float(np.abs(v).max(initial=0.0)))
 
 
-def _least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
+def _notes_of_least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
     """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either side."""
     rates = np.abs(v[follower.undetermined])
-    moving = follower.undetermined[rates > LEAST * float(rates.max(initial=0.0))]
+    moving = follower.undetermined[rates > LEAST_MOTION * float(rates.max(initial=0.0))]
     if not len(moving):
         return ()
     return (
         "what is stated does not decide the initial velocities of these joints of loops, so the least are taken: "
-        f"{_named(mechanism, moving)}",
+        f"{', '.join(mechanism.joints_of(moving))}",
     )
-
-
-def _named(mechanism: Mechanism, rates: NDArray[np.int64]) -> str:
-    """The joints whose values are given, as a list."""
-    wanted = set(rates.tolist())
-    return ", ".join(slot.name for slot in mechanism.slots if slot.v.start in wanted and slot.v.stop > slot.v.start)
 
 
 def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[str, ...]:
@@ -189,6 +160,39 @@ def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[s
     for value in stated:
         for k in np.flatnonzero(actuation.led == value.v):
             wanted, law = (value.position, value.velocity), (values[k], rates[k])
-            if not np.allclose(wanted, law, rtol=1e-9, atol=1e-12):
+            if not np.allclose(wanted, law, rtol=CONTRADICTION, atol=CONTRADICTION_LEAST):
                 notes.append(f"{value.name} starts where its motion law puts it, not at its initial value")
     return tuple(notes)
+
+
+def loop_rank(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> tuple[str, int]:
+    """Why the drives cannot be followed ("" when they can), and the rank of the loops without them."""
+    rows = mechanism.closure_at(start.q)
+    free, scale = actuation.free, mechanism.scale
+    rank = rank_of(rows[:, free], scale[free], settings.free)
+    if rank == rank_of(rows, scale, settings.free):
+        return "", rank
+    ties = "the loops and couplings" if len(mechanism.gear_v) else "the loops"
+    return (
+        f"{ties} leave these drives no freedom at the start: there are too many of them, "
+        "or the mechanism starts in a singular pose",
+        rank,
+    )
+
+
+def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank: int, settings: SolverSettings) -> str:
+    """Joints that seem free to move at the start, but tear the loops when they do; "" when none does."""
+    free = actuation.free
+    rows = mechanism.closure_at(start.q)[:, free]
+    null = factor(rows, mechanism.scale[free], rank).null
+    if not mechanism.closed or not null.shape[1]:
+        return ""
+    # Each motion alone, and all at once: where branches meet, their sum lies on none.
+    for motion in (*null.T, null.sum(axis=1)):
+        step = np.zeros(mechanism.rates)
+        step[free] = START_SHARE * motion / np.abs(motion / mechanism.scale[free]).max()
+        _, gap, _ = settle(mechanism, mechanism.advance(start.q, step), free, rank, settings)
+        if gap > START_GAP * START_SHARE**2:
+            moving = free[np.abs(motion) > START_NAMED * np.abs(motion).max()]
+            return ", ".join(mechanism.joints_of(moving))
+    return ""

@@ -10,30 +10,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.behaviour.signals import Constant, Sine
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import (
+    AT_STOP,
+    IMPACT_ROUNDING,
+    LAW_PARTS,
+    MOST_IMPACTS,
+    RELEASE_BUDGET,
+    RELEASE_HALVINGS,
+    RELEASE_PARTS,
+    SLOW_LEAP,
+    STOP_MOVES,
+)
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Actuation, Stop
 from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.solver.engine import Engine
-from kinform.simulation.solver.run_state import Run
+from kinform.simulation.solver.run import Run
 
 __all__ = ["Contact", "beyond"]
-
-
-MOST = 1000
-"""Impacts in one run, after which it chatters."""
-
-
-MOVES = 1e-9
-"""Share of a joint in the motions that are left, from which on it moves in one of them."""
-SLOW = 1e-7
-"""rad/s or m/s: leaps from stops so slow that they end at once."""
-AT = 1e-9
-"""rad or m: so far beyond a stop a joint is at it."""
 
 
 class Contact:
@@ -52,21 +49,21 @@ class Contact:
             clock, tally = self.run.clock, self.run.tally
             self._before = (self.run.y.copy(), float(clock[layout.NOW]), int(tally[layout.NEXT]))
 
-    def strike(self, engine: Engine) -> str:
+    def strike(self) -> str:
         """The joint that has reached a stop is brought to rest there and held; "" or why that ends the run."""
         run = self.run
         stop = run.dynamics.actuation.stops[int(run.tally[layout.HIT])]
         self.impacts += 1
         t = float(run.clock[layout.NOW])
-        if self.impacts > MOST:
-            return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST} times"
-        tables, met = run.dynamics.tables, [*self.holding, stop]
+        if self.impacts > MOST_IMPACTS:
+            return f"at t = {t:.6g} s {stop.joint} has struck its end stops {MOST_IMPACTS} times"
+        tables, stops = run.dynamics.tables, [*self.holding, stop]
         q, v = tables.unpack(run.y)
         loose = self._held([])
         rank = run.rank(loose.free)
         null, matrix = _motions(run.dynamics, q, loose.free, rank), run.dynamics.mass_matrix(q)
-        found = _impact(null, matrix, v, met)
-        if found is None:
+        impact = _impact(null, matrix, v, stops)
+        if impact is None:
             return (
                 f"at t = {t:.6g} s {stop.joint} reaches its end stop at {stop.limit:.6g} (rad or m), and what is "
                 "prescribed goes on beyond it: change the law of motion or the stop"
@@ -74,21 +71,21 @@ class Contact:
         if stop.joint not in self.struck:
             self.struck.add(stop.joint)
             run.notes.append(f"{stop.joint} reaches its end stop at t = {t:.6g} s; impacts are without rebound")
-        change, after = found
+        change, after = impact
         q[stop.q] = stop.limit
         run.y[-1] += float(change @ matrix @ (v + 0.5 * change))
         v = v + change
-        rounding = MOVES * max(1.0, float(np.abs(after).max()))
-        leaving = [each for each, pace in zip(met, after, strict=True) if pace < -rounding]
-        if all(after > -SLOW) and leaving:
+        rounding = STOP_MOVES * max(1.0, float(np.abs(after).max()))
+        leaving = [each for each, pace in zip(stops, after, strict=True) if pace < -rounding]
+        if all(after > -SLOW_LEAP) and leaving:
             # Ever smaller leaps, without end: what would soon be back stays, unless it is pulled off.
             still = v.copy()
             still[[each.v for each in leaving]] = 0.0
-            if self._stay(met, q, still) and max(self._pull(engine, each) for each in self.holding) <= 0.0:
+            if self._stay(stops, q, still) and max(self._pull(each) for each in self.holding) <= 0.0:
                 return ""
-        self._stay([each for each in met if each not in leaving], q, v)
+        self._stay([each for each in stops if each not in leaving], q, v)
         while self.holding:
-            pull, loosest = max(((self._pull(engine, each), each) for each in self.holding), key=lambda pair: pair[0])
+            pull, loosest = max(((self._pull(each), each) for each in self.holding), key=lambda pair: pair[0])
             if pull <= 0.0:
                 break
             self._let_go(loosest)
@@ -107,7 +104,7 @@ class Contact:
         kept: list[Stop] = []
         for stop in wanted:
             free = self._held(kept).free
-            if np.linalg.norm(_motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > MOVES:
+            if np.linalg.norm(_motions(self.run.dynamics, q, free, self.run.rank(free))[stop.v]) > STOP_MOVES:
                 kept.append(stop)
         actuation = self._held(kept)
         self.holding = kept
@@ -129,46 +126,44 @@ class Contact:
         actuation = self.run.dynamics.actuation
         signals = [*actuation.signals, *(actor.signal for actor in actuation.actors)]
         speeds = [abs(signal.speed) for signal in signals if isinstance(signal, Sine) and signal.amplitude != 0.0]
-        return np.pi / (8.0 * max(speeds)) if any(speeds) else np.inf
+        return np.pi / (LAW_PARTS * max(speeds)) if any(speeds) else np.inf
 
-    def release_if_pulled(self, engine: Engine) -> bool:
+    def release_if_pulled(self) -> bool:
         """Release a stop that had to pull in the last step, at the time when it began to; whether one did."""
         run, (y, begin, _) = self.run, self._before
         until, reached, sampled = float(run.clock[layout.NOW]), run.y.copy(), run.tally[[layout.NEXT, layout.HIT]]
         if not self.holding or until <= begin:
             return False
-        between = self._between(engine, y, begin, reached, until)
+        between = self._between(y, begin, reached, until)
         if between is None:
             return False
-        asked = (*np.linspace(begin, until, 5)[1:-1], until)
-        pulled = next((t for t in asked if self._pulled(engine, t, between(t))), None)
+        asked = (*np.linspace(begin, until, RELEASE_PARTS + 1)[1:-1], until)
+        pulled = next((t for t in asked if self._pulled(t, between(t))), None)
         if pulled is None:
             return False
         end, step = float(run.clock[layout.END]), float(run.clock[layout.STEP])
         low, high = begin, float(pulled)
-        for _ in range(40):
+        for _ in range(RELEASE_HALVINGS):
             middle = 0.5 * (low + high)
-            self._again(engine, middle)
-            low, high = (low, middle) if self._pulled(engine, middle, run.y) else (middle, high)
-        self._again(engine, high)
+            self._again(middle)
+            low, high = (low, middle) if self._pulled(middle, run.y) else (middle, high)
+        self._again(high)
         run.clock[layout.END], run.clock[layout.STEP] = end, step
-        loose = self._pulled(engine, high, run.y)
+        loose = self._pulled(high, run.y)
         if loose:
             self._let_go(loose[0])
             return True
         run.y[:], run.clock[layout.NOW], run.tally[[layout.NEXT, layout.HIT]] = reached, until, sampled
         return False
 
-    def _between(
-        self, engine: Engine, y: Array, begin: float, reached: Array, until: float
-    ) -> Callable[[float], Array] | None:
+    def _between(self, y: Array, begin: float, reached: Array, until: float) -> Callable[[float], Array] | None:
         """The state between two times, from the states and their derivatives; None where these are not finite."""
         from scipy.interpolate import CubicHermiteSpline
 
         slopes = []
         for t, state in ((begin, y), (until, reached)):
             slope = np.zeros_like(state)
-            engine.derivative(self.run, t, state.copy(), slope)
+            self.run.derivative(t, state.copy(), slope)
             slopes.append(slope)
         states = np.stack([y, reached])
         if not (np.isfinite(states).all() and np.isfinite(slopes).all()):
@@ -176,27 +171,27 @@ class Contact:
         between: Callable[[float], Array] = CubicHermiteSpline([begin, until], states, np.stack(slopes))
         return between
 
-    def _pulled(self, engine: Engine, t: float, y: Array) -> list[Stop]:
+    def _pulled(self, t: float, y: Array) -> list[Stop]:
         """The stops that would have to pull in this state."""
-        return [stop for stop in self.holding if self._pull(engine, stop, t, y) > 0.0]
+        return [stop for stop in self.holding if self._pull(stop, t, y) > 0.0]
 
-    def _again(self, engine: Engine, t: float) -> None:
+    def _again(self, t: float) -> None:
         """The state at t, from the one remembered."""
         run = self.run
         run.y[:], run.clock[layout.NOW], run.tally[layout.NEXT] = self._before
         run.clock[layout.END], run.clock[layout.STEP], run.tally[layout.FRESH] = t, 1.0, 1
-        run.tally[layout.BUDGET] = 1000
+        run.tally[layout.BUDGET] = RELEASE_BUDGET
         run.tally[layout.PAUSE] = len(run.times) + 1
         if t > self._before[1]:
-            engine.advance(run)
+            run.advance()
         run.tally[layout.FRESH] = 1
 
-    def _pull(self, engine: Engine, stop: Stop, t: float | None = None, y: Array | None = None) -> float:
+    def _pull(self, stop: Stop, t: float | None = None, y: Array | None = None) -> float:
         """Effort with which the stop would pull, now or in the state `y` at t; negative while it is pushed."""
         run = self.run
         tables = run.dynamics.tables
         y = (run.y if y is None else y).copy()
-        engine.derivative(run, float(run.clock[layout.NOW]) if t is None else float(t), y, np.zeros_like(y))
+        run.derivative(float(run.clock[layout.NOW]) if t is None else float(t), y, np.zeros_like(y))
         run.tally[layout.FRESH] = 1
         rate = int(np.flatnonzero(tables.v_order == stop.v)[0])
         return stop.sense * float(tables.work[layout.VECTORS][layout.NEED, rate])
@@ -207,10 +202,10 @@ class Contact:
 
     def _change(self, actuation: Actuation) -> None:
         run, old = self.run, self.run.dynamics
-        made = Dynamics(old.mechanism, old.system, old.gravity, actuation, run.rank(actuation.free))
+        dynamics = Dynamics(old.mechanism, old.system, old.gravity, actuation, run.rank(actuation.free))
         for k, stop in enumerate(old.actuation.stops):
-            made.tables.ints[layout.STOPS][k, 3] = int(any(stop.v == held.v for held in self.holding))
-        run.change(made)
+            dynamics.tables.ints[layout.STOPS][k, layout.HELD] = int(any(stop.v == held.v for held in self.holding))
+        run.change(dynamics)
 
 
 def beyond(stops: Sequence[Stop], q: Array) -> tuple[tuple[str, str], ...]:
@@ -222,35 +217,34 @@ def beyond(stops: Sequence[Stop], q: Array) -> tuple[tuple[str, str], ...]:
             "the model is written): state an initial value on this side of the stop, or move the stop",
         )
         for stop in stops
-        if stop.sense * (q[stop.q] - stop.limit) > AT
+        if stop.sense * (q[stop.q] - stop.limit) > AT_STOP
     )
 
 
-def _motions(dynamics: Dynamics, q: Array, free: NDArray[np.int64], rank: int) -> Array:
+def _motions(dynamics: Dynamics, q: Array, free: Ints, rank: int) -> Array:
     """(n, m) motions of the free rates that keep the loops closed."""
     mechanism = dynamics.mechanism
-    rows = mechanism.closure(mechanism.screws(mechanism.poses(q)))
     null = np.zeros((mechanism.rates, len(free) - rank))
-    null[free] = factor(rows[:, free], mechanism.scale[free], rank).null
+    null[free] = factor(mechanism.closure_at(q)[:, free], mechanism.scale[free], rank).null
     return null
 
 
-def _impact(null: Array, matrix: Array, v: Array, met: Sequence[Stop]) -> tuple[Array, Array] | None:
+def _impact(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tuple[Array, Array] | None:
     """Change (n,) of the rates at which no joint goes on beyond the stops that it has met, and how fast it then goes there.
 
     None where no change of the motions `null` (n, m) brings that about; `matrix` (n, n) is that of the masses.
     """
-    outward = np.array([stop.sense * null[stop.v] for stop in met])
-    pace = np.array([stop.sense * v[stop.v] for stop in met])
+    outward = np.array([stop.sense * null[stop.v] for stop in stops])
+    pace = np.array([stop.sense * v[stop.v] for stop in stops])
     root = np.linalg.cholesky(null.T @ matrix @ null)
     ways = np.linalg.solve(root, outward.T)
-    held = np.linalg.norm(outward, axis=1) > MOVES
-    pushes = np.zeros(len(met))
+    held = np.linalg.norm(outward, axis=1) > STOP_MOVES
+    pushes = np.zeros(len(stops))
     if held.any():
         pushes[held] = _pushes(ways[:, held], pace[held])
     change = -null @ np.linalg.solve(root.T, ways @ pushes)
-    after = pace + np.array([stop.sense * change[stop.v] for stop in met])
-    if (after > 1e3 * MOVES * np.abs(pace).max()).any():
+    after = pace + np.array([stop.sense * change[stop.v] for stop in stops])
+    if (after > IMPACT_ROUNDING * np.abs(pace).max()).any():
         return None
     return change, after
 

@@ -9,54 +9,33 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.progress import Progress, Say
 from kinform.model.arrays import Array
+from kinform.simulation.constants import LARGE, LONGER, LOOK, PLAIN, REPORTS, SHOWN, STALL, STALLED_BUDGETS, UNREADY
 from kinform.simulation.kernel import layout
+from kinform.simulation.kernel.calls import Engine, engine, ready
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.outcome.record import Record
-from kinform.simulation.solver.engine import Engine, engine, ready
-from kinform.simulation.solver.implicit import run_implicit
-from kinform.simulation.solver.run_state import Run
-from kinform.simulation.solver.settings import SolverSettings
+from kinform.simulation.settings import Conduct
+from kinform.simulation.solver.implicit import is_stiff, run_implicit
+from kinform.simulation.solver.record import Record
+from kinform.simulation.solver.run import Run
 from kinform.simulation.solver.start import Start
-from kinform.simulation.solver.stiffness import is_stiff
 from kinform.simulation.solver.stops import Contact
 
 __all__ = ["run_dynamic"]
-
-
-PLAIN = 20_000
-"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
-as loading them takes."""
-UNREADY = 10
-"""Times more where they would have to be compiled first."""
-SHOWN = 60
-"""Steps from which on the whole run can be told to be longer than that."""
-LARGE = 1000
-"""Rates times independent rows of the loops from which on plain functions would take too long at all."""
-STALL = 1000
-"""Steps after which the run must have come on: at their pace it would take ten times its budget."""
-LOOK = 250
-"""Steps after which the run is looked at for stiffness."""
 
 
 def run_dynamic(
     dynamics: Dynamics,
     start: Start,
     times: Array,
-    settings: SolverSettings,
-    progress: Progress | None,
-    say: Say | None = None,
+    conduct: Conduct,
 ) -> Record:
-    """Positions, rates, efforts and work at `times` (s), until the end or until it cannot go on.
-
-    `say` is told when the equations are compiled, which takes seconds once on a machine.
-    """
+    """Positions, rates, efforts and work at `times` (s), until the end or until it cannot go on."""
     first, last = float(times[0]), float(times[-1])
     knots = [knot for knot in dynamics.actuation.knots if first < knot < last]
-    run = Run(dynamics, start, times, settings)
-    driver = _Driver(run, progress, say)
-    if not run.begin(driver.engine):
+    run = Run(dynamics, start, times, conduct.settings)
+    driver = _Driver(run, conduct)
+    if not run.begin():
         return run.record(f"after t = {first:.6g} s a free motion moves no mass")
     for begin, end in zip([first, *knots], [*knots, last], strict=True):
         why = driver.stretch(begin, end) if end > begin else ""
@@ -72,10 +51,9 @@ _GOING = (layout.DONE, layout.PAUSED, layout.SPENT, layout.STIFFENED, layout.WOR
 class _Driver:
     """Calls the kernel until a stretch is done."""
 
-    def __init__(self, run: Run, progress: Progress | None, say: Say | None):
-        self.run, self.progress, self.say = run, progress, say
+    def __init__(self, run: Run, conduct: Conduct):
+        self.run, self.progress, self.say = run, conduct.progress, conduct.say
         self.contact = Contact(run)
-        self.engine: Engine = engine(compiled=False)
         self.looked = 0
         self.mark = (0, float(run.times[0]))
         share = PLAIN if ready() else PLAIN * UNREADY
@@ -89,19 +67,19 @@ class _Driver:
         run = self.run
         run.open_stretch(begin, end)
         if run.settings.method == "implicit":
-            self.engine = engine(compiled=Engine.loaded)
-            return run_implicit(run, self.engine, self.contact, self._report)
+            run.engine = engine(compiled=Engine.loaded)
+            return run_implicit(run, self.contact, self._report)
         while True:
             status = self._advance()
             self._report()
-            if status in (*_GOING, layout.STOPPED) and self.contact.release_if_pulled(self.engine):
+            if status in (*_GOING, layout.STOPPED) and self.contact.release_if_pulled():
                 status = layout.SPENT
             if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
                 return ""
             if status == layout.STOPPED:
-                why = self.contact.strike(self.engine)
+                why = self.contact.strike()
             elif status in (layout.STIFFENED, layout.SPENT, layout.PAUSED) and self._stiff():
-                why = run_implicit(run, self.engine, self.contact, self._report)
+                why = run_implicit(run, self.contact, self._report)
             else:
                 why = self._problem(status)
             if why:
@@ -110,21 +88,21 @@ class _Driver:
     def _advance(self) -> int:
         """One call of the kernel, compiled once the run has shown to be long."""
         run, tally = self.run, self.run.tally
-        if not self.engine.compiled and (Engine.loaded or self._long()):
+        if not run.engine.compiled and (Engine.loaded or self._long()):
             self._compile()
         left = run.settings.steps - int(tally[layout.STEPS])
-        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if self.engine.compiled else SHOWN)
-        tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // 50)
+        tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if run.engine.compiled else SHOWN)
+        tally[layout.PAUSE] = tally[layout.NEXT] + max(1, len(run.times) // REPORTS)
         run.clock[layout.STEP] = min(run.clock[layout.STEP], self.contact.longest())
         self.contact.remember()
-        return self.engine.advance(run)
+        return run.advance()
 
     def _long(self) -> bool:
         """Whether the run takes so many evaluations, of steps and of outputs, that compiling pays, by those so far."""
         run, tally = self.run, self.run.tally
         made = int(tally[layout.SLOPES] + tally[layout.NEXT])
         done = (run.clock[layout.NOW] - run.times[0]) / (run.times[-1] - run.times[0])
-        return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > 1.5 * self.plain * done)
+        return made >= self.plain or (int(tally[layout.STEPS]) >= SHOWN and made > LONGER * self.plain * done)
 
     def _stiff(self) -> bool:
         """Whether to go on implicitly; looked at now and then."""
@@ -133,7 +111,7 @@ class _Driver:
         if run.settings.method == "explicit" or run.tally[layout.STEPS] < self.looked + LOOK:
             return False
         self.looked = int(run.tally[layout.STEPS])
-        return is_stiff(run, self.engine)
+        return is_stiff(run)
 
     def _stalled(self) -> bool:
         """Whether STALL steps have brought the run on by less than a share of it that would ever end."""
@@ -141,13 +119,13 @@ class _Driver:
         if run.tally[layout.STEPS] < steps + STALL:
             return False
         self.mark = int(run.tally[layout.STEPS]), float(run.clock[layout.NOW])
-        share = STALL / (10.0 * run.settings.steps)
+        share = STALL / (STALLED_BUDGETS * run.settings.steps)
         return bool(self.mark[1] - t < share * (run.times[-1] - run.times[0]))
 
     def _compile(self) -> None:
         if self.say is not None and not ready():
             self.say("compiling the equations of motion: some seconds, once on this machine")
-        self.engine = engine(compiled=True)
+        self.run.engine = engine(compiled=True)
 
     def _problem(self, status: int) -> str:
         """Why the run cannot go on, or "" when it can."""
@@ -164,7 +142,7 @@ class _Driver:
                 return f"at t = {t:.6g} s {run.settings.steps} steps were used up: the model is stiff or singular"
             return ""
         rates = np.zeros_like(run.y)
-        self.engine.derivative(run, t, run.y.copy(), rates)
+        run.derivative(t, run.y.copy(), rates)
         if not np.all(np.isfinite(rates)):
             return f"after t = {t:.6g} s forces or laws of motion are not numbers"
         if status == layout.MASSLESS:

@@ -1,10 +1,12 @@
-"""Numbers that the solvers use, in one value, each with where it comes from."""
+"""How a simulation is run: numbers that the solvers use, each with where it comes from, and who is told how it goes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-__all__ = ["SolverSettings"]
+from kinform.foundation.progress import Progress, Say
+
+__all__ = ["Conduct", "SolverSettings"]
 
 
 @dataclass(frozen=True)
@@ -50,3 +52,14 @@ class SolverSettings:
     """How often a step along a path is halved before its end counts as unreachable."""
     newton: int = 12
     """Newton iterations a step; they converge in three or four."""
+
+
+@dataclass(frozen=True)
+class Conduct:
+    """How one simulation is run."""
+
+    settings: SolverSettings = field(default_factory=SolverSettings)
+    progress: Progress | None = None
+    """Told how many outputs of how many there are."""
+    say: Say | None = None
+    """Told when the equations are compiled, which takes seconds once on a machine."""

@@ -1,0 +1,223 @@
+"""Constants of the simulation: every number that decides something and that no user sets (`SolverSettings` has those).
+
+Gaps of loops are in rad and in shares of the mechanism's length; a margin is the smallest pivot of the loops over the
+largest, 0 in a singular pose. The kernel's functions are compiled with the values of these numbers in them:
+`kernel.compiled` compiles afresh where one has changed.
+"""
+
+from __future__ import annotations
+
+# kernel.explicit: control of steps, end stops, crossings of singular poses.
+
+SAFETY = 0.9
+"""Share of the step that would just keep the tolerance: what Hairer's DOP853 takes."""
+ERROR_ROOT = 0.125
+"""The error of a step of order 8 grows with this root's inverse power, the eighth, of its length."""
+LEAST_SHRINK = 0.2
+"""Share of a step below which the next is not made after an error, however great: a choice."""
+LEAST_SHRINK_AT_CROSSING = 0.6
+"""The same near a singular pose, where the error may be that of one evaluation: a choice."""
+HOPELESS_ERROR = 1e30
+"""Error over the tolerance from which on its root tells nothing, and the least share is taken."""
+GREATEST_GROWTH = 2.5
+"""Greatest growth of a step: with more, one can land far outside the region of stability unnoticed."""
+EASY_ERROR = 0.4
+"""Error over the tolerance below which a step that was cut short does not shorten the next: a choice."""
+SHORTEST_STEP = 1e-13
+"""Share of the time (of 1 s at least) below which a step is none: a few hundred roundings of the time."""
+REOPENED_SHRINK = 0.25
+"""Share of a step to try where loops could not be closed at its end: a choice."""
+SHORTEST_CLOSING_STEP = 1e-9
+"""s: steps so short that still leave loops open end the run."""
+STABLE_DECAY = 3.0
+"""Step times the fastest decay: the method is stable up to about 6."""
+REAL_ROUGHNESS = 10.0
+"""Times the noise of accelerations that a change of slopes has to be to count as a decay: a choice."""
+LEAST_REAL_MARGIN = 1e-6
+"""Margin below which the noise of accelerations is not taken to grow further: bounds a quotient."""
+MOST_LAYINGS = 4
+"""Times that a step is laid anew to avoid a singular pose."""
+LAID_ALIKE = 0.01
+"""Share of a step: one that differs by less from the last is not worth trying."""
+ROUNDINGS_EVERY = 20
+"""Steps after which roundings are looked at again."""
+STOP_PARTS = 4
+"""Parts of a step in which a joint turns back at most once: steps are far shorter than what moves in them."""
+STOP_PASSED = 1e-12
+"""rad or m beyond a limit that is passed: less is rounding."""
+TURN_HALVINGS = 40
+"""Halvings of a part of a step to find where a joint turns: to 1e-12 of it, which is enough for a place that is flat."""
+STOP_HALVINGS = 60
+"""Halvings of a step to find where a stop is passed: to the last bit of its share."""
+CROSSING_AROUND = 0.1
+"""Share of the step about the place where a singular pose is expected, within which it is."""
+CROSSING_NARROWINGS = 12
+"""Times that this is narrowed, to two thirds each."""
+
+# kernel.crossings: how a step is laid across a singular pose.
+
+WIDEST_GAP = 0.4667
+"""Share of the step: middle of the widest gap between evaluations, from a third to three fifths."""
+CROSSING_CLEAR = 0.08
+"""A share of the step: evaluations nearer to a singular pose than this are to be avoided."""
+CROSSING_AHEAD = 1.2
+"""A pose so far, in steps, is near the step's end."""
+SLOPES_ALIKE = 0.5
+"""Slopes of a line agree when the lesser is more than this share of the greater."""
+CROSSING_PASSED = 0.05
+"""Share of the step: a pose nearer ahead than this is as good as passed."""
+NEAREST_APPROACH = 0.2
+"""Least share of the way to a singular pose that a step towards it goes: a choice."""
+
+# kernel.steps: one step and its error.
+
+CLOSED_SHARE = 1e-4
+"""Loops at an evaluation of a step are closed to this share of the tolerance."""
+DISTURBANCE = 2.0**-51
+"""A rounding or two of a number, as a share of it."""
+ROUGHER_SLOPES = 4.0
+"""Times what one disturbance does to the slopes: others do more."""
+THIRD_ORDER_SHARE = 0.01
+"""Weight of the estimate of order 3 beside that of order 5 in the error of a step: that of Hairer's DOP853."""
+ROUNDING_NOISE = 1e-13
+"""Relative rounding of accelerations, times the pivots' ratio: what remains of closed loops."""
+LEAST_NOISY_MARGIN = 1e-5
+"""Margin below which the noise is not taken to grow further: bounds a quotient."""
+
+# kernel.equations: projection onto closed loops.
+
+TORN_GAP = 1e-4
+"""Rows that depended on others leave a gap (rad, or lengths) at most as large as the rank overlooks."""
+SLOW_CORRECTION = 0.05
+"""Corrections that leave more than this share of a gap are made by new factors."""
+FACTORS_STALE = 1e-9
+"""rad, or lengths: a correction of a gap so small moves so little that the factors serve once more."""
+MOST_CORRECTIONS = 10
+"""Corrections of a pose; they converge in three or four."""
+
+# kernel.loops, kernel.choice: pivots.
+
+PIVOT_SWAP = 1.5
+"""Rows change places for a pivot so many times as large: order is no matter of the mathematics."""
+CLOSING_PIVOT = 0.3
+"""Pivots of the joints that close loops are taken first while they are larger than this: a choice."""
+
+# mechanism.dynamics: motions without mass.
+
+NO_MASS = 1e-13
+"""Share of the greatest inertia of a free motion below which one has none."""
+MOVES_WITHOUT_MASS = 1e-6
+"""Share (rad, or lengths) of a joint in such a motion from which on it is named."""
+
+# solver.start: initial positions and velocities.
+
+LEAST_MOTION = 1e-9
+"""Share of the greatest rate above which rates are motions."""
+START_SHARE = 0.03
+"""Of a motion (rad, or lengths) from the start that shows whether the loops bear it."""
+START_GAP = 0.01
+"""Share of the square of that motion: loops that open by more do not bear it, as its curvature opens them by less."""
+START_NAMED = 1e-6
+"""Share of the greatest rate of a motion that tears loops from which on a joint is named."""
+CONTRADICTION, CONTRADICTION_LEAST = 1e-9, 1e-12
+"""Relative and absolute difference (rad or m, a second) from a law of motion that an initial value may have."""
+
+# solver.follow, solver.kinematic: joints that are led.
+
+DETERMINED = 1e-8
+"""Share (rad, or lengths) of a rate in what led joints leave open, from which on they do not determine it."""
+
+# solver.run, solver.dynamic: the drive of the kernel.
+
+FIRST_STEP = 1e-3
+"""s: the first step that is tried in a stretch; the control finds the right one in a few steps."""
+STIFF_PATIENCE = 15.0
+"""Steps in a row that a decay kept short before the run is looked at for stiffness: those of Hairer's DOP853."""
+PASSED_BEFORE_STOP = 1e-3
+"""s: a singular pose nearer than this to where a run stopped is why it did, and was not passed."""
+PLAIN = 20_000
+"""Evaluations times links that are made without the compiled functions: 25 μs each, 60 in loops, so about as long
+as loading them takes."""
+UNREADY = 10
+"""Times more where they would have to be compiled first."""
+LONGER = 1.5
+"""Times the plain evaluations that a run must promise to take before it is compiled early: its pace may fall."""
+SHOWN = 60
+"""Steps from which on the whole run can be told to be longer than that."""
+LARGE = 1000
+"""Rates times independent rows of the loops from which on plain functions would take too long at all."""
+STALL = 1000
+"""Steps after which the run must have come on: at their pace it would take ten times its budget."""
+STALLED_BUDGETS = 10.0
+"""Budgets of steps that a run may promise to take before it counts as stalled."""
+LOOK = 250
+"""Steps after which the run is looked at for stiffness."""
+REPORTS = 50
+"""Times at least that the progress of a run is told."""
+
+# solver.implicit: stiff models.
+
+FAST_DECAY = 0.4
+"""Decay within a step, as an exponent, from which on it is what limits the step."""
+JACOBIAN_STEP = 1e-6
+"""Share of a number of the state (of 1 at least) by which it is changed for the derivative: the third root of a
+rounding, at which rounding and curvature disturb central differences alike, but for a factor of six."""
+FIRST_IMPLICIT_STEP = 1e-6
+"""s: short enough for decays that begin; Radau lengthens it tenfold a step."""
+REAL_ROOT = 1e-12
+"""Imaginary part of a root of a cubic that is real but for rounding."""
+
+# solver.stops: impacts and held stops.
+
+MOST_IMPACTS = 1000
+"""Impacts in one run, after which it chatters."""
+STOP_MOVES = 1e-9
+"""Share of a joint in the motions that are left, from which on it moves in one of them."""
+SLOW_LEAP = 1e-7
+"""rad/s or m/s: leaps from stops so slow that they end at once."""
+AT_STOP = 1e-9
+"""rad or m: so far beyond a stop a joint is at it."""
+IMPACT_ROUNDING = 1e-6
+"""Share of the greatest pace at an impact up to which a joint may seem to go on beyond its stop."""
+LAW_PARTS = 8.0
+"""Parts of half a period of a law that a step may be as long as while a stop holds: push turns to pull and back unseen in
+longer ones."""
+RELEASE_HALVINGS = 40
+"""Halvings of a step to find where a stop begins to pull: to 1e-12 of it."""
+RELEASE_PARTS = 4
+"""Parts of a step at whose ends a held stop is asked whether it pulls."""
+RELEASE_BUDGET = 1000
+"""Steps to go again from the start of a step to a time within it."""
+
+# simulation.of_system: what is said of a run.
+
+SNUG = 1e-8
+"""Gap (m or rad) up to which loops count as closed: those that fit exactly stay a million times below."""
+TRUSTED_DRIFT = 1e-5
+"""Drift of the energy over the energy exchanged; runs at the default tolerances stay a hundred times below."""
+SUMMED_DRIFT = 1e-8
+"""Drift of the energy over the kinetic energy that is no sign of anything, ten times that of sound runs."""
+LEAST_DRIFT = 1e-12
+"""J: drift of the energy that is rounding."""
+INERTIA_ROUNDING = 1e-9
+"""Share of the greatest number of an inertia by which it may be unsymmetric or have a negative moment."""
+LAST_OUTPUT = 1e-9
+"""Share of the output step within which the end of a run is the last multiple of it."""
+
+# simulation.levels: what is said of teeth.
+
+WHOLE_TURN = 1e-6
+"""rad: teeth whose pitches make a turn to within this go all round."""
+
+# outcome: reactions and their balance.
+
+UNDETERMINED_SHARE = 1e-6
+"""A component of a wrench that the choice of λ changes by more than this share of itself is not determined."""
+CHUNK = 128
+"""Times whose reactions are solved at once."""
+RANK_CHUNK = 256
+"""Times whose ranks are found at once."""
+VANISHING_WRENCH = 1e-6
+"""Share of the greatest wrench of the run below which wrenches are no measure of errors."""
+DEPENDENT_GEARS = 1e-12
+"""Share of the greatest singular value of the gears' rows below which one depends on the others."""

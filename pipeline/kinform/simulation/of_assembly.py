@@ -1,0 +1,115 @@
+"""Simulates an assembly: makes its port model, chooses the level, and runs it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinform.behaviour import Behaviour, JointComponent, build, one_freedom
+from kinform.model.assembly import Assembly
+from kinform.model.function import InitialValue, SimulationRequest
+from kinform.model.kinematics import Kinematics
+from kinform.model.mass import MassReport
+from kinform.model.simulation import Simulation
+from kinform.simulation.levels import choose, notes_of_drives, notes_of_joints, notes_of_level, notes_of_teeth
+from kinform.simulation.mechanism.construction import assemble
+from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.of_system import Course, run_course
+from kinform.simulation.request import Failures, are_gears_ideal, refuse, simulated_joints
+from kinform.simulation.settings import Conduct
+from kinform.simulation.solver.start import Stated
+
+__all__ = ["simulate_assembly"]
+
+
+def simulate_assembly(
+    assembly: Assembly,
+    kinematics: Kinematics,
+    mass: MassReport | None,
+    asked: str | None,
+    behaviour: Behaviour | None,
+    conduct: Conduct,
+) -> Simulation:
+    """What `simulate` gives, at the level that is asked for, or, with None, at the highest that is known."""
+    gears = are_gears_ideal(assembly, asked)
+    kinematics = simulated_joints(assembly, kinematics, asked)
+    if gears and not kinematics.joints:
+        return refuse(
+            "nothing to simulate", (("[function]", "it states no joints, and there are no meshes to find them in"),)
+        )
+    if sum(body.ground for body in kinematics.bodies) != 1:
+        return refuse("there is no ground", (("ground", "not exactly one body is the ground"),))
+    if behaviour is None:
+        behaviour = build(assembly, kinematics, mass, gears=gears)
+    if behaviour.failures:
+        return refuse("the model is not complete", behaviour.failures)
+    mechanism, adrift = assemble(behaviour.system)
+    formless = all(part.mesh is None for part in assembly.parts)
+    choice = choose(asked, behaviour, mechanism, adrift, formless)
+    if choice.failures:
+        return refuse(f"the {asked} level needs more than is known", choice.failures)
+    notes = (
+        *_notes_of_request(assembly),
+        *choice.notes,
+        *notes_of_joints(kinematics),
+        *notes_of_teeth(kinematics),
+        *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
+        *notes_of_level(assembly, kinematics, choice.level, adrift, gears),
+    )
+    request, system = assembly.simulation or SimulationRequest(), behaviour.system
+    joints = {joint.subject: joint for joint in system.joints}
+    stated, failures = _stated_values(assembly, kinematics, joints, mechanism, request.initial)
+    if failures:
+        return refuse("the drives or the initial values cannot be applied", failures)
+    course = Course(request.duration, request.step, np.asarray(request.gravity, dtype=np.float64), choice.level)
+    return run_course(system, mechanism, course, stated, notes, conduct)
+
+
+def _stated_values(
+    assembly: Assembly,
+    kinematics: Kinematics,
+    joints: Mapping[str, JointComponent],
+    mechanism: Mechanism,
+    values: tuple[InitialValue, ...],
+) -> tuple[tuple[Stated, ...], Failures]:
+    """The stated values of joints with one freedom, and (subject, why) of those that have no such joint."""
+    slots = {slot.name: slot for slot in mechanism.slots}
+    stated: dict[str, Stated] = {}
+    failures = []
+    for value in values:
+        joint, sign, why = one_freedom(assembly, kinematics, joints, value.joint)
+        if joint is None:
+            failures.append((value.joint, f"initial value: {why}"))
+            continue
+        if joint.subject in stated:
+            failures.append((value.joint, f'the joint "{joint.subject}" has two initial values'))
+            continue
+        unit = sign * (math.pi / 180.0 if joint.kind.coordinates[0][1] else value.metres_per_unit)
+        if not (math.isfinite(value.position) and math.isfinite(value.velocity)):
+            failures.append((value.joint, "its initial value is not a number"))
+            continue
+        slot = slots[joint.subject]
+        stated[joint.subject] = Stated(
+            value.joint, slot.q.start, slot.v.start, unit * value.position, unit * value.velocity
+        )
+    return tuple(stated.values()), tuple(failures)
+
+
+def _notes_of_request(assembly: Assembly) -> tuple[str, ...]:
+    """The values that hold where the manifest states none."""
+    request, default = assembly.simulation, SimulationRequest()
+    gravity = ", ".join(f"{x:g}" for x in default.gravity)
+    values = {
+        "duration": f"duration {default.duration:g} s",
+        "step": f"step {default.step:g} s",
+        "gravity": f"gravity ({gravity}) m/s²",
+    }
+    if request is None:
+        return (
+            f"there is no [simulation]: {', '.join(values.values())}, all joints at rest at the pose of the meshes",
+        )
+    if not request.assumed:
+        return ()
+    return (f"[simulation] does not state: {', '.join(values[name] for name in values if name in request.assumed)}",)
