@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kinform.model.fingerprints import Fingerprints
 
 if TYPE_CHECKING:
-    from kinform.behaviour.build import Behaviour
+    from kinform.behaviour.of_design import Behaviour
     from kinform.model.assembly import Assembly
     from kinform.model.contacts import Contacts
     from kinform.model.findings import CheckReport

@@ -13,8 +13,8 @@ from support.places import FIXTURES, ROOT
 
 from kinform import results
 from kinform.behaviour import Behaviour, Constant, Controller, Model, Sine, System, flat
+from kinform.behaviour.components import COMPONENTS, kind_of
 from kinform.behaviour.joints import KINDS
-from kinform.behaviour.kinds import COMPONENTS, kind_of
 from kinform.behaviour.nested import arranged
 from kinform.errors import InputError
 from kinform.exports import port_model

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from kinform.behaviour import Constant, Controller, Ground, Model, Ramp, RigidBody, Sine, Table
-from kinform.behaviour.components import JointComponent, MotionDrive, Node, System
+from kinform.behaviour.components import JointComponent, System
 from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.ports import Node
+from kinform.behaviour.shafts import MotionDrive
 from kinform.simulation import Course, simulate_system
 
 AXIS = {"axis": (0, 0, 1), "point": (0, 0, 0)}

@@ -7,8 +7,9 @@ import pytest
 from support.devices import Z, body, device, drive, intended, joint, rod, sine
 
 from kinform.behaviour import Constant, Node, RigidBody, System, build, count, signal, smooth
-from kinform.behaviour.components import EffortDrive, Ground, MotionDrive
+from kinform.behaviour.components import Ground
 from kinform.behaviour.joints import KINDS
+from kinform.behaviour.shafts import EffortDrive, MotionDrive
 from kinform.model.function import Coupling, Law, Load
 
 

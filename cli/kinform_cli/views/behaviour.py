@@ -31,7 +31,7 @@ from kinform.behaviour import (
     count,
     counts,
 )
-from kinform.behaviour.kinds import kind_of
+from kinform.behaviour.components import kind_of
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.design import Design
 from kinform.foundation.words import counted

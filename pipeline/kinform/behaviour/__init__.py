@@ -9,34 +9,26 @@ Paredis and Khosla, "Kinematics support for design and simulation of mechatronic
 from __future__ import annotations
 
 from kinform.behaviour.acting import one_freedom
-from kinform.behaviour.build import Behaviour, build
-from kinform.behaviour.components import (
+from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.counting import Count, count, counts
+from kinform.behaviour.diagnosis import faults
+from kinform.behaviour.model import Model
+from kinform.behaviour.nested import flat, nest, placed
+from kinform.behaviour.of_design import Behaviour, build
+from kinform.behaviour.ports import Component, Node, Port
+from kinform.behaviour.shafts import (
     Actor,
-    Component,
     Controller,
     Damper,
     DcMotor,
     EffortDrive,
     EndStop,
-    Gear,
-    Ground,
-    JointComponent,
-    LoadComponent,
     MotionDrive,
-    Node,
-    Port,
-    RigidBody,
     Servo,
     Spring,
-    SpringDamper,
-    System,
     VoltageController,
     VoltageSource,
 )
-from kinform.behaviour.count import Count, count, counts
-from kinform.behaviour.faults import faults
-from kinform.behaviour.model import Model
-from kinform.behaviour.nested import flat, nest, placed
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Table, signal, smooth
 
 __all__ = [

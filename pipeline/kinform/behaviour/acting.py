@@ -7,20 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from kinform.behaviour.components import (
-    Component,
-    Controller,
-    Damper,
-    DcMotor,
-    EffortDrive,
-    Gear,
-    JointComponent,
-    LoadComponent,
-    MotionDrive,
-    Servo,
-    Spring,
-    VoltageSource,
-)
+from kinform.behaviour.components import Gear, JointComponent, LoadComponent
+from kinform.behaviour.ports import Component
+from kinform.behaviour.shafts import Controller, Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageSource
 from kinform.behaviour.signals import Constant, Signal, signal
 from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly

@@ -12,7 +12,6 @@ from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
 from kinform.behaviour.shafts import (
     Actor,
-    Controller,
     Damper,
     DcMotor,
     EffortDrive,
@@ -27,27 +26,15 @@ from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
 __all__ = [
-    "Actor",
-    "Component",
-    "Controller",
-    "Damper",
-    "DcMotor",
-    "EffortDrive",
-    "EndStop",
+    "COMPONENTS",
     "Gear",
     "Ground",
     "JointComponent",
     "LoadComponent",
-    "MotionDrive",
-    "Node",
-    "Port",
     "RigidBody",
-    "Servo",
-    "Spring",
     "SpringDamper",
     "System",
-    "VoltageController",
-    "VoltageSource",
+    "kind_of",
 ]
 
 
@@ -185,11 +172,11 @@ class System(Component):
     ) -> None:
         """Raises ValueError for names that are taken twice, and for ports in no node or in two."""
         by_name = {component.name: component for component in components}
-        given = {
+        values = {
             "name": name, "subject": subject or name, "components": components, "nodes": nodes, "exposed": exposed,
             "prefixed": prefixed, "_by_name": by_name,
         }  # fmt: skip
-        for key, value in given.items():
+        for key, value in values.items():
             object.__setattr__(self, key, value)
         if len(by_name) != len(components):
             names = [component.name for component in components]
@@ -324,3 +311,34 @@ class System(Component):
         """The joint at the node of a port; ValueError when there is not exactly one."""
         (only,) = self.joints_at(component, port)
         return only
+
+
+COMPONENTS: dict[str, type[Component]] = {
+    "ground": Ground,
+    "rigid_body": RigidBody,
+    "joint": JointComponent,
+    "motion": MotionDrive,
+    "effort": EffortDrive,
+    "spring": Spring,
+    "damper": Damper,
+    "end_stop": EndStop,
+    "servo": Servo,
+    "dc_motor": DcMotor,
+    "voltage_source": VoltageSource,
+    "voltage_controller": VoltageController,
+    "spring_damper": SpringDamper,
+    "gear": Gear,
+    "load": LoadComponent,
+    "system": System,
+}
+"""What components are called where the port model is data: in results files, in JSON, and on the screen."""
+
+_NAMES = {cls: name for name, cls in COMPONENTS.items()}
+
+
+def kind_of(component: Component) -> str:
+    """The name of the component's kind. Raises ValueError for a kind that is none of kinform's."""
+    try:
+        return _NAMES[type(component)]
+    except KeyError:
+        raise ValueError(f'"{component.name}" is a {type(component).__name__}, which is no kind of component') from None

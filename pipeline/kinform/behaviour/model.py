@@ -18,29 +18,22 @@ from collections import defaultdict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinform.behaviour.components import (
-    Component,
+from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.nested import placed
+from kinform.behaviour.ports import Component, Node
+from kinform.behaviour.shafts import (
     Controller,
     Damper,
     DcMotor,
     EffortDrive,
     EndStop,
-    Gear,
-    Ground,
-    JointComponent,
-    LoadComponent,
     MotionDrive,
-    Node,
-    RigidBody,
     Servo,
     Spring,
-    SpringDamper,
-    System,
     VoltageController,
     VoltageSource,
 )
-from kinform.behaviour.joints import KINDS, JointGeometry
-from kinform.behaviour.nested import placed
 from kinform.behaviour.signals import Signal
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array

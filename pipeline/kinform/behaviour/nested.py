@@ -12,18 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.behaviour.components import (
-    Component,
-    Gear,
-    Ground,
-    JointComponent,
-    LoadComponent,
-    Node,
-    RigidBody,
-    SpringDamper,
-    System,
-)
+from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
 from kinform.behaviour.joints import KINDS, JointGeometry
+from kinform.behaviour.ports import Component, Node
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
 

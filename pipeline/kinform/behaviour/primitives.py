@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["Ball", "OneFreedom", "Primitive", "skew"]
+__all__ = ["Ball", "OneFreedom", "Primitive"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +40,7 @@ class OneFreedom:
     @property
     def terms(self) -> Array:
         """(3, 4, 4): E₁, E₂, E₃ of the exponential; E₁ goes with q, E₂ with sin q, E₃ with 1 − cos q."""
-        turn = skew(self.omega)
+        turn = cross_matrix(self.omega)
         out = np.zeros((3, 4, 4))
         out[0, :3, 3] = self.slide
         for k, rotation in ((1, turn), (2, turn @ turn)):
@@ -61,8 +62,3 @@ class Ball:
 
 
 Primitive = OneFreedom | Ball
-
-
-def skew(w: Array) -> Array:
-    """(3, 3) matrix of the cross product with w (3,)."""
-    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES
 from kinform.model.function import Law
 
 __all__ = ["Constant", "Ramp", "Signal", "Sine", "Spline", "Table", "signal", "smooth"]
@@ -106,10 +107,6 @@ class Table:
         return 0.0
 
 
-OVERSHOOT = 0.02
-"""Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
-
-
 class Spline:
     """A cubic curve through a table that comes to rest at both ends, held outside.
 
@@ -125,7 +122,8 @@ class Spline:
         self._ends = (table.levels[0], table.levels[-1])
         levels = np.asarray(table.levels)
         self.curve: Any = CubicSpline(table.knots, levels, bc_type="clamped")
-        between = self.curve(np.linspace(table.knots[:-1], table.knots[1:], 17))
+        places = np.linspace(table.knots[:-1], table.knots[1:], SPLINE_SAMPLES)
+        between = self.curve(places)
         low, high = np.minimum(levels[:-1], levels[1:]), np.maximum(levels[:-1], levels[1:])
         outside = max(float((between - high).max()), float((low - between).max()))
         self.monotone = outside > OVERSHOOT * float(levels.max() - levels.min())
@@ -136,8 +134,7 @@ class Spline:
             self.curve = CubicHermiteSpline(table.knots, levels, slopes)
         self._rate: Any = self.curve.derivative(1)
         self._acceleration: Any = self.curve.derivative(2)
-        middles = np.linspace(table.knots[:-1], table.knots[1:], 17).ravel()
-        gap = self.curve(middles) - np.interp(middles, table.knots, table.levels)
+        gap = self.curve(places) - np.interp(places, table.knots, table.levels)
         self.deviation = float(np.abs(gap).max())
         """Greatest difference from the straight lines of the table."""
 
@@ -177,9 +174,9 @@ def signal(law: Law, scale: float) -> Signal:
     raise ValueError(f'its law is of the unknown type "{law.type}"')
 
 
-def smooth(given: Signal) -> Signal:
+def smooth(signal: Signal) -> Signal:
     """The same signal, or for a table the spline that a body with mass can follow."""
-    return Spline(given) if isinstance(given, Table) else given
+    return Spline(signal) if isinstance(signal, Table) else signal
 
 
 def _table(law: Law, scale: float) -> Signal:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.behaviour import Behaviour, Component, JointComponent, RigidBody, System, build
-from kinform.behaviour.components import EndStop, SpringDamper
+from kinform.behaviour.components import SpringDamper
+from kinform.behaviour.shafts import EndStop
 from kinform.design import Design
 from kinform.errors import StageError
 from kinform.foundation.algebra.spatial import quaternions

@@ -1,6 +1,6 @@
 """json: the port model as data, its JSON Schema (published in docs/), and reading it back.
 
-The tables of the file follow from the records of `kinform.behaviour`: `kind`, as `behaviour.kinds` calls it, and a key
+The tables of the file follow from the records of `kinform.behaviour`: `kind`, as `kind_of` calls it, and a key
 for each field. Written by hand is only what JSON says in another form: nodes and exposed ports by name, the geometry of
 a joint beside its type, and the whole. Numbers are doubles in shortest decimal form, so that reading gives an equal
 model, bit by bit.
@@ -20,8 +20,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from kinform.behaviour import Component, Constant, Gear, JointComponent, Node, RigidBody, Signal, System, count, flat
+from kinform.behaviour.components import COMPONENTS, kind_of
 from kinform.behaviour.joints import KINDS, JointGeometry
-from kinform.behaviour.kinds import COMPONENTS, kind_of
 from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Ramp, Sine, Table
 from kinform.errors import InputError, Problem

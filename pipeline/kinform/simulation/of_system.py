@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinform.behaviour.components import Ground, System
-from kinform.behaviour.faults import faults
+from kinform.behaviour.diagnosis import faults
 from kinform.behaviour.nested import flat
 from kinform.foundation.progress import Progress, Say
 from kinform.model.arrays import Array

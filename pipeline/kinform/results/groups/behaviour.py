@@ -13,10 +13,10 @@ from typing import Any
 import h5py
 
 from kinform.behaviour import Behaviour, Component, Node, System, count, flat
-from kinform.behaviour.components import Controller, JointComponent
+from kinform.behaviour.components import COMPONENTS, JointComponent, kind_of
 from kinform.behaviour.joints import KINDS, JointGeometry
-from kinform.behaviour.kinds import COMPONENTS, kind_of
 from kinform.behaviour.nested import arranged
+from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Table
 from kinform.design import Design
 from kinform.results import layout

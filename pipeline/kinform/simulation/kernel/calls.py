@@ -80,8 +80,8 @@ def engine(*, compiled: bool) -> Engine:
     """The kernel's units, compiled (from numba's cache where there is one) or not."""
     if not compiled:
         return Engine(False, _PLAIN)
-    from kinform.simulation.kernel.compiled import compiled as functions
+    from kinform.simulation.kernel.compiled import compiled_units
 
-    units = functions()
+    units = compiled_units()
     Engine.loaded = True
     return Engine(True, units)

@@ -34,7 +34,7 @@ from kinform.simulation.kernel import (
     vectors,
 )
 
-__all__ = ["compiled", "is_cached"]
+__all__ = ["compiled_units", "is_cached"]
 
 _MODULES = (vectors, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
@@ -95,7 +95,7 @@ def _kinds() -> dict[str, tuple[Any, Any]]:
 
 
 @cache
-def compiled() -> types.SimpleNamespace:
+def compiled_units() -> types.SimpleNamespace:
     """The units, compiled; where they take arrays, they take addresses (`tables`)."""
     import numba
 

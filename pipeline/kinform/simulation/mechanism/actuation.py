@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.behaviour.components import (
+from kinform.behaviour.components import System
+from kinform.behaviour.shafts import (
+    Actor,
     Controller,
     Damper,
     DcMotor,
@@ -16,10 +18,8 @@ from kinform.behaviour.components import (
     MotionDrive,
     Servo,
     Spring,
-    System,
     VoltageSource,
 )
-from kinform.behaviour.shafts import Actor
 from kinform.behaviour.signals import Signal, Spline, smooth
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout

@@ -9,43 +9,29 @@ from itertools import pairwise
 
 import numpy as np
 
-from kinform.behaviour.components import (
-    Actor,
-    Component,
-    DcMotor,
-    EndStop,
-    Gear,
-    Ground,
-    JointComponent,
-    LoadComponent,
-    RigidBody,
-    SpringDamper,
-    System,
-    VoltageController,
-    VoltageSource,
-)
-from kinform.behaviour.shafts import Controller
+from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
+from kinform.behaviour.constants import UNIT_LENGTH
+from kinform.behaviour.ports import Component
+from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, VoltageController, VoltageSource
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 
 __all__ = ["faults"]
 
 _SIGNALS = (Constant, Ramp, Sine, Table)
-_UNIT = 1e-9
-"""Length of an axis beyond 1 that no rounding explains."""
 _UNBOUNDED = ("lower", "upper", "limit")
 """Values that may be infinite."""
 
 
 def faults(system: System) -> tuple[tuple[str, str], ...]:
     """(what the component is called, what is wrong) of a flat system, in the order of its components."""
-    found = list(_structure(system))
+    wrong = list(_faults_of_structure(system))
     for component in system.components:
-        found += [(component.subject, why) for why in _values(component)]
-        found += [(component.subject, why) for why in _meetings(system, component)]
-    return tuple(dict.fromkeys(found))
+        wrong += [(component.subject, why) for why in _faults_of_values(component)]
+        wrong += [(component.subject, why) for why in _faults_of_nodes(system, component)]
+    return tuple(dict.fromkeys(wrong))
 
 
-def _structure(system: System) -> Iterator[tuple[str, str]]:
+def _faults_of_structure(system: System) -> Iterator[tuple[str, str]]:
     grounds = [c for c in system.components if isinstance(c, Ground)]
     if len(grounds) != 1:
         yield (grounds[1].subject if grounds else "ground"), f"a device has one ground, this one has {len(grounds)}"
@@ -54,7 +40,7 @@ def _structure(system: System) -> Iterator[tuple[str, str]]:
         yield from ((name, f"{count} {what} are called so") for name, count in names.items() if count > 1)
 
 
-def _values(component: Component) -> Iterator[str]:
+def _faults_of_values(component: Component) -> Iterator[str]:
     """Numbers that are none, or that cannot be."""
     for field in dataclasses.fields(component):
         value = getattr(component, field.name)
@@ -72,17 +58,21 @@ def _values(component: Component) -> Iterator[str]:
     if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):
         yield "its resistance must be positive, its inductance not negative"
     if isinstance(component, JointComponent):
-        yield from _geometry(component)
+        yield from _faults_of_geometry(component)
 
 
-def _geometry(joint: JointComponent) -> Iterator[str]:
+def _faults_of_geometry(joint: JointComponent) -> Iterator[str]:
     try:
         joint.kind.chain(joint.geometry)
     except ValueError as error:
         yield f"the {joint.kind.name} joint cannot be placed: {error}"
     for name in ("axis", "axis2"):
         vector = getattr(joint.geometry, name)
-        if vector is not None and np.all(np.isfinite(vector)) and abs(float(np.linalg.norm(vector)) - 1.0) > _UNIT:
+        if (
+            vector is not None
+            and np.all(np.isfinite(vector))
+            and abs(float(np.linalg.norm(vector)) - 1.0) > UNIT_LENGTH
+        ):
             yield f"its {name} is not of length 1"
 
 
@@ -109,7 +99,7 @@ def _number(name: str, value: object, whose: str) -> Iterator[str]:
         yield f"{whose}{name.replace('_', ' ')} is not a finite number"
 
 
-def _meetings(system: System, component: Component) -> Iterator[str]:
+def _faults_of_nodes(system: System, component: Component) -> Iterator[str]:
     """Ports that meet nothing that could answer them, or too much."""
     if isinstance(component, JointComponent | SpringDamper):
         for port in ("a", "b"):
@@ -134,26 +124,26 @@ def _meetings(system: System, component: Component) -> Iterator[str]:
 
 
 def _one_body(system: System, component: Component, port: str) -> Iterator[str]:
-    met = system.bodies_at(component.name, port)
-    if len(met) != 1:
-        yield f"its port {port} meets {_listed(met, 'body')}: it needs one body"
+    others = system.bodies_at(component.name, port)
+    if len(others) != 1:
+        yield f"its port {port} meets {_listed(others, 'body')}: it needs one body"
 
 
 def _one_shaft(system: System, component: Component, port: str) -> Iterator[str]:
-    met = system.joints_at(component.name, port)
-    if len(met) != 1:
-        yield f"its port {port} is on {_listed(met, 'joint')}: it needs one"
+    others = system.joints_at(component.name, port)
+    if len(others) != 1:
+        yield f"its port {port} is on {_listed(others, 'joint')}: it needs one"
 
 
 def _supplied(system: System, motor: DcMotor) -> Iterator[str]:
-    met = [c for c, _ in system.at(motor.name, "terminals") if isinstance(c, VoltageSource | VoltageController)]
-    if len(met) != 1:
-        yield f"its terminals meet {_listed(met, 'source of a voltage')}: they need one"
+    sources = [c for c, _ in system.at(motor.name, "terminals") if isinstance(c, VoltageSource | VoltageController)]
+    if len(sources) != 1:
+        yield f"its terminals meet {_listed(sources, 'source of a voltage')}: they need one"
         return
-    (supply,) = met
+    (supply,) = sources
     if isinstance(supply, VoltageController) and system.node(supply.name, "shaft") != system.node(motor.name, "shaft"):
         yield f'its controller "{supply.subject}" reads another shaft than its own, which is not simulated'
 
 
-def _listed(met: Sequence[Component], what: str) -> str:
-    return f"no {what}" if not met else f"{', '.join(c.subject for c in met)}"
+def _listed(components: Sequence[Component], what: str) -> str:
+    return ", ".join(c.subject for c in components) or f"no {what}"

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.behaviour.acting import make_drive, make_gear, make_load, mesh_gear
-from kinform.behaviour.components import Component, Ground, JointComponent, Node, RigidBody, System
+from kinform.behaviour.components import Ground, JointComponent, RigidBody, System
 from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
+from kinform.behaviour.ports import Component, Node
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
