@@ -17,4 +17,4 @@ UNIT_LENGTH = 1e-9
 OVERSHOOT = 0.02
 """Share of a table's span that a spline may leave its rows: a sine of sixteen rows a turn does."""
 SPLINE_SAMPLES = 17
-"""Places in each stretch of a table at which a spline is compared with its straight line: ends, middle and sixteenths."""
+"""Places in each stretch of a table at which a spline is compared with its straight line: ends and sixteenths."""

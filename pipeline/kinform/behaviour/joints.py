@@ -86,8 +86,8 @@ def _cylindrical(geometry: JointGeometry) -> tuple[Primitive, ...]:
 
 
 def _spherical(geometry: JointGeometry) -> tuple[Primitive, ...]:
-    """All turns about a point. Coordinates: the quaternion wxyz of the second body relative to the first; rates: ω of the
-    second relative to the first (rad/s), in the axes of the first body, which are the world's at the pose of the meshes.
+    """All turns about a point. Coordinates: the quaternion wxyz of the second body relative to the first; rates: ω of
+    the second relative to the first (rad/s), in the axes of the first, which are the world's at the pose of the meshes.
     """
     return (Ball(geometry.needed("point")),)
 

@@ -97,7 +97,7 @@ def _welded(system: System) -> System:
 
 
 def arranged(system: System, names: Sequence[str]) -> System:
-    """The flat system with its components in the order of their names; nodes and ports as they are met in that order."""
+    """The flat system with its components in the order of these names, nodes and ports as they are met in it."""
     components = tuple(system.component(name) for name in names)
     nodes: dict[int, tuple[Node, list[Leaf]]] = {}
     for component in components:

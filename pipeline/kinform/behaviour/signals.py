@@ -110,9 +110,9 @@ class Table:
 class Spline:
     """A cubic curve through a table that comes to rest at both ends, held outside.
 
-    Its rate is continuous, so that a finite effort can follow it. It is the cubic spline, whose acceleration is continuous
-    too, while that stays between the rows to within OVERSHOOT; through coarser tables the monotone curve of Fritsch and
-    Carlson (1980), which rests where the table does and never leaves its rows.
+    Its rate is continuous, so that a finite effort can follow it. It is the cubic spline, whose acceleration is
+    continuous too, while that stays between the rows to within OVERSHOOT; through coarser tables the monotone curve of
+    Fritsch and Carlson (1980), which rests where the table does and never leaves its rows.
     """
 
     def __init__(self, table: Table):

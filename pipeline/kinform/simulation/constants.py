@@ -46,7 +46,7 @@ STOP_PARTS = 4
 STOP_PASSED = 1e-12
 """rad or m beyond a limit that is passed: less is rounding."""
 TURN_HALVINGS = 40
-"""Halvings of a part of a step to find where a joint turns: to 1e-12 of it, which is enough for a place that is flat."""
+"""Halvings of a part of a step to find where a joint turns: to 1e-12 of it, enough where the curve is flat."""
 STOP_HALVINGS = 60
 """Halvings of a step to find where a stop is passed: to the last bit of its share."""
 CROSSING_AROUND = 0.1
@@ -180,8 +180,8 @@ AT_STOP = 1e-9
 IMPACT_ROUNDING = 1e-6
 """Share of the greatest pace at an impact up to which a joint may seem to go on beyond its stop."""
 LAW_PARTS = 8.0
-"""Parts of half a period of a law that a step may be as long as while a stop holds: push turns to pull and back unseen in
-longer ones."""
+"""Parts of half a period of a law that a step may be as long as while a stop holds: in longer ones push turns to pull
+and back unseen."""
 RELEASE_HALVINGS = 40
 """Halvings of a step to find where a stop begins to pull: to 1e-12 of it."""
 RELEASE_PARTS = 4

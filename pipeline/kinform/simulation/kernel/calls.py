@@ -1,7 +1,8 @@
 """Calls the kernel's functions with the tables of a mechanism, as they are or compiled.
 
-As they are, they get lists in the place of the arrays: Python reads and writes a number of a list several times faster
-than one of an array. Numbers are the same: both are doubles, and what is computed with them is written once, in the kernel.
+As they are, they get lists in the place of the arrays: Python reads and writes a number of a list several times
+faster than one of an array. Numbers are the same: both are doubles, and what is computed with them is written once,
+in the kernel.
 """
 
 from __future__ import annotations

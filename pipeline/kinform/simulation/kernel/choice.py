@@ -18,7 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["choose"]
 
 

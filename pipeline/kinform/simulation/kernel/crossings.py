@@ -27,7 +27,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Nums,
 )  # fmt: skip
 
-
 __all__ = ["alike", "laid", "tip"]
 
 

@@ -19,8 +19,7 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-
-__all__ = ["derivative", "impose", "move", "pace_of", "project", "torn"]
+__all__ = ["derivative", "project", "torn"]
 
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
@@ -124,6 +123,30 @@ def torn(ints: Ints, nums: Nums, work: Work, y: Row) -> float:
     return most
 
 
+def normalise_balls(links: Index, y: Row) -> None:
+    """Gives the quaternions of balls in y unit length."""
+    for i in range(1, len(links)):
+        if links[i][WIDTH] == 3:
+            at = links[i][Q]
+            a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
+            norm = math.sqrt(a * a + b * b + c * c + d * d)
+            for j in range(4):
+                y[at + j] /= norm
+
+
+def close_rates(ints: Ints, nums: Nums, work: Work, y: Row) -> None:
+    """Takes from the rates in y the least, by mass, that opens the loops, by the factors that there are."""
+    vectors, n, first = work[VECTORS], ints[COUNTS][0][RATES], ints[COUNTS][0][POSITIONS]
+    twist_links(ints, work, y)
+    for r in range(ints[COUNTS][0][RANK]):
+        vectors[GAP][r] = -pace_of(ints, nums, work[STATE], y, ints[MODE][CHOSEN][r])
+    for k in range(n):
+        vectors[ACC][k] = 0.0
+    settle(ints, work)
+    for k in range(n):
+        y[first + k] += vectors[ACC][k]
+
+
 def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float, factored: bool) -> float:
     """Closes the loops in y to `closed` by least corrections, by mass, of positions and then of rates.
 
@@ -132,17 +155,11 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
     length. Returns the gap left, −1 when a free motion has no mass; writes how good the pivots still are to
     work[VECTORS][KEPT].
     """
-    counts, links, mode, state, vectors = ints[COUNTS], ints[LINKS], ints[MODE], work[STATE], work[VECTORS]
-    n, rank, first = counts[0][RATES], counts[0][RANK], counts[0][POSITIONS]
-    if counts[0][LED] > 0:
+    links, mode, state, vectors = ints[LINKS], ints[MODE], work[STATE], work[VECTORS]
+    n, rank, first = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][POSITIONS]
+    if ints[COUNTS][0][LED] > 0:
         impose(links, ints[COLUMNS], nums[SIGNALS], nums[PIECES], min(t, nums[CONSTANTS][0][LAST]), y, first)
-    for i in range(1, len(links)):
-        if links[i][WIDTH] == 3:
-            at = links[i][Q]
-            a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
-            norm = math.sqrt(a * a + b * b + c * c + d * d)
-            for j in range(4):
-                y[at + j] /= norm
+    normalise_balls(links, y)
     vectors[KEPT][0] = 1.0
     if rank == 0:
         return 0.0
@@ -176,12 +193,5 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
             if rest > TORN_GAP:
                 size = max(size, rest)
     for _ in range(2 if factored else 1):
-        twist_links(ints, work, y)
-        for r in range(rank):
-            vectors[GAP][r] = -pace_of(ints, nums, state, y, mode[CHOSEN][r])
-        for k in range(n):
-            vectors[ACC][k] = 0.0
-        settle(ints, work)
-        for k in range(n):
-            y[first + k] += vectors[ACC][k]
+        close_rates(ints, nums, work, y)
     return size

@@ -2,7 +2,7 @@
 
 Control of steps and the test for stiffness are those of Hairer, Nørsett and Wanner's program DOP853
 (Solving Ordinary Differential Equations I, sections II.4 and IV.2). Loops are closed again after every
-accepted step. How the stages of a step follow each other is told at the head of `kinform.simulation.kernel`.
+accepted step. How the stages of a step follow each other is told at the head of `kinform.simulation.solver`.
 """
 
 from __future__ import annotations
@@ -49,7 +49,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED,
     Row, Counts, Nums, Work,
 )  # fmt: skip
-
 
 __all__ = ["advance", "look", "sample", "stop_reached"]
 

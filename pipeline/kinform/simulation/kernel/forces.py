@@ -18,7 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Vector,
 )  # fmt: skip
 
-
 __all__ = ["between", "control", "drive", "law", "loads", "pace", "push"]
 
 

@@ -100,7 +100,7 @@ AT_END, TRIED, NEW, ROUND = 12, 16, 17, 19
 # clock: times (s), tolerances, and what is known of the step on trial; tally: counts. Both are rows that the
 # integrator changes.
 NOW, END, STEP, RTOL, ATOL, CLOSED, NEAR, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING = range(14)
-"""STEP: the length to try next. MARGIN: the least of the run, at the time TIGHTEST. LEAST: the least margin in the step.
+"""STEP: the length to try next. MARGIN: the least of the run, at the time TIGHTEST. LEAST: the least of the step.
 CROSSING: time of a singular pose ahead. The others are settings, see `Run`."""
 SPAN, REACHED, ERROR, WEAR, GROWTH, MARGINS, CLOCK = 14, 15, 16, 17, 18, 19, 32
 """SPAN and REACHED: length and end of the step on trial. ERROR: its error over the tolerance. WEAR: smallest pivot over

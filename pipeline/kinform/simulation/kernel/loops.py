@@ -18,7 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
 
 

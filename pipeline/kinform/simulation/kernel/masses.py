@@ -18,7 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]
 
 

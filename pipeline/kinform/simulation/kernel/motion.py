@@ -17,7 +17,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["place_ball", "place_links", "place_screw", "twist_links"]
 
 

@@ -5,6 +5,18 @@ thirty of them as arguments, most of the time of compiling, and a third of that 
 small mechanism, went into handing them on. Here a row is an address, a table an address with its rows and
 columns, and a tuple of tables the address of a list of those (`tables.addresses`). Nothing is checked: indices
 must lie within, and nothing keeps the arrays but who calls.
+
+This rests on numba's internals, which nobody promises to keep: `types.Type`, the models of `numba.extending`
+(`register_model`, `PrimitiveModel`, `StructModel`), the templates that are asked for the types of operators
+(`AbstractTemplate`, `infer_global`, and that `metadata = {"target": "cpu"}` puts one before those for any target),
+`lower_builtin` and `cgutils`; in `compiled` besides on `ExternalFunction`, on the option `_nrt`, and on the names and
+places of the files of the cache. numba 0.60 to 0.68 were tried, and `pyproject.toml` admits no other.
+
+When numba moves, an ImportError here, a TypingError ("No implementation of function … getitem") or an AssertionError
+of its lowering say that one of these has changed. tests/simulation/test_kernel.py and test_reduction.py compile all
+units and compare them with the plain functions, bit by bit. One thing goes wrong in silence: a cache that is no longer
+found (`is_cached` stays False after a compilation), so that runs are left to the plain functions for longer, and each
+process that compiles does so for ten seconds. Short runs need none of this.
 """
 
 from __future__ import annotations

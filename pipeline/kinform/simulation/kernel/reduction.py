@@ -18,7 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["factor", "reduce", "settle", "weigh"]
 
 

@@ -27,7 +27,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
-
 __all__ = ["interpolate", "prepare", "roundings", "slope", "stage", "try_step"]
 
 

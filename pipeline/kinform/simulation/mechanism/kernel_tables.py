@@ -50,8 +50,8 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     mode[layout.PLACE, :n] = np.argsort(mode[layout.ORDER, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
     ints = (
-        np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors, loads, springs,
-        mode, stops,
+        np.array([[rank, led, nq, states, n, size]]), order.links(), columns, closures, np.zeros((0, 1)), actors,
+        loads, springs, mode, stops,
     )  # fmt: skip
     nums = (
         numbers, _links(mechanism, system, order), scale, _frames(mechanism), values, actor_numbers, load_numbers,

@@ -86,7 +86,8 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str
     start = float(run.clock[layout.NOW])
     solver: Any = Radau(
         rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
-        first_step=min(FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(), jac=lambda t, y: _jacobian(run, t, y),
+        first_step=min(FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(),
+        jac=lambda t, y: _jacobian(run, t, y),
     )  # fmt: skip
     while solver.status == "running":
         contact.remember()

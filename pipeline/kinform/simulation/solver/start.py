@@ -142,7 +142,7 @@ def _opens(follower: Follower, v: Array) -> bool:
 
 
 def _notes_of_least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
-    """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either side."""
+    """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either."""
     rates = np.abs(v[follower.undetermined])
     moving = follower.undetermined[rates > LEAST_MOTION * float(rates.max(initial=0.0))]
     if not len(moving):

@@ -230,7 +230,7 @@ def _motions(dynamics: Dynamics, q: Array, free: Ints, rank: int) -> Array:
 
 
 def _impact(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tuple[Array, Array] | None:
-    """Change (n,) of the rates at which no joint goes on beyond the stops that it has met, and how fast it then goes there.
+    """Change (n,) of the rates at which no joint goes on beyond the stops it has met, and how fast it then goes there.
 
     None where no change of the motions `null` (n, m) brings that about; `matrix` (n, n) is that of the masses.
     """
