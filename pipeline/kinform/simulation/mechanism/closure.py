@@ -36,10 +36,6 @@ class Factor:
         """(k,) rates with rows · rates = gap, the smallest in scaled rates."""
         return np.asarray(self.scale * ((gap @ self.left / self.values) @ self.right))
 
-    def multipliers(self, forces: Array) -> Array:
-        """(m,) smallest λ with rowsᵀ λ = forces (k,), as far as the rank allows."""
-        return np.asarray(self.left @ ((self.right @ (self.scale * forces)) / self.values))
-
     @property
     def margin(self) -> float:
         """Smallest singular value that counts over the largest; 1 without rows."""

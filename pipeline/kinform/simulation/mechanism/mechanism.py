@@ -136,18 +136,6 @@ class Mechanism:
         """(L, 6) twist of each link."""
         return np.asarray((self.moves * v) @ screws)
 
-    def q_rates(self, q: Array, v: Array) -> Array:
-        """Rates of change of the positions."""
-        if len(q) == len(v):
-            return v.copy()
-        out = np.zeros_like(q)
-        for slot in self.slots:
-            if slot.has_ball:
-                out[slot.q] = 0.5 * multiply(np.concatenate([[0.0], v[slot.v]]), q[slot.q])
-            else:
-                out[slot.q] = v[slot.v]
-        return out
-
     def advance(self, q: Array, step: Array) -> Array:
         """Positions after the displacement `step` (n,), a rate times a time."""
         out = q.copy()
