@@ -69,6 +69,11 @@ def _slide(direction: Array) -> OneFreedom:
     return OneFreedom(np.zeros(3), np.zeros(3), direction)
 
 
+def _fixed(_: JointGeometry) -> tuple[Primitive, ...]:
+    """No freedom; the two bodies move as one."""
+    return ()
+
+
 def _revolute(geometry: JointGeometry) -> tuple[Primitive, ...]:
     """A turn about an axis. Coordinate: the angle (rad)."""
     return (_turn(geometry.needed("axis"), geometry.needed("point")),)
@@ -125,7 +130,7 @@ _ANGLE, _DISTANCE = ("angle", True), ("distance", False)
 KINDS: dict[str, JointKind] = {
     kind.name: kind
     for kind in (
-        JointKind("fixed", (), 0, lambda _: (), ()),
+        JointKind("fixed", (), 0, _fixed, ()),
         JointKind("revolute", (_ANGLE,), 1, _revolute, (0,)),
         JointKind("prismatic", (_DISTANCE,), 1, _prismatic, (0,)),
         JointKind("cylindrical", (_ANGLE, _DISTANCE), 2, _cylindrical, (0, 1)),

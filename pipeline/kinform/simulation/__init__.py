@@ -9,8 +9,9 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from kinform.simulation.request import port_model, simulate
+from kinform.simulation.request import simulate
 from kinform.simulation.settings import SolverSettings
+from kinform.simulation.subject import port_model
 
 if TYPE_CHECKING:
     from kinform.simulation.of_system import Course, simulate_system

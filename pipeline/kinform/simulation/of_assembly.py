@@ -17,9 +17,9 @@ from kinform.simulation.levels import choose, notes_of_drives, notes_of_joints, 
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.of_system import Course, run_course
-from kinform.simulation.request import Failures, are_gears_ideal, refuse, simulated_joints
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.start import Stated
+from kinform.simulation.subject import Failures, are_gears_ideal, refuse, simulated_joints
 
 __all__ = ["simulate_assembly"]
 

@@ -19,12 +19,12 @@ from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.outcome.results import publish, publish_dynamic, while_in_mesh
-from kinform.simulation.request import Failures, refuse
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.solver.dynamic import run_dynamic
 from kinform.simulation.solver.kinematic import notes_of_rest, run_kinematic
 from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_start
 from kinform.simulation.solver.stops import beyond
+from kinform.simulation.subject import Failures, refuse
 
 __all__ = ["Course", "run_course", "simulate_system"]
 
