@@ -129,6 +129,7 @@ def _lead(twist: Array) -> float:
 
 
 def _turning(turns: Array, slides: Array, frame: Frame) -> list[str]:
+    """What the turns are: about one axis (a screw, where it advances across the slides), two, or every axis."""
     count = turns.shape[1]
     if count == 0:
         return []

@@ -71,6 +71,11 @@ def perpendicular(axis: Array) -> tuple[Array, Array]:
     return u, cross(axis, u)
 
 
+def foot(point: Array, axis: Array, place: Array) -> Array:
+    """The point of the line through `point` along the unit `axis` that is nearest to `place`, (3,) each."""
+    return np.asarray(point + axis * float(axis @ (place - point)))
+
+
 def canonical(axis: Array) -> Array:
     """Unit vector along `axis` (3,) with the sign of `canonical_sign`."""
     unit: Array = axis / np.linalg.norm(axis)

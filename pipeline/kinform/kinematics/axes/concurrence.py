@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, foot, perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import FIRST_LOOK, LEAST_CROSSING, MET, RCOND
 from kinform.model.arrays import Array, Flags, Ints
@@ -159,9 +159,8 @@ def _between(a: Locus, b: Locus) -> tuple[Array | None, float]:
     """The point half-way between two loci where they are closest, and the sine of their angle."""
     if a.axis is None or b.axis is None:
         centre, other = (a, b) if a.axis is None else (b, a)
-        arm = centre.point - other.point
-        foot = other.point if other.axis is None else other.point + other.axis * float(other.axis @ arm)
-        return 0.5 * (centre.point + foot), 1.0
+        place = other.point if other.axis is None else foot(other.point, other.axis, centre.point)
+        return 0.5 * (centre.point + place), 1.0
     normal = cross(a.axis, b.axis)
     sine = float(np.linalg.norm(normal))
     if sine < LEAST_CROSSING:

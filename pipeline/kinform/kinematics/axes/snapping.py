@@ -70,7 +70,7 @@ class _Line:
         foot = lead.point if self.foot is None else self.foot
         return Locus(foot, self.direction, lead.angle, lead.position, bodies)
 
-    def shifted(self, shift: Array, joints: Sequence[Joint]) -> _Line:
+    def shift(self, shift: Array, joints: Sequence[Joint]) -> _Line:
         return replace(self, foot=self.locus(joints).point + shift) if np.any(shift) else self
 
 
@@ -82,7 +82,7 @@ def snap_axes(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -
     placed = [k for k, line in enumerate(lines) if line.direction is None or line.members[0].line]
     shifts = meeting_shifts([lines[k].locus(joints) for k in placed], SIGMAS)
     for k, shift in zip(placed, shifts, strict=True):
-        lines[k] = lines[k].shifted(shift, joints)
+        lines[k] = lines[k].shift(shift, joints)
     out, misfit = list(joints), Misfit()
     for line in lines:
         for member in line.members:

@@ -91,7 +91,7 @@ def close_block(
             blur = doubts[list(block)]
             closed = max(CLOSED, min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())))
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed), True
-    return Block(tuple(block), tuple(cycles), frame, _unscaled(solutions, norms), sure)
+    return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
 
 
 def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, norms: Array) -> Array:
@@ -279,6 +279,6 @@ def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
     return out
 
 
-def _unscaled(solutions: Sequence[Solution], norms: Array) -> tuple[Solution, ...]:
+def _in_joint_units(solutions: Sequence[Solution], norms: Array) -> tuple[Solution, ...]:
     """In rad/s and m/s of the joints' own twists, the driver at 1."""
     return tuple(Solution(s.driver, s.columns, s.rates * norms[s.driver] / norms[s.columns]) for s in solutions)

@@ -94,7 +94,7 @@ def _block(
     unknown.
     """
     names = tuple(joint.name for joint in joints)
-    geared = _geared(edges, joints, ties)
+    geared = _without_gears(edges, joints, ties)
     if geared is not None:
         kept, ratios = geared
         members = [joints[k] for k in kept]
@@ -125,7 +125,7 @@ def _block(
     return FiniteCertificate(names, count, None, statement=f"not known how the loops move over a distance: {why}")
 
 
-def _geared(
+def _without_gears(
     edges: Sequence[tuple[int, int]], joints: Sequence[Joint], ties: Sequence[Coupling]
 ) -> tuple[list[int], list[tuple[int, int, float]]] | None:
     """Joints that are left when the contacts of gears are taken out, and the ratios between these (by their places

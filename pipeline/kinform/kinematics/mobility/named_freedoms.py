@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import canonical, cross
+from kinform.foundation.algebra.vectors import canonical, cross, foot
 from kinform.foundation.graphs.graph import Forest, forest
 from kinform.kinematics.constants import AT_REST, EXCHANGED, NO_PITCH, NO_TURN, NO_TWIST, RATE_ROUNDING, SAME_RATES
 from kinform.kinematics.loops.block_closure import Solution
@@ -83,8 +83,7 @@ def _read(twist: Array, near: Array | None) -> tuple[str, Array, Array, float]:
     if square < NO_TURN**2 * max(float(velocity @ velocity), 1.0):
         return "slide", canonical(velocity), beside, 0.0
     axis = omega / np.sqrt(square)
-    foot = cross(omega, velocity) / square
-    point = foot + axis * float(axis @ (beside - foot))
+    point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
     scale = max(1.0, float(np.linalg.norm(velocity)) / np.sqrt(square))
     if abs(pitch) < NO_PITCH * scale:

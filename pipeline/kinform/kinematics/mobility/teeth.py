@@ -113,29 +113,31 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
     for row in rows:
         if isinstance(row, str):
             return row
-    one, two = (row for row in rows if not isinstance(row, str))
-    mean = math.copysign(one.pitch / two.pitch, ratio)
+    first_row, second_row = (row for row in rows if not isinstance(row, str))
+    mean = math.copysign(first_row.pitch / second_row.pitch, ratio)
     if abs(ratio / mean - 1.0) > RATIO_AGREES:
-        return f"the ratio at this pose is {ratio:.5g}, that of {one.count} and {two.count} teeth {mean:.5g}"
-    ahead, behind = _rolled(first, second, one.pitch, first.sense * second.sense / mean)
+        return (
+            f"the ratio at this pose is {ratio:.5g}, that of {first_row.count} and {second_row.count} teeth {mean:.5g}"
+        )
+    ahead, behind = _roll(first, second, first_row.pitch, first.sense * second.sense / mean)
     if not (np.isfinite(ahead).all() and np.isfinite(behind).all()):
         return "the teeth let go of each other before the next ones meet"
     error = float(max(np.ptp(ahead), np.ptp(behind)))
-    if error > EVEN_TEETH * two.pitch:
-        return f"while one tooth passes the motion departs by {error / two.pitch:.2g} of a pitch from a constant ratio"
-    lower, upper = _reach(first, one, touch)
-    other = [abs(mean) * value for value in _reach(second, two, touch)]
+    if error > EVEN_TEETH * second_row.pitch:
+        return f"while one tooth passes the motion departs by {error / second_row.pitch:.2g} of a pitch from a constant ratio"
+    lower, upper = _reach(first, first_row, touch)
+    other = [abs(mean) * value for value in _reach(second, second_row, touch)]
     if mean < 0.0:
         other = [-other[1], -other[0]]
     return Meshing(
         ratio=mean,
-        teeth=(one.count, two.count),
-        pitches=(one.pitch, two.pitch),
+        teeth=(first_row.count, second_row.count),
+        pitches=(first_row.pitch, second_row.pitch),
         deviation=abs(mean) * error,
         play=abs(mean) * max(0.0, float((ahead + behind).min())),
         reach=(max(lower, other[0]), min(upper, other[1])),
         place=_pitch_point(first, second, mean) @ plane + float(axis @ place) * axis,
-        normals=np.stack([normal, _mirrored(first, second, plane, normal)]),
+        normals=np.stack([normal, _mirror_normal(first, second, plane, normal)]),
     )
 
 
@@ -221,7 +223,7 @@ def _teeth(outline: _Outline, touch: Array) -> _Row | str:
     return _Row(high - low + 1, pitch, float(starts[low]) - half, float(starts[high]) - half)
 
 
-def _rolled(first: _Outline, second: _Outline, pitch: float, follow: float) -> tuple[Array, Array]:
+def _roll(first: _Outline, second: _Outline, pitch: float, follow: float) -> tuple[Array, Array]:
     """(POSES,) how far the second side can go forwards and backwards (along) while the first passes one pitch and the
     second follows in the constant ratio `follow` (along over along); nan where nothing stops it."""
     ends = [_near(first, second), _near(second, first)]
@@ -280,14 +282,14 @@ def _reach(outline: _Outline, row: _Row, touch: Array) -> tuple[float, float]:
 
 def _pitch_point(first: _Outline, second: _Outline, ratio: float) -> Array:
     """(2,) where both sides have the same velocity."""
-    one, two = first.sense * ratio, second.sense
+    a, b = first.sense * ratio, second.sense
     if first.turns and second.turns:
-        return np.asarray((one * first.centre - two * second.centre) / (one - two))
-    wheel, slide, share = (first, second, two / one) if first.turns else (second, first, one / two)
+        return np.asarray((a * first.centre - b * second.centre) / (a - b))
+    wheel, slide, share = (first, second, b / a) if first.turns else (second, first, a / b)
     return np.asarray(wheel.centre + share * np.array([slide.along[1], -slide.along[0]]))
 
 
-def _mirrored(first: _Outline, second: _Outline, plane: Array, normal: Array) -> Array:
+def _mirror_normal(first: _Outline, second: _Outline, plane: Array, normal: Array) -> Array:
     """The normal of the other flank: the mirror image across the line of centres, or across the way of a slide."""
     if first.turns and second.turns:
         line = second.centre - first.centre

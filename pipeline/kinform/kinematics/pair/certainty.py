@@ -62,8 +62,8 @@ def certainty(
     touching = momentary(evidence, basis) or (
         name_space(basis, evidence.frame).type == "general" and meets([item.patch for item in evidence.items])
     )
-    doubt = "" if touching else _loose(evidence, twists, count, tolerances) or _stray(evidence)
-    doubt = doubt or _nearly_one(evidence, twists, count, tolerances) or _threaded(evidence, basis)
+    doubt = "" if touching else _loose_doubt(evidence, twists, count, tolerances) or _stray_doubt(evidence)
+    doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances) or _thread_doubt(evidence, basis)
     if doubt:
         return "ambiguous", doubt
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
@@ -109,7 +109,7 @@ def _count(evidence: Evidence, twists: Array, keep: Flags, tolerances: Tolerance
     return int(freedoms(evidence, twists, preserved, keep, tolerances)[0].shape[1])
 
 
-def _loose(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
     """What the patches of known surfaces do not hold, the others do not hold for sure; bodies become one
     only by surfaces that are known on both sides."""
     firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
@@ -121,7 +121,7 @@ def _loose(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances
     return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
 
 
-def _nearly_one(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
+def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
     """Are bodies fixed only by axes or centres that miss each other by a little?"""
     if count:
         return ""
@@ -138,7 +138,7 @@ def _nearly_one(evidence: Evidence, twists: Array, count: int, tolerances: Toler
     return f"axes that miss each other by little hold the bodies: as one axis they would leave {left} of 6 freedoms"
 
 
-def _threaded(evidence: Evidence, basis: Array) -> str:
+def _thread_doubt(evidence: Evidence, basis: Array) -> str:
     """Do facets all round an axis lean like those of a thread, without a thread that was found to mate there?"""
     form = name_space(basis, evidence.frame)
     if form.type == "screw" or basis.shape[1] > 2:
@@ -189,7 +189,7 @@ def _about(item: Item, axis: Array) -> bool:
     return float(np.linalg.norm(cross(item.patch.axis, axis))) < ALONG_AXIS
 
 
-def _stray(evidence: Evidence) -> str:
+def _stray_doubt(evidence: Evidence) -> str:
     """Is all of the contact on one side, and so small, or so far apart, that it may not be meant?"""
     normals = evidence.rows[:, 3:]
     if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():

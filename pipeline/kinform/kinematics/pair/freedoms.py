@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.screws import span
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, foot
 from kinform.kinematics.constants import (
     CLEARLY_NEW,
     CONE_SLACK,
@@ -68,12 +68,11 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
     turning = square > (THREAD_TURNING / frame.length) ** 2
     square = np.where(turning, square, 1.0)
     advance = np.einsum("ij,ij->j", angular, linear) / square
-    foot = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
+    feet = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
     axis, middle = item.patch.axis, item.points.mean(axis=0)
     direction = angular / np.sqrt(square)
     tilt = np.linalg.norm(np.cross(axis[:, None], direction, axis=0), axis=0)
-    beside = item.patch.point + axis * float(axis @ (middle - item.patch.point))
-    apart = beside[:, None] - foot
+    apart = foot(item.patch.point, axis, middle)[:, None] - feet
     apart = np.linalg.norm(apart - direction * np.einsum("ij,ij->j", direction, apart), axis=0)
     angle, reach = float(evidence.angle[row]), float(np.linalg.norm(item.points - middle, axis=1).max())
     wanted = item.patch.pitch / (2.0 * np.pi)
@@ -103,15 +102,15 @@ def freedoms(
             basis = np.column_stack([basis, unit])
     chosen = np.repeat(keep, np.diff(evidence.start))
     rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]
-    basis, values = _completed(rows, basis, tolerances)
+    basis, values = _complete(rows, basis, tolerances)
     if name_space(basis, evidence.frame).type == "general":
         rounded = nearest_pair(basis, evidence.frame)
         if rounded is not None and _all_preserve(evidence, rounded, keep):
-            return _completed(rows, rounded, tolerances)
+            return _complete(rows, rounded, tolerances)
     return basis, values
 
 
-def _completed(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array, Array]:
+def _complete(rows: Array, basis: Array, tolerances: Tolerances) -> tuple[Array, Array]:
     """The basis with whatever else the rows leave free, and the singular values (6,) ascending."""
     rows = rows - (rows @ basis) @ basis.T
     triangle = np.linalg.qr(rows, mode="r") if len(rows) >= 6 else rows

@@ -6,12 +6,14 @@ Axes that agree within what clearances and fits allow are one axis, fitted to al
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
-from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
 from kinform.kinematics.constants import (
     CENTRE_SLACK,
     DISTINCT_SLIDE,
@@ -30,6 +32,12 @@ from kinform.kinematics.wording import components
 from kinform.model.arrays import Array
 
 __all__ = ["Line", "Motion", "candidate_motions", "motion_words"]
+
+
+Value = TypeVar("Value")
+Merge = Callable[[Value, Value], Value]
+Direction = tuple[Array, float]
+"""A unit direction and its weight (m²)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,35 +91,40 @@ def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...
     return tuple(out)
 
 
+def _merge(values: Iterable[Value], agree: Callable[[Value, Value], bool], merge: Merge[Value]) -> list[Value]:
+    """The values, each merged with the first before it that it agrees with."""
+    merged: list[Value] = []
+    for value in values:
+        n = next((n for n, other in enumerate(merged) if agree(other, value)), None)
+        if n is None:
+            merged.append(value)
+        else:
+            merged[n] = merge(merged[n], value)
+    return merged
+
+
 def _pitches(evidence: Evidence, line: Line) -> list[float]:
     """Pitches (m a turn) of the threads on a line; those that agree are one, by their areas."""
-    pitches: list[tuple[float, float]] = []
-    threads = [evidence.items[k] for k in line.items if evidence.items[k].patch.kind == "helicoid"]
-    for item in sorted(threads, key=lambda i: (-i.area, i.index)):
-        for n, (pitch, area) in enumerate(pitches):
-            if abs(item.patch.pitch - pitch) <= SAME_PITCH * abs(pitch):
-                total = area + item.area
-                pitches[n] = ((pitch * area + item.patch.pitch * item.area) / total, total)
-                break
-        else:
-            pitches.append((item.patch.pitch, item.area))
+    items = sorted((evidence.items[k] for k in line.items), key=lambda i: (-i.area, i.index))
+    threads = [(item.patch.pitch, item.area) for item in items if item.patch.kind == "helicoid"]
+    pitches = _merge(
+        threads,
+        lambda a, b: abs(b[0] - a[0]) <= SAME_PITCH * abs(a[0]),
+        lambda a, b: ((a[0] * a[1] + b[0] * b[1]) / (a[1] + b[1]), a[1] + b[1]),
+    )
     return [pitch for pitch, _ in pitches]
 
 
 def _axes(evidence: Evidence, alignment: float) -> list[Line]:
     """Clusters of coaxial patches, each with the line fitted to its members."""
-    coaxial = [k for k, item in enumerate(evidence.items) if item.patch.kind in COAXIAL]
-    coaxial.sort(key=lambda k: (-evidence.items[k].area, k))
-    clusters: list[list[int]] = []
-    for k in coaxial:
-        item = evidence.items[k]
-        for cluster in clusters:
-            if _coaxial(evidence.items[cluster[0]], item, alignment):
-                cluster.append(k)
-                break
-        else:
-            clusters.append([k])
-    lines = [_fit_line([evidence.items[k] for k in c], c) for c in clusters]
+    items = evidence.items
+    coaxial = sorted((k for k, i in enumerate(items) if i.patch.kind in COAXIAL), key=lambda k: (-items[k].area, k))
+    clusters = _merge(
+        [[k] for k in coaxial],
+        lambda a, b: _coaxial(items[a[0]], items[b[0]], alignment),
+        lambda a, b: a + b,
+    )
+    lines = [_fit_line([items[k] for k in cluster], cluster) for cluster in clusters]
     return sorted(lines, key=lambda line: (-line.weight, line.items))
 
 
@@ -120,10 +133,9 @@ def _coaxial(a: Item, b: Item, alignment: float) -> bool:
     if sine > np.sin(max(a.angle, b.angle, alignment)):
         return False
     middle = b.points.mean(axis=0)
-    foot = a.patch.point + a.patch.axis * float(a.patch.axis @ (middle - a.patch.point))
-    other = b.patch.point + b.patch.axis * float(b.patch.axis @ (middle - b.patch.point))
+    apart = foot(a.patch.point, a.patch.axis, middle) - foot(b.patch.point, b.patch.axis, middle)
     reach = float(np.linalg.norm(middle - a.points.mean(axis=0)))
-    return float(np.linalg.norm(foot - other)) <= a.position + b.position + a.angle * reach
+    return float(np.linalg.norm(apart)) <= a.position + b.position + a.angle * reach
 
 
 def _fit_line(items: list[Item], indices: list[int]) -> Line:
@@ -135,17 +147,15 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
     best = items[0]
     axis = canonical(best.patch.axis)
     if len(items) == 1:
-        middle = best.points.mean(axis=0)
-        foot = best.patch.point + axis * float(axis @ (middle - best.patch.point))
-        return Line(axis, foot, best.area, tuple(indices))
+        return Line(axis, foot(best.patch.point, axis, best.points.mean(axis=0)), best.area, tuple(indices))
     u, v = perpendicular(axis)
     origin = np.average([i.points.mean(axis=0) for i in items], axis=0, weights=[i.area for i in items])
-    origin = best.patch.point + axis * float(axis @ (origin - best.patch.point))
+    origin = foot(best.patch.point, axis, origin)
     normal_matrix, right = np.zeros((4, 4)), np.zeros(4)
     for item in items:
         along = item.patch.axis if item.patch.axis @ axis > 0.0 else -item.patch.axis
         z = float(axis @ (item.points.mean(axis=0) - origin))
-        foot = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
+        crossing = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
         length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
         # what a patch does not know better than its fit and its clearance, it says less loudly
         position = max(item.position, LEAST_POSITION * length, 1e-12)
@@ -154,7 +164,7 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
             row = np.zeros(4)
             row[k], row[2 + k] = 1.0, z
             normal_matrix += np.outer(row, row) / position**2
-            right += row * float(unit @ (foot - origin)) / position**2
+            right += row * float(unit @ (crossing - origin)) / position**2
             normal_matrix[2 + k, 2 + k] += 1.0 / direction**2
             right[2 + k] += float(unit @ along) / direction**2
     weight = np.sqrt(np.diag(normal_matrix))
@@ -165,36 +175,29 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
 
 def _centres(evidence: Evidence) -> list[Array]:
     """Centres of spherical patches, the largest first, those that agree merged."""
-    spheres = sorted(
-        (k for k, item in enumerate(evidence.items) if item.patch.kind == "sphere"),
-        key=lambda k: (-evidence.items[k].area, k),
+    slack = CENTRE_SLACK * evidence.frame.length
+    items = sorted((i for i in evidence.items if i.patch.kind == "sphere"), key=lambda i: -i.area)
+    centres = _merge(
+        [(item.patch.point, item.area, item.position) for item in items],
+        lambda a, b: bool(np.linalg.norm(a[0] - b[0]) <= a[2] + b[2] + slack),
+        lambda a, b: ((a[0] * a[1] + b[0] * b[1]) / (a[1] + b[1]), a[1] + b[1], max(a[2], b[2])),
     )
-    centres: list[tuple[Array, float, float]] = []
-    for k in spheres:
-        item = evidence.items[k]
-        for n, (centre, area, slack) in enumerate(centres):
-            if np.linalg.norm(centre - item.patch.point) <= slack + item.position:
-                total = area + item.area
-                merged = (centre * area + item.patch.point * item.area) / total
-                centres[n] = (merged, total, max(slack, item.position))
-                break
-        else:
-            centres.append((item.patch.point, item.area, item.position + CENTRE_SLACK * evidence.frame.length))
     return [centre for centre, _, _ in centres]
 
 
-def _directions(candidates: list[tuple[Array, float]], alignment: float) -> list[tuple[Array, float]]:
-    """Directions merged up to sign within `alignment`, weighted, the heaviest first."""
-    merged: list[tuple[Array, float]] = []
-    for axis, weight in sorted(candidates, key=lambda c: -c[1]):
-        for n, (other, total) in enumerate(merged):
-            if np.linalg.norm(cross(axis, other)) <= np.sin(alignment):
-                signed = axis if axis @ other > 0.0 else -axis
-                merged[n] = ((other * total + signed * weight) / (total + weight), total + weight)
-                merged[n] = (merged[n][0] / np.linalg.norm(merged[n][0]), merged[n][1])
-                break
-        else:
-            merged.append((canonical(axis), weight))
+def _directions(candidates: Iterable[Direction], alignment: float) -> list[Direction]:
+    """Directions merged up to sign within `alignment`, by their weights, the heaviest first."""
+
+    def mean(a: Direction, b: Direction) -> Direction:
+        total = a[1] + b[1]
+        direction = (a[0] * a[1] + (b[0] if b[0] @ a[0] > 0.0 else -b[0]) * b[1]) / total
+        return direction / np.linalg.norm(direction), total
+
+    merged = _merge(
+        [(canonical(axis), weight) for axis, weight in sorted(candidates, key=lambda c: -c[1])],
+        lambda a, b: bool(np.linalg.norm(cross(b[0], a[0])) <= np.sin(alignment)),
+        mean,
+    )
     return sorted(merged, key=lambda m: -m[1])[:MOST_DIRECTIONS]
 
 

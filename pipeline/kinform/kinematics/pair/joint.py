@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
-from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
+from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
 from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence
@@ -62,10 +62,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
     if point is not None and form.axis is not None:
         weights = np.concatenate([item.weights for item in kept])
         middle = np.average(np.concatenate([i.points for i in kept]), axis=0, weights=weights)
-        if form.type in ("prismatic", "planar"):
-            point = middle
-        else:
-            point = point + form.axis * float(form.axis @ (middle - point))
+        point = middle if form.type in ("prismatic", "planar") else foot(point, form.axis, middle)
     if form.type == "general":
         twists = twist_at_origin(decision.basis, frame).T
     else:

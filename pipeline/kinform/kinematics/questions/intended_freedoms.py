@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.design import Design
-from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.kinematics.constants import AT_REST
+from kinform.kinematics.pair.joint import twists_of
 from kinform.kinematics.questions.motion_query import QueryAnswer, query_twist
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint
@@ -45,7 +45,7 @@ def _answer(design: Design, joint: IntendedJoint) -> IntendedAnswer:
     assert design.kinematics is not None
     bodies = [design.kinematics.body_of(design.assembly.parts_of(name)[0]).name for name in joint.between]
     if joint.type == "fixed":
-        return _fixed(design, joint, bodies)
+        return _answer_fixed(design, joint, bodies)
     wanted = _motions(joint)
     if not wanted:
         return IntendedAnswer(joint, None, (), f"the {joint.type} joint states no axis or point")
@@ -60,7 +60,7 @@ def _answer(design: Design, joint: IntendedJoint) -> IntendedAnswer:
     return IntendedAnswer(joint, False, asked, f"of {len(asked)} freedoms {len(missing)} not there, or one way only")
 
 
-def _fixed(design: Design, joint: IntendedJoint, bodies: Sequence[str]) -> IntendedAnswer:
+def _answer_fixed(design: Design, joint: IntendedJoint, bodies: Sequence[str]) -> IntendedAnswer:
     assert design.kinematics is not None
     if bodies[0] == bodies[1]:
         return IntendedAnswer(joint, True, (), "both sides are one body")
@@ -76,30 +76,13 @@ def _fixed(design: Design, joint: IntendedJoint, bodies: Sequence[str]) -> Inten
 
 def _motions(joint: IntendedJoint) -> list[tuple[str, Array]]:
     """The freedoms that the joint has, as the designer states them; none where axis or point are missing."""
-    axis, axis2, point = joint.axis, joint.axis2, joint.point
-    if joint.type == "spherical":
-        return [] if point is None else [_turn(e, point) for e in np.eye(3)]
-    if axis is None or (joint.type not in ("prismatic", "planar") and point is None):
+    no_axis = joint.axis is None and joint.type != "spherical"
+    no_point = joint.point is None and joint.type not in ("prismatic", "planar")
+    if no_axis or no_point or (joint.type == "universal" and joint.axis2 is None):
         return []
-    if joint.type == "prismatic":
-        return [_slide(axis)]
-    if joint.type == "planar":
-        return [*([] if point is None else [_turn(axis, point)]), *(_slide(d) for d in perpendicular(axis))]
-    assert point is not None
-    if joint.type == "cylindrical":
-        return [_turn(axis, point), _slide(axis)]
-    if joint.type == "screw":
-        _, twist = _turn(axis, point)
-        lead = (joint.pitch or 0.0) / (2.0 * np.pi)
-        return [("screw", twist + np.concatenate([np.zeros(3), lead * axis]))]
-    if joint.type == "universal":
-        return [] if axis2 is None else [_turn(axis, point), _turn(axis2, point)]
-    return [_turn(axis, point)]
-
-
-def _turn(axis: Array, point: Array) -> tuple[str, Array]:
-    return "turn", np.concatenate([axis, cross(point, axis)])
-
-
-def _slide(direction: Array) -> tuple[str, Array]:
-    return "slide", np.concatenate([np.zeros(3), direction])
+    point = np.zeros(3) if joint.point is None else joint.point
+    twists = twists_of(joint.type, joint.axis, point, joint.pitch, joint.axis2)
+    if joint.type == "planar" and joint.point is None:
+        twists = twists[1:]
+    turn = "screw" if joint.type == "screw" else "turn"
+    return [(turn if twist[:3].any() else "slide", twist) for twist in twists]

@@ -23,7 +23,7 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
-__all__ = ["Alternative", "Insight", "PatchRole", "insight"]
+__all__ = ["Alternative", "Insight", "PatchRole", "insight", "patches_between"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,23 +111,18 @@ def insight(design: Design, name: str) -> Insight:
     )
 
 
-def _members(design: Design, joint: Joint) -> list[Member]:
-    """The patches between the two bodies."""
+def patches_between(design: Design, first: str, second: str) -> list[Member]:
+    """The patches between two bodies."""
     assert design.kinematics is not None
-    if design.contacts is None:
-        return []
     of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
-    out = []
-    for k, patch in enumerate(design.contacts.patches):
-        sides = tuple(of_part[part] for part in patch.parts)
-        if set(sides) == set(joint.bodies):
-            out.append((k, patch, sides[0] != joint.bodies[0]))
-    return out
+    patches = () if design.contacts is None else design.contacts.patches
+    sides = [tuple(of_part[part] for part in patch.parts) for patch in patches]
+    return [(k, p, sides[k][0] != first) for k, p in enumerate(patches) if set(sides[k]) == {first, second}]
 
 
 def _evidence(design: Design, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
     assert design.kinematics is not None
-    members = [member for member in _members(design, joint) if member[0] not in without]
+    members = [member for member in patches_between(design, *joint.bodies) if member[0] not in without]
     if not members or design.contacts is None:
         return None
     bodies = [body for body in design.kinematics.bodies if body.name in joint.bodies]
@@ -141,7 +136,7 @@ def _roles(design: Design, joint: Joint, evidence: Evidence | None) -> tuple[Pat
     total = float(evidence.areas.sum()) if evidence is not None else 1.0
     shares = {item.index: item.area / total for item in evidence.items} if evidence is not None else {}
     out = []
-    for k, patch, _ in _members(design, joint):
+    for k, patch, _ in patches_between(design, *joint.bodies):
         role = "blocks" if k in blocking else "carries" if k in joint.patches else "ignored"
         out.append(PatchRole(k, patch, role, shares.get(k, 0.0), int(rows[k]) if k < len(rows) else 0))
     return tuple(out)

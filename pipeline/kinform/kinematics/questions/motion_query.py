@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,11 +12,12 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
+from kinform.kinematics.questions.joint_insight import patches_between
 from kinform.kinematics.questions.motion_senses import Attempt, attempt, pair_ways
 from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint
 
 __all__ = ["QueryAnswer", "QueryBlocker", "query", "query_twist"]
 
@@ -90,7 +90,7 @@ def query_twist(design: Design, a: str, b: str, motion: Array, what: str) -> Que
         text = f"{a} and {b} are one body: no {what} between them"
         return QueryAnswer((first, second), False, None, 1.0, (), text, (False, False), (False, False))
     joint = next((j for j in kinematics.joints if set(j.bodies) == {first, second}), None)
-    patches = _patches(design, first, second)
+    patches = [(k, patch) for k, patch, _ in patches_between(design, first, second)]
     points = [p.points for _, p in patches] if patches else [np.zeros((1, 3))]
     if motion[:3].any():
         points.append((cross(motion[:3], motion[3:]) / float(motion[:3] @ motion[:3]))[None])
@@ -107,46 +107,23 @@ def query_twist(design: Design, a: str, b: str, motion: Array, what: str) -> Que
     if blockers:
         in_pair = False if joint is not None else None
     every = design.contacts.patches if design.contacts is not None else ()
-    ways = _pair_ways(kinematics, every, joint, first, motion, free=in_pair is True)
-    tries = _tries(kinematics, every, first, second, motion, frame, free=outside < MOTION_THERE and not blockers)
-    in_all = (
-        all(one.possible for one in tries) if all(one.possible is not None for one in tries) else outside < MOTION_THERE
-    )
-    in_all = in_all and not blockers
-    culprits = tuple(_blocker(k, every[k]) for k in tries[0].patches)
+    ways = None
+    if joint is not None:
+        of_joint = motion if joint.bodies[0] == first else -motion
+        ways = (True, True) if in_pair else pair_ways(kinematics, every, joint, of_joint)
+    if outside < MOTION_THERE and not blockers and all(joint.status != "blocked" for joint in kinematics.joints):
+        forward = backward = Attempt(True)
+    else:
+        forward, backward = (attempt(kinematics, every, first, second, s * motion, frame) for s in (1.0, -1.0))
+    possible = (forward.possible, backward.possible)
+    in_all = (outside < MOTION_THERE if None in possible else all(possible)) and not blockers
+    culprits = tuple(_blocker(k, every[k]) for k in forward.patches)
     answer = QueryAnswer(
         (first, second), in_pair, in_all, residual if joint is not None else outside, blockers, "",
-        ways, (tries[0].possible, tries[1].possible), culprits, tries[0].joints,
+        ways, possible, culprits, forward.joints,
     )  # fmt: skip
     freed = residual < MOTION_THERE and joint is not None
     return replace(answer, text=_sentence(a, b, what, motion, answer, freed=freed) + _doubt(design, joint))
-
-
-def _pair_ways(
-    kinematics: Kinematics, patches: Sequence[Patch], joint: Joint | None, first: str, motion: Array, *, free: bool
-) -> tuple[bool, bool] | None:
-    if joint is None:
-        return None
-    if free:
-        return True, True
-    return pair_ways(kinematics, patches, joint, motion if joint.bodies[0] == first else -motion, MOTION_THERE)
-
-
-def _tries(
-    kinematics: Kinematics,
-    patches: Sequence[Patch],
-    first: str,
-    second: str,
-    motion: Array,
-    frame: Frame,
-    *,
-    free: bool,
-) -> tuple[Attempt, Attempt]:
-    """The motion and its reverse in the assembly; nothing to try where its freedoms have it and nothing blocks."""
-    if free and not any(joint.status == "blocked" for joint in kinematics.joints):
-        return Attempt(True), Attempt(True)
-    tried = [attempt(kinematics, patches, first, second, sign * motion, frame, MOTION_THERE) for sign in (1.0, -1.0)]
-    return tried[0], tried[1]
 
 
 def _body(design: Design, name: str) -> str:
@@ -159,14 +136,6 @@ def _body(design: Design, name: str) -> str:
         names = sorted({*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)})
         raise KeyError(f"no part, group or body {name!r}; there are: {', '.join(names)}") from None
     return design.kinematics.body_of(part).name
-
-
-def _patches(design: Design, first: str, second: str) -> list[tuple[int, Patch]]:
-    assert design.kinematics is not None
-    if design.contacts is None:
-        return []
-    of_part = {p: b.name for b in design.kinematics.bodies for p in b.parts}
-    return [(k, p) for k, p in enumerate(design.contacts.patches) if {of_part[n] for n in p.parts} == {first, second}]
 
 
 def _outside(twist: Array, space: Array, frame: Frame) -> float:

@@ -16,7 +16,8 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.graphs.graph import blocks
-from kinform.kinematics.constants import MOST_CONTACTS_TRIED, MOST_PROGRAM_ROWS, MOST_ROWS_TRIED
+from kinform.kinematics.constants import MOST_CONTACTS_TRIED, MOST_PROGRAM_ROWS, MOST_ROWS_TRIED, MOTION_THERE
+from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
@@ -39,9 +40,7 @@ class Attempt:
     """Joints that somebody stated, and that would have to give."""
 
 
-def pair_ways(
-    kinematics: Kinematics, patches: Sequence[Patch], joint: Joint, twist: Array, tolerance: float
-) -> tuple[bool, bool] | None:
+def pair_ways(kinematics: Kinematics, patches: Sequence[Patch], joint: Joint, twist: Array) -> tuple[bool, bool] | None:
     """Whether contact lets the second body of the joint move by the twist (ω; v at the origin), and by its reverse.
 
     None where contact does not decide the joint.
@@ -54,49 +53,42 @@ def pair_ways(
         return None
     unit = scaled(twist[:, None], cone.frame)[:, 0]
     unit = unit / np.linalg.norm(unit)
-    if len(cone.fixed) and float(np.linalg.norm(cone.fixed @ unit)) > tolerance:
+    if len(cone.fixed) and float(np.linalg.norm(cone.fixed @ unit)) > MOTION_THERE:
         return False, False
     speed = cone.rows @ unit
-    return bool((speed >= -tolerance).all()), bool((speed <= tolerance).all())
+    return bool((speed >= -MOTION_THERE).all()), bool((speed <= MOTION_THERE).all())
 
 
 def attempt(
-    kinematics: Kinematics,
-    patches: Sequence[Patch],
-    first: str,
-    second: str,
-    twist: Array,
-    frame: Frame,
-    tolerance: float,
+    kinematics: Kinematics, patches: Sequence[Patch], first: str, second: str, twist: Array, frame: Frame
 ) -> Attempt:
     """Can the second body move relative to the first by the twist (ω; v at the origin), the assembly taking part?
 
-    `frame`: of the motion, in which the twist has about unit size; slower violations than `tolerance` are none.
+    `frame`: of the motion, in which the twist has about unit size; slower violations than `MOTION_THERE` are none.
     Unknown are the twists of the other bodies on paths between the two; each contact of these gives rows that must not
     be negative.
     """
-    node = {str(body.name): k for k, body in enumerate(kinematics.bodies)}
-    joints = _between(kinematics, node[first], node[second], node)
-    others = sorted({node[name] for joint in joints for name in joint.bodies} - {node[first], node[second]})
-    column = {n: 6 * k for k, n in enumerate(others)}
+    graph = JointGraph(kinematics.bodies, kinematics.joints)
+    a, b = graph.node[first], graph.node[second]
+    between = _between(graph, a, b)
+    others = sorted({n for k in between for n in graph.edges[k]} - {a, b})
     goal = scaled(twist[:, None], frame)[:, 0]
-    prescribed = {node[first]: np.zeros(6), node[second]: goal / np.linalg.norm(goal)}
     source = ContactRows(kinematics.matrix, kinematics.bodies, patches)
-    program = _Program(6 * len(others))
-    for joint in joints:
-        ends = [node[name] for name in joint.bodies]
-        for rows, label in _rows(source, joint, frame):
-            program.add(rows, label, ends, column, prescribed)
+    program = _Program(others, {a: np.zeros(6), b: goal / np.linalg.norm(goal)})
+    for k in between:
+        for rows, label in _rows(source, graph.joints[k], frame):
+            program.add(rows, label, graph.edges[k])
     if not program.count:
         return Attempt(True)
     slack = program.violations() if program.count <= MOST_PROGRAM_ROWS else None
     if slack is None:
         return Attempt(None)
     worst: dict[int | str, float] = {}
-    for k in np.flatnonzero(slack > tolerance):
-        worst[program.labels[k]] = max(worst.get(program.labels[k], 0.0), float(slack[k]))
+    for row in np.flatnonzero(slack > MOTION_THERE):
+        label = program.labels[row]
+        worst[label] = max(worst.get(label, 0.0), float(slack[row]))
     broken = sorted(worst, key=lambda label: (worst[label], str(label)))
-    blocking = _fewest(broken, program, tolerance)
+    blocking = _fewest(broken, program)
     return Attempt(
         not blocking,
         tuple(sorted(label for label in blocking if isinstance(label, int))),
@@ -107,32 +99,29 @@ def attempt(
 class _Program:
     """min 1ᵀs with AV + s ≥ −b and s ≥ 0, rows added contact by contact."""
 
-    def __init__(self, width: int):
+    def __init__(self, nodes: Sequence[int], prescribed: Mapping[int, Array]):
+        """V: the twists of the bodies `nodes`; b: what the `prescribed` twists of others add."""
         self.count = 0
         """Rows so far."""
         self.labels: list[int | str] = []
         """Of each row: the patch, or the name of the stated joint, that it belongs to."""
-        self._width = width
+        self._width, self._column, self._prescribed = (
+            6 * len(nodes),
+            {n: 6 * k for k, n in enumerate(nodes)},
+            prescribed,
+        )
         self._right: list[Array] = []
         self._entries: list[tuple[Array, Ints, Ints]] = []
 
-    def add(
-        self,
-        rows: Array,
-        label: int | str,
-        ends: Sequence[int],
-        column: Mapping[int, int],
-        prescribed: Mapping[int, Array],
-    ) -> None:
-        """Rows (n, 6) of the twist of the second of two bodies less that of the first: each body has its `column`, or
-        its twist is `prescribed`."""
+    def add(self, rows: Array, label: int | str, ends: Sequence[int]) -> None:
+        """Rows (n, 6) of the twist of the second of two bodies less that of the first."""
         numbers = np.arange(self.count, self.count + len(rows))
         bound = np.zeros(len(rows))
         for sign, node in zip((-1.0, 1.0), ends, strict=True):
-            if node in prescribed:
-                bound += sign * rows @ prescribed[node]
+            if node in self._prescribed:
+                bound += sign * rows @ self._prescribed[node]
             else:
-                columns = np.tile(column[node] + np.arange(6), len(rows))
+                columns = np.tile(self._column[node] + np.arange(6), len(rows))
                 self._entries.append(((sign * rows).ravel(), np.repeat(numbers, 6), columns))
         self._right.append(bound)
         self.labels += [label] * len(rows)
@@ -168,7 +157,7 @@ class _Program:
         return out
 
 
-def _fewest(broken: Sequence[int | str], program: _Program, tolerance: float) -> set[int | str]:
+def _fewest(broken: Sequence[int | str], program: _Program) -> set[int | str]:
     """Of the contacts without which the motion is there, a set none of which can be put back."""
     out = set(broken)
     if len(broken) > MOST_CONTACTS_TRIED or program.count > MOST_ROWS_TRIED:
@@ -177,16 +166,16 @@ def _fewest(broken: Sequence[int | str], program: _Program, tolerance: float) ->
         if len(out) == 1:
             break
         slack = program.violations(out - {label})
-        if slack is not None and slack.max(initial=0.0) <= tolerance:
+        if slack is not None and slack.max(initial=0.0) <= MOTION_THERE:
             out.discard(label)
     return out
 
 
-def _between(kinematics: Kinematics, first: int, second: int, index: dict[str, int]) -> list[Joint]:
+def _between(graph: JointGraph, first: int, second: int) -> list[int]:
     """The joints on paths between two bodies: those in one block with an edge that would join them."""
-    edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
-    block = next(b for b in blocks(len(kinematics.bodies), [*edges, (first, second)]) if len(edges) in b)
-    return [kinematics.joints[k] for k in block if k < len(edges)]
+    count = len(graph.edges)
+    block = next(b for b in blocks(len(graph.bodies), [*graph.edges, (first, second)]) if count in b)
+    return [k for k in block if k < count]
 
 
 def _rows(source: ContactRows, joint: Joint, frame: Frame) -> list[tuple[Array, int | str]]:

@@ -34,8 +34,8 @@ __all__ = [
     "grams",
     "held_for_certain",
     "opening",
-    "opposed_and_preserved",
     "rows_beside",
+    "split_directions",
     "unit_rows",
     "unit_rows_of",
 ]
@@ -85,7 +85,7 @@ def rows_beside(rows: Array, fixed: Array) -> Array:
     return unit_rows(rows - (rows @ fixed.T) @ fixed) if len(fixed) else rows
 
 
-def opposed_and_preserved(rows: Array) -> tuple[Array, Array]:
+def split_directions(rows: Array) -> tuple[Array, Array]:
     """Bases (d, c) of the directions that unit rows (n, d) oppose and (d, d − c) of those they preserve."""
     if not len(rows):
         return np.zeros((rows.shape[1], 0)), np.eye(rows.shape[1])
@@ -147,7 +147,7 @@ def opening(rows: Array) -> Opening:
     """
     from scipy.optimize import linprog
 
-    basis, _ = opposed_and_preserved(rows)
+    basis, _ = split_directions(rows)
     if basis.shape[1] == 0:
         return Opening(True, np.zeros(6), 0.0)
     inner = rows @ basis
@@ -170,7 +170,7 @@ def extreme_rays(rows: Array) -> Array | None:
     """
     if len(rows) == 1:
         return rows
-    basis, _ = opposed_and_preserved(rows)
+    basis, _ = split_directions(rows)
     inner = rows @ basis
     size = inner.shape[1]
     if size == 0:

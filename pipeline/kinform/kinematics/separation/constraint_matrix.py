@@ -28,31 +28,29 @@ def constraint_matrix(
 ) -> ConstraintMatrix:
     """J of all patches between different bodies; the rows that carry a joint are made exactly
     consistent with its snapped freedoms. `extremes`: of patches, by index, whose extreme samples are known."""
-    known = extremes or {}
     column = {part: k for k, body in enumerate(bodies) for part in body.parts}
     owner = {index: joint for joint in joints for index in joint.patches}
     used = [k for k, p in enumerate(patches) if column[p.parts[0]] != column[p.parts[1]] and len(p.points)]
     world = Frame.of(np.concatenate([patches[k].points for k in used])) if used else Frame(np.zeros(3), 1.0)
-    samples = [known[k] if k in known else extreme_samples(patches[k]) for k in used]
+    looked_for = extremes or {}
+    samples = [looked_for[k] if k in looked_for else extreme_samples(patches[k]) for k in used]
     bounds = np.cumsum([0, *map(len, samples)])
     none = np.zeros((0, 3))
-    own = rows(
-        np.concatenate([none, *(patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True))]),
-        np.concatenate([none, *(patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True))]),
-        world,
-    )
+    points = [patches[k].points[chosen] for k, chosen in zip(used, samples, strict=True)]
+    normals = [patches[k].normals[chosen] for k, chosen in zip(used, samples, strict=True)]
+    relative = rows(np.concatenate([none, *points]), np.concatenate([none, *normals]), world)
     free = {joint.name: np.linalg.qr(scaled(joint.twists.T, world))[0] for joint in joints if joint.patches}
     for k, start, end in zip(used, bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
         if k in owner:
-            basis, mine = free[owner[k].name], own[start:end]
-            own[start:end] = mine - (mine @ basis) @ basis.T
+            basis, of_patch = free[owner[k].name], relative[start:end]
+            relative[start:end] = of_patch - (of_patch @ basis) @ basis.T
     counts = np.diff(bounds)
     ends = np.array([[column[part] for part in patches[k].parts] for k in used], dtype=np.int64).reshape(-1, 2)
     sign = np.repeat(np.where(ends[:, 0] < ends[:, 1], 1.0, -1.0), counts)[:, None]
     index = 6 * np.sort(ends, axis=1)[:, :, None] + np.arange(6)
     return ConstraintMatrix(
         bodies=tuple(body.name for body in bodies),
-        data=np.hstack([-sign * own, sign * own]).ravel(),
+        data=np.hstack([-sign * relative, sign * relative]).ravel(),
         indices=np.repeat(index.reshape(-1, 12), counts, axis=0).ravel(),
         indptr=12 * np.arange(bounds[-1] + 1, dtype=np.int64),
         patch=np.repeat(np.array(used, dtype=np.int64), counts),

@@ -15,7 +15,7 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.constants import CONE_FREE
 from kinform.kinematics.pair.extremes import extreme_samples
-from kinform.kinematics.separation.cone import grams, held_for_certain, opposed_and_preserved, unit_rows_of
+from kinform.kinematics.separation.cone import grams, held_for_certain, split_directions, unit_rows_of
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
@@ -41,7 +41,7 @@ class Cone:
     @property
     def preserved(self) -> Array:
         """(6, f) orthonormal: contact-preserving motion."""
-        moved = np.hstack([opposed_and_preserved(self.rows)[0], self.fixed.T])
+        moved = np.hstack([split_directions(self.rows)[0], self.fixed.T])
         return np.linalg.svd(moved, full_matrices=True)[0][:, moved.shape[1] :] if moved.shape[1] else np.eye(6)
 
 
@@ -105,7 +105,7 @@ class ContactRows:
         two = np.repeat(np.array(alone, np.bool_), [len(samples[0]) for samples in patches])
         rows, group = unit_rows_of(rows, 2 * owner + ~two)
         of_both, of_one = group % 2 == 0, group % 2 == 1
-        fixed = _opposed(rows[of_both], group[of_both] // 2, len(keys))
+        fixed = _opposed_directions(rows[of_both], group[of_both] // 2, len(keys))
         across = np.array([np.eye(6) - basis.T @ basis for basis in fixed])
         rows, owner = rows[of_one], group[of_one] // 2
         rows, owner = unit_rows_of(np.einsum("ni,nij->nj", rows, across[owner]), owner)
@@ -174,7 +174,7 @@ def _frames(points: Array, counts: Ints) -> list[Frame]:
     return [Frame(centre, size or 1.0) for centre, size in zip(0.5 * (low + high), half, strict=True)]
 
 
-def _opposed(rows: Array, group: Ints, count: int) -> list[Array]:
+def _opposed_directions(rows: Array, group: Ints, count: int) -> list[Array]:
     """(k, 6) orthonormal directions that the unit rows (n, 6) of each group, ascending, oppose."""
     out = [np.zeros((0, 6))] * count
     counts = np.bincount(group, minlength=count)

@@ -17,7 +17,7 @@ from kinform.kinematics.constants import (
     MOST_RELEASES,
     SAME_DIRECTION,
 )
-from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, opposed_and_preserved, unit_rows
+from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
@@ -70,7 +70,7 @@ def leaving_of(cone: Cone, *, turns: bool = True) -> Leaving:
     releases = [release_of(np.concatenate([np.zeros(3), d]), cone.frame, extreme=not many) for d in slides]
     if rays is not None and len(rays) <= MOST_RELEASES:
         others = [ray for ray in rays if not _slides_off(ray, cone, slides)]
-        releases += _ordered([release_of(ray, cone.frame) for ray in others])
+        releases += sorted((release_of(ray, cone.frame) for ray in others), key=_order)
     elif not releases:
         releases = [release_of(lp.motion, cone.frame, extreme=False)]
     return Leaving(held=False, releases=tuple(releases), extremes=None if rays is None else len(rays))
@@ -127,7 +127,7 @@ def _distinct(rays: Array) -> Array:
 
 def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     """Is the ray one of the slides already told, but for contact-preserving motion?"""
-    basis, _ = opposed_and_preserved(cone.rows)
+    basis, _ = split_directions(cone.rows)
     for slide in slides:
         shadow = basis @ (basis.T @ np.concatenate([np.zeros(3), slide]))
         size = float(np.linalg.norm(shadow))
@@ -136,8 +136,9 @@ def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     return False
 
 
-def _ordered(releases: list[Release]) -> list[Release]:
-    return sorted(releases, key=lambda r: (r.kind != "slide", r.kind != "turn", tuple(-np.round(r.twist, 6))))
+def _order(release: Release) -> tuple[bool, bool, tuple[float, ...]]:
+    """Slides before turns before screws, and along +x first."""
+    return release.kind != "slide", release.kind != "turn", tuple(-np.round(release.twist, 6))
 
 
 def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:

@@ -24,7 +24,7 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, MOST_OPENING_ROWS, MOST_TOGETHER
-from kinform.kinematics.separation.cone import opposed_and_preserved, rows_beside, unit_rows
+from kinform.kinematics.separation.cone import rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
 from kinform.model.arrays import Array
@@ -102,7 +102,7 @@ def separations(
             continue
         members = [links[k] for k in block]
         question = [(link.ends, link.cone, link.twists) for link in members]
-        solved = ask(answers, "opened", question, partial(_opened, members))
+        solved = ask(answers, "opened", question, partial(_links_that_open, members))
         if solved is None:
             reason = "whether parts can leave is not known of all: some loops of contacts are too large to decide"
             continue
@@ -114,7 +114,7 @@ def separations(
     return sets, reason
 
 
-def _opened(links: Sequence[Link]) -> tuple[int, ...] | None:
+def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
     """Indices of the links of one block that can open together; None where the program is too large or fails."""
     from scipy.optimize import linprog
 
@@ -266,13 +266,13 @@ def _smallest(start: int, rest: int, sides: dict[int, list[_Side]]) -> set[int]:
             if any(np.linalg.norm(direction - other) < 1e-3 for other in tried):
                 continue
             tried.append(direction)
-            group = _pushed(start, rest, sides, direction)
+            group = _push(start, rest, sides, direction)
             if group is not None and (best is None or len(group) < len(best)):
                 best = group
     return best or {start}
 
 
-def _pushed(start: int, rest: int, sides: dict[int, list[_Side]], direction: Array) -> set[int] | None:
+def _push(start: int, rest: int, sides: dict[int, list[_Side]], direction: Array) -> set[int] | None:
     """All that moves when `start` slides along the direction; None where the rest is in the way, or too many move."""
     group, queue = {start}, [start]
     while queue:
@@ -308,7 +308,7 @@ def _ways(group: set[int], sides: dict[int, list[_Side]]) -> tuple[Release, ...]
     frame = border[0].cone.frame if len(border) == 1 else _common([side.cone.frame for side in border])
     fixed = [rows_in_frame(side.cone.fixed, side.cone.frame, frame) for side in border]
     rows = [side.sign * rows_in_frame(side.cone.rows, side.cone.frame, frame) for side in border]
-    held = opposed_and_preserved(unit_rows(np.concatenate(fixed)))[0].T
+    held = split_directions(unit_rows(np.concatenate(fixed)))[0].T
     cone = Cone(held, rows_beside(unit_rows(np.concatenate(rows)), held), frame)
     if certainly_held([cone])[0]:
         return ()
