@@ -1,11 +1,11 @@
 """What a change costs: `python benchmarks/change.py [FOLDER] [--links N]`.
 
-A chain of bars that are hinged on pins, with bolts in bores of their own: 200 parts, every one another shape, so that no
-part is a copy of another, with dimples and grooves that touch nothing, as real parts have. Runs `kinform run` as a user
-does, in processes of their own: from nothing, again with nothing changed (the least of five), and after the mesh of one
-bolt changed; then from nothing with the changed mesh, whose bytes the incremental run must have given. Prints seconds, of
-the clock and of all processors, which a busy machine changes less, and the share of the first run. No simulation is
-requested.
+A chain of bars that are hinged on pins, with bolts in bores of their own: 200 parts, every one another shape, so that
+no part is a copy of another, with dimples and grooves that touch nothing, as real parts have. Runs `kinform run` as a
+user does, in processes of their own: from nothing, again with nothing changed (the least of five), and after the mesh
+of one bolt changed; then from nothing with the changed mesh, whose bytes the incremental run must have given. Prints
+seconds, of the clock and of all processors, which a busy machine changes less, and the share of the first run. No
+simulation is requested.
 """
 
 from __future__ import annotations

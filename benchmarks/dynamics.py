@@ -117,7 +117,8 @@ def mujoco_model(system, gravity, integrator, step):
             full = (tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2])
             # MuJoCo wants positive moments, also about the line of a thin rod.
             full = tuple(v + (1e-13 if k < 3 else 0.0) for k, v in enumerate(full))
-            out += f'<body name="{far}"><joint type="hinge" name="{joint.name}" axis="{numbers(sign * joint.geometry.axis)}"'
+            axis = numbers(sign * joint.geometry.axis)
+            out += f'<body name="{far}"><joint type="hinge" name="{joint.name}" axis="{axis}"'
             out += f' pos="{numbers(joint.geometry.point)}"/><inertial pos="{numbers(body.centre_of_mass)}"'
             out += f' mass="{body.mass}" fullinertia="{numbers(full)}"/>{xml(far)}</body>'
         return out
@@ -129,10 +130,12 @@ def mujoco_model(system, gravity, integrator, step):
         ends = " ".join(f'body{k}="{name}"' for k, name in enumerate(held, start=1))
         for shift in (0.0, 1.0):
             point = joint.geometry.point + shift * joint.geometry.axis
-            equality += f'<connect {ends} anchor="{numbers(point)}" solref="{max(2 * step, 1e-4):.6g} 1" solimp="0.9999 0.9999 0.001 0.5 2"/>'
+            stiffness = f'solref="{max(2 * step, 1e-4):.6g} 1" solimp="0.9999 0.9999 0.001 0.5 2"'
+            equality += f'<connect {ends} anchor="{numbers(point)}" {stiffness}/>'
     return mujoco.MjModel.from_xml_string(
         f'<mujoco><compiler angle="radian" balanceinertia="false" boundmass="0" boundinertia="0"/>'
-        f'<option timestep="{step}" gravity="{numbers(gravity)}" integrator="{integrator}" tolerance="1e-12" iterations="100">'
+        f'<option timestep="{step}" gravity="{numbers(gravity)}" integrator="{integrator}" '
+        'tolerance="1e-12" iterations="100">'
         f'<flag contact="disable"/></option><worldbody>{xml("body base")}</worldbody>'
         f"<equality>{equality}</equality></mujoco>"
     )

@@ -1,10 +1,10 @@
 """Ten seconds of the seeker with two axes on a fresh machine, and later: `python benchmarks/first_run.py [SECONDS]`.
 
 Runs `kinform run` from the meshes as a user does, in processes of their own: first without any cache of bytecode or of
-compiled functions, then with those that the first run left, then once the compiled functions are in the cache, as after a
-longer run. Once with the drives of the fixture, once left to itself. Prints processor seconds of the solver, importing and
-compiling included, which a busy machine changes less than seconds of the clock; both of the whole command; and whether
-the results are the same bytes each time.
+compiled functions, then with those that the first run left, then once the compiled functions are in the cache, as
+after a longer run. Once with the drives of the fixture, once left to itself. Prints processor seconds of the solver,
+importing and compiling included, which a busy machine changes less than seconds of the clock; both of the whole
+command; and whether the results are the same bytes each time.
 """
 
 from __future__ import annotations

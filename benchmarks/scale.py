@@ -166,7 +166,8 @@ def measured(manifest):
 
 
 COLUMNS = (
-    "facets", "parts", "shapes", "import", "surfaces", "contacts", "joints", "MB", "kB a facet", "bytes", "trimesh.load",
+    "facets", "parts", "shapes", "import", "surfaces", "contacts", "joints", "MB", "kB a facet", "bytes",
+    "trimesh.load",
     "fcl", "fcl, instanced", "distance", "trimesh collision",
 )  # fmt: skip
 
@@ -202,7 +203,8 @@ def main(arguments) -> None:
     size = np.log([row["facets"] for row in rows])
     for stage in ("import", "surfaces", "contacts"):
         print(
-            f"{stage}: time grows as facets to the power {np.polyfit(size, np.log([row[stage] for row in rows]), 1)[0]:.2f}"
+            f"{stage}: time grows as facets to the power "
+            f"{np.polyfit(size, np.log([row[stage] for row in rows]), 1)[0]:.2f}"
         )
 
 

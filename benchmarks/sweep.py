@@ -64,7 +64,7 @@ def run_case(seed: int, family: str | None, kind: str | None) -> Result:
 
 
 def run_all(work: list[Work], jobs: int) -> Iterator[Result]:
-    """All cases in their order. A worker that dies is a crash of its case (with several jobs: of that one or a later)."""
+    """All cases in order. A worker that dies is a crash of its case (with several jobs: of that or a later one)."""
     while work:
         with ProcessPoolExecutor(jobs) as pool:
             futures = [pool.submit(run_case, *one) for one in work]

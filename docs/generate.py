@@ -1,9 +1,10 @@
 """Writes again what the documentation shows the program print: `python docs/generate.py`.
 
 In `docs/seeker.md` every `console` block is run as it stands, in the folder of `fixtures/seeker` that the comment
-above it names (`<!-- in FOLDER -->`), on a copy of the fixtures that lasts for the whole page; what a command prints is put
-below it, and its exit code where that is not 0. `<!-- picture FOLDER/FILE as NAME -->` takes a file that a command wrote
-to `docs/images`. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make demo` prints.
+above it names (`<!-- in FOLDER -->`), on a copy of the fixtures that lasts for the whole page; what a command prints
+is put below it, and its exit code where that is not 0. `<!-- picture FOLDER/FILE as NAME -->` takes a file that a
+command wrote to `docs/images`. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make
+demo` prints.
 """
 
 from __future__ import annotations

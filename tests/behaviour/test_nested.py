@@ -19,7 +19,7 @@ STILL = np.zeros(3)
 
 
 def motor(gear: float = 5.0) -> System:
-    """A motor as a system: winding, rotor in its bearing, gear, output shaft; stator, output and terminals are ports."""
+    """A motor as a system: winding, rotor in its bearing, gear, output shaft; its ports: stator, output, terminals."""
     model = Model()
     model.body("stator", 0.3, (0, 0, 0), (1e-4, 1e-4, 1e-4))
     model.body("rotor", 0.1, (0, 0, 0), (2e-5, 2e-5, 3e-5))

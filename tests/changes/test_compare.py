@@ -13,7 +13,8 @@ from kinform.changes import Snapshot, Tolerance, compare, render
 from kinform.changes.behaviours import Axis, BodyMass, JointState
 
 HINGE = JointState(
-    "door~frame", ("door", "frame"), "revolute", "determined", 1, Axis((0.0, 0.0, 1.0), (0.1, 0.0, 0.5)), None, None, None,
+    "door~frame", ("door", "frame"), "revolute", "determined", 1, Axis((0.0, 0.0, 1.0), (0.1, 0.0, 0.5)),
+    None, None, None,
     math.radians(-90.0), math.radians(30.0), "found",
 )  # fmt: skip
 SLIDE = JointState(
@@ -25,7 +26,8 @@ DESK = Snapshot(
     bodies=(("door", ("door",)), ("drawer", ("drawer", "knob")), ("frame", ("frame",))),
     ground="frame",
     joints=(HINGE, SLIDE),
-    mobility=(("instantaneous", 2), ("finite", 2), ("effective", 2), ("idle", 0), ("redundant", 0), ("blocked_mobility", 2)),
+    mobility=(("instantaneous", 2), ("finite", 2), ("effective", 2), ("idle", 0), ("redundant", 0),
+              ("blocked_mobility", 2)),
     masses=(
         BodyMass("door", 1.5, (0.0, 0.2, 0.0), (1e-3, 2e-3, 2.5e-3)),
         BodyMass("drawer", 0.4, (0.1, 0.0, 0.0), (1e-4, 2e-4, 2.5e-4)),
@@ -54,7 +56,8 @@ def test_a_behaviour_is_the_same_as_itself():
 
 
 CASES = {
-    "type": (with_joint(HINGE, type="cylindrical", freedoms=2), [("joint-type", "door~frame", "was revolute, is cylindrical, 1 freedom gained")]),
+    "type": (with_joint(HINGE, type="cylindrical", freedoms=2),
+             [("joint-type", "door~frame", "was revolute, is cylindrical, 1 freedom gained")]),
     "status": (with_joint(HINGE, status="blocked"), [("joint-status", "door~frame", "was determined, is blocked")]),
     "axis beside": (
         with_joint(HINGE, axis=Axis((0.0, 0.0, 1.0), (0.1003, 0.0, 0.9))),
@@ -64,8 +67,10 @@ CASES = {
         with_joint(HINGE, axis=Axis((math.sin(0.01), 0.0, math.cos(0.01)), (0.1, 0.0, 0.5))),
         [("axis-tilted", "door~frame", "axis tilted by 0.573°")],
     ),
-    "upper end": (with_joint(HINGE, range_upper=math.radians(26.0)), [("range", "door~frame", "upper end of the range -4°")]),
-    "lower end of a slide": (with_joint(SLIDE, range_lower=-0.098), [("range", "drawer~frame", "lower end of the range +2 mm")]),
+    "upper end": (with_joint(HINGE, range_upper=math.radians(26.0)),
+                  [("range", "door~frame", "upper end of the range -4°")]),
+    "lower end of a slide": (with_joint(SLIDE, range_lower=-0.098),
+                             [("range", "drawer~frame", "lower end of the range +2 mm")]),
     "free": (
         with_joint(HINGE, range_upper=math.inf),
         [("range", "door~frame", "upper end of the range was 30°, is unbounded")],
@@ -96,8 +101,10 @@ CASES = {
         [("interference-new", "door", "overlap by 2 mm")],
     ),
     "no collision": (replace(DESK, interferences=()), [("interference-gone", "door", "no longer overlap")]),
-    "deeper": (replace(DESK, interferences=((("door", "frame"), 3e-4),)), [("interference", "door", "overlap +0.2 mm")]),
-    "refused": (replace(DESK, simulation=("refused", "")), [("simulation", "simulation", "was dynamic done, is refused")]),
+    "deeper": (replace(DESK, interferences=((("door", "frame"), 3e-4),)),
+               [("interference", "door", "overlap +0.2 mm")]),
+    "refused": (replace(DESK, simulation=("refused", "")),
+                [("simulation", "simulation", "was dynamic done, is refused")]),
     "findings": (
         replace(DESK, findings=(("KF402", ("hinge",), "error", 1),)),
         [
@@ -243,9 +250,17 @@ def test_names_survive_in_every_format():
 
 def test_a_part_with_another_name_and_the_same_mesh_is_renamed_and_nothing_else():
     before = replace(DESK, shapes=(("door", "a"), ("drawer", "b"), ("frame", "c"), ("knob", "d")))
+    hinge = replace(
+        HINGE,
+        name="frame~gate",
+        bodies=("frame", "gate"),
+        range_lower=-HINGE.range_upper,
+        range_upper=-HINGE.range_lower,
+    )
     gate = replace(
-        before, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("gate",))), shapes=(*before.shapes[1:], ("gate", "a")),
-        joints=(SLIDE, replace(HINGE, name="frame~gate", bodies=("frame", "gate"), range_lower=-HINGE.range_upper, range_upper=-HINGE.range_lower)),
+        before, bodies=(DESK.bodies[1], DESK.bodies[2], ("gate", ("gate",))),
+        shapes=(*before.shapes[1:], ("gate", "a")),
+        joints=(SLIDE, hinge),
         masses=(*DESK.masses[1:], replace(DESK.masses[0], name="gate")), ranges=("drawer~frame", "frame~gate"),
         interferences=((("frame", "gate"), 1e-4),), findings=(("KF304", ("gate",), "note", 1),),
     )  # fmt: skip

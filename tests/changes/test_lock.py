@@ -51,7 +51,9 @@ def test_what_differs_from_the_lock_is_an_error_of_the_gate(kind, four_bar):
     joint = locked.joints[0]
     edited = {
         "mass": replace(locked, masses=tuple(replace(b, mass=b.mass * 1.1) for b in locked.masses)),
-        "axis": replace(locked, joints=(replace(joint, axis=replace(joint.axis, point=(0.0, 0.9, 0.0))), *locked.joints[1:])),
+        "axis": replace(
+            locked, joints=(replace(joint, axis=replace(joint.axis, point=(0.0, 0.9, 0.0))), *locked.joints[1:])
+        ),
         "type": replace(locked, joints=(replace(joint, type="spherical", freedoms=3), *locked.joints[1:])),
         "pair": replace(locked, interferences=((("a", "b"), 1e-3),)),
     }[kind]  # fmt: skip

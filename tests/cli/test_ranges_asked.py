@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
 from support.slots import lever_between_pegs
+from support.solids import save
 
 from kinform.results import read
 from kinform_cli.main import main
@@ -56,9 +56,7 @@ step = 0.01
 def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("lever")
     for name, solid in lever_between_pegs().items():
-        mesh = solid.to_mesh64()
-        made = trimesh.Trimesh(np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts), process=False)
-        made.export(folder / f"{name}.stl")
+        save(solid, folder / f"{name}.stl")
     return folder
 
 

@@ -1,4 +1,4 @@
-"""Parts whose faces are flush run into each other's ends without any facets that cross: that is a collision all the same."""
+"""Parts whose faces are flush run into each other's ends without any facets that cross: a collision all the same."""
 
 from __future__ import annotations
 

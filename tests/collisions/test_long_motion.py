@@ -13,8 +13,8 @@ from kinform import collisions
 
 
 def jack():
-    """A spindle in a base that carries a table, which a square post keeps from turning. Its collar is 30 above the base,
-    the table 50 below the end of the post."""
+    """A spindle in a base that carries a table, which a square post keeps from turning. Its collar is 30 above the
+    base, the table 50 below the end of the post."""
     post = box(36, 52, -8, 8, -1, 90)
     return {
         "base": box(-30, 60, -20, 20, -20, 0) - rod(5, -30, 10, 48) + post,

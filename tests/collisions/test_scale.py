@@ -1,4 +1,4 @@
-"""An assembly and the same one a thousand times smaller or larger stop at the same places: times are equal, lengths scale."""
+"""An assembly and its copy a thousand times smaller or larger stop at the same places: equal times, scaled lengths."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`[check]` and baselines: what is selected, how severe it is, what is accepted, and that nothing is accepted silently."""
+"""`[check]` and baselines: what is selected, how severe it is, what is accepted, and nothing of it silently."""
 
 from __future__ import annotations
 
@@ -178,7 +178,8 @@ def test_adopting_again_keeps_what_was_adopted(hinge):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", '{"schema": "kinform/findings/1"}', '{"schema": "kinform/baseline/1", "findings": [{"code": 1}]}',
+    "text",
+    ["", "[]", '{"schema": "kinform/findings/1"}', '{"schema": "kinform/baseline/1", "findings": [{"code": 1}]}',
              '{"schema": "kinform/baseline/1"}'],
 )  # fmt: skip
 def test_what_is_no_baseline_is_refused(text):

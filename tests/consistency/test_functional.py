@@ -1,4 +1,4 @@
-"""The gate of a design that is function alone: what can be checked is checked, what is given is not compared with itself."""
+"""The gate of a design that is function alone: what can be is checked, what is given is not compared with itself."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import trimesh
+from support.solids import block, save
 
 from kinform import stages
 from kinform.statics.carrying import missing, wrenches_at
@@ -16,8 +16,8 @@ WEIGHT = 0.5 * 9.81
 
 def stand(folder, extra):
     """A cube on a table, with loads and drives."""
-    trimesh.creation.box((0.4, 0.4, 0.02)).apply_translation((0, 0, -0.01)).export(folder / "table.stl")
-    trimesh.creation.box((BLOCK,) * 3).apply_translation((0, 0, BLOCK / 2)).export(folder / "cube.stl")
+    save(block(0.4, 0.4, 0.02).translate((0, 0, -0.01)), folder / "table.stl")
+    save(block(BLOCK, BLOCK, BLOCK).translate((0, 0, BLOCK / 2)), folder / "cube.stl")
     text = f"""schema = 1
 [assembly]
 name = "stand"
@@ -100,11 +100,11 @@ def test_what_cannot_be_carried_is_told_whole():
 
 def carriage(folder, amplitude):
     """A carriage of 40 mm in the channel of a rail of 200 mm, driven along it."""
-    rail = trimesh.creation.box((0.2, 0.06, 0.02)).apply_translation((0, 0, -0.01))
-    walls = [trimesh.creation.box((0.2, 0.01, 0.04)).apply_translation((0, y, 0.0)) for y in (-0.025, 0.025)]
-    trimesh.boolean.union([rail, *walls], engine="manifold").export(folder / "rail.stl")
-    box = trimesh.creation.box((0.04, 0.04, 0.02)).apply_translation((0, 0, 0.01))
-    box.export(folder / "carriage.stl")
+    rail = block(0.2, 0.06, 0.02).translate((0, 0, -0.01))
+    walls = [block(0.2, 0.01, 0.04).translate((0, y, 0.0)) for y in (-0.025, 0.025)]
+    save(rail + walls[0] + walls[1], folder / "rail.stl")
+    box = block(0.04, 0.04, 0.02).translate((0, 0, 0.01))
+    save(box, folder / "carriage.stl")
     text = f"""schema = 1
 [assembly]
 name = "guide"
@@ -159,11 +159,11 @@ def test_a_carriage_overhanging_its_rail_tips_once_its_middle_is_beyond_the_end(
 
 def bridge(folder, weight_at):
     """A beam of 200 mm on two cubes that stand on a table; a load of 100 N pushes it down at `weight_at` (m)."""
-    trimesh.creation.box((0.6, 0.4, 0.02)).apply_translation((0, 0, -0.01)).export(folder / "table.stl")
+    save(block(0.6, 0.4, 0.02).translate((0, 0, -0.01)), folder / "table.stl")
     for name, x in (("left", -0.06), ("right", 0.06)):
-        trimesh.creation.box((BLOCK,) * 3).apply_translation((x, 0, BLOCK / 2)).export(folder / f"{name}.stl")
-    beam = trimesh.creation.box((0.24, BLOCK, 0.02)).apply_translation((0, 0, BLOCK + 0.01))
-    beam.export(folder / "beam.stl")
+        save(block(BLOCK, BLOCK, BLOCK).translate((x, 0, BLOCK / 2)), folder / f"{name}.stl")
+    beam = block(0.24, BLOCK, 0.02).translate((0, 0, BLOCK + 0.01))
+    save(beam, folder / "beam.stl")
     parts = "".join(
         f'[[part]]\nname = "{name}"\nmesh = "{name}.stl"\ndensity = 1000\n'
         for name in ("table", "left", "right", "beam")

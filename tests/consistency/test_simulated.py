@@ -118,7 +118,7 @@ def test_a_jump_has_no_peak_beside_it():
 
 @pytest.mark.parametrize("share", [1, 2, 3, 4])
 def test_a_motion_of_which_there_are_too_few_output_times_is_not_passed(share):
-    """At a half or a quarter of the period of 0.5 Hz all that is seen is at rest, or at full speed and without torque."""
+    """At a half or a quarter of the period of 0.5 Hz all that is seen is rest, or full speed without torque."""
     spin, peak = sine(30.0, 0.5), 0.01 * math.radians(30.0) * math.pi**2
     made = wheel(spin, duration=8.0, step=2.0 / share)
     assert len(made.simulation.time) == 4 * share + 1
@@ -134,7 +134,8 @@ def test_a_pendulum_of_which_there_are_too_few_output_times_is_not_passed():
     """It swings by itself: no law says how fast."""
     turn, start = joint("base", "bob", "revolute", Y, ORIGIN), InitialValue("swing", 20.0, 0.0, 1.0, "m.toml", 9)
     made = lambda step: design(
-        [rod("bob", ORIGIN, (0, 0, -0.3), 1.0)], [turn], wanted=[intended("swing", "base", "bob", "revolute", Y, ORIGIN)],
+        [rod("bob", ORIGIN, (0, 0, -0.3), 1.0)], [turn],
+        wanted=[intended("swing", "base", "bob", "revolute", Y, ORIGIN)],
         run=True, initial=(start,), duration=4.0, step=step,
     )  # fmt: skip
     # half the period of a rod of 0.3 m: 2π √(2·0.3/(3 g)), a little longer at 20°

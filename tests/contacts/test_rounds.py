@@ -1,4 +1,4 @@
-"""Balls and rollers on each other and in bores: rows as the analytic surfaces have them, in any pose and tessellation."""
+"""Balls and rollers on each other and in bores: rows as the analytic surfaces have them, however posed or meshed."""
 
 from __future__ import annotations
 

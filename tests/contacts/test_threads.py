@@ -1,4 +1,4 @@
-"""A screw in its nut: patches that leave the common screw motion exactly free, and none where there is no such motion."""
+"""A screw in its nut: patches that leave the common screw motion exactly free, and none where there is none."""
 
 from __future__ import annotations
 

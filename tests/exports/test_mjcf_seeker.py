@@ -80,7 +80,7 @@ def test_a_seeker_under_torques_moves_as_in_mujoco(seeker, tmp_path):
 
 
 def test_a_led_seeker_needs_the_efforts_that_mujoco_finds(seeker, tmp_path):
-    """Both turns led by the laws of the manifest: our motion is put in, and MuJoCo says where all is and what it takes."""
+    """Both turns led by the laws of the manifest: our motion is put in; MuJoCo says where all is and what it takes."""
     request = SimulationRequest(duration=2.0, step=0.1, gravity=np.array([3.0, -2.0, -9.0]))
     assembly = replace(seeker.assembly, simulation=request)
     led = stages.simulate(replace(seeker, assembly=assembly), level="dynamic")

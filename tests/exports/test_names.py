@@ -28,7 +28,8 @@ VALID = {
 }
 ODD = (
     "a b", "a_b", "a-b", "A B", "entity", "Model", "end", "1st", "räder", "rader", "車輪", "[m6] <bolt>", 'say "hi"',
-    "x & y", "--", "__x__", "world", "a::b", "tab\tname", "body", "new\nline", "né", "né", "con", "*/ end", "über/unter"[:4],
+    "x & y", "--", "__x__", "world", "a::b", "tab\tname", "body", "new\nline", "né", "né", "con", "*/ end",
+    "über/unter"[:4],
 )  # fmt: skip
 
 

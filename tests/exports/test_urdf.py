@@ -179,7 +179,11 @@ def test_joints_without_limits_are_named_in_a_note(format):
 
 
 def test_a_body_that_nothing_holds_floats_and_is_named():
-    found = design(device([block("one", (0.1, 0, 0)), block("two", (0.3, 0, 0))], [joint("base", "one", "revolute", Z, (0, 0, 0))]), run=False)  # fmt: skip
+    blocks, hinge = (
+        [block("one", (0.1, 0, 0)), block("two", (0.3, 0, 0))],
+        joint("base", "one", "revolute", Z, (0, 0, 0)),
+    )
+    found = design(device(blocks, [hinge]), run=False)
     made = export(found, "urdf")
     root = ElementTree.fromstring(made.files["device.urdf"])
     (free,) = (n for n in root.findall("joint") if n.get("type") == "floating")

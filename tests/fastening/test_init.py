@@ -6,11 +6,9 @@ import json
 import re
 import tomllib
 
-import numpy as np
 import pytest
-import trimesh
 from support.command_line import ran_here
-from support.solids import box
+from support.solids import box, save
 from support.suggestions import CORNERS, drilled
 
 
@@ -26,9 +24,7 @@ def servo_and_bracket():
 def written(folder):
     names = []
     for name, solid in servo_and_bracket().items():
-        mesh = solid.to_mesh64()
-        vertices = np.asarray(mesh.vert_properties)[:, :3]
-        trimesh.Trimesh(vertices, np.asarray(mesh.tri_verts), process=False).export(folder / f"{name}.stl")
+        save(solid, folder / f"{name}.stl")
         names.append(f"{name}.stl")
     return names
 

@@ -131,7 +131,8 @@ WRONG = {
     ),
     "reversed range": (
         TWO + '[[function.joint]]\nname = "j"\nbetween = ["a", "b"]\n'
-        'type = "prismatic"\naxis = [0, 0, 1]\nrange = [2, 1]\n',
+        'type = "prismatic"\naxis = [0, 0, 1]\n'
+        "range = [2, 1]\n",
         14, "range",
     ),
     "drive on nothing": (

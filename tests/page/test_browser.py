@@ -67,7 +67,8 @@ def inside(browser, selector, across=0.5, down=0.5):
     browser.run(f"document.querySelector({selector!r}).scrollIntoView({{block: 'center', behavior: 'instant'}})")
     browser.settle()
     box = browser.run(
-        f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; }})()"
+        f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect(); "
+        "return [b.left, b.top, b.width, b.height]; })()"
     )
     return box[0] + across * box[2], box[1] + down * box[3]
 
@@ -156,7 +157,8 @@ def test_the_slider_moves_the_assembly_and_the_cursors_of_the_curves(shown):
     assert shown.run("document.getElementById('motion').selectedOptions[0].textContent") == "Simulated motion (dynamic)"
     before = drawn(shown)
     shown.run(
-        "(() => { const time = document.getElementById('time'); time.value = 250; time.dispatchEvent(new Event('input')); })()"
+        "(() => { const time = document.getElementById('time'); time.value = 250; "
+        "time.dispatchEvent(new Event('input')); })()"
     )
     assert np.abs(drawn(shown) - before).mean() > 0.3
     assert shown.run("document.getElementById('clock').textContent") == "0.50 s"
@@ -166,7 +168,8 @@ def test_the_slider_moves_the_assembly_and_the_cursors_of_the_curves(shown):
     )
     assert float(at.split("(")[1].split()[0]) == pytest.approx(left + 0.25 * (right - left), abs=0.1)
     shown.run(
-        "(() => { const time = document.getElementById('time'); time.value = 0; time.dispatchEvent(new Event('input')); })()"
+        "(() => { const time = document.getElementById('time'); time.value = 0; "
+        "time.dispatchEvent(new Event('input')); })()"
     )
     assert np.abs(drawn(shown) - before).max() <= 2
 
@@ -182,7 +185,8 @@ def test_play_runs_and_stops_and_freedoms_go_to_and_fro(shown):
     options = shown.run("[...document.getElementById('motion').options].map((option) => option.textContent)")
     assert options[2:] == ["Freedom: yaw (turn)", "Freedom: pitch (turn)"]
     shown.run(
-        "(() => { const m = document.getElementById('motion'); m.value = '1'; m.dispatchEvent(new Event('change')); })()"
+        "(() => { const m = document.getElementById('motion'); m.value = '1'; "
+        "m.dispatchEvent(new Event('change')); })()"
     )
     shown.until("Number(document.getElementById('time').value) > 900")
     shown.until("Number(document.getElementById('time').value) < 100")
@@ -329,7 +333,8 @@ def test_without_webgl_the_picture_stays_and_the_page_says_why(browser, seeker):
     assert browser.run("document.body.dataset.viewer") == "none"
     assert "WebGL 2 is not available" in browser.run("document.getElementById('viewer-fault').textContent")
     assert browser.run(
-        "(() => { const image = document.querySelector('.stand-in'); return image.naturalWidth > 0 && getComputedStyle(image).display !== 'none'; })()"
+        "(() => { const image = document.querySelector('.stand-in'); "
+        "return image.naturalWidth > 0 && getComputedStyle(image).display !== 'none'; })()"
     )
     assert browser.said == []
 

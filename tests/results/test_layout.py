@@ -16,7 +16,8 @@ from kinform import results
 from kinform.design import Design
 
 GROUPS = {
-    "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation", "findings",
+    "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation",
+    "findings",
 }  # fmt: skip
 
 

@@ -12,8 +12,8 @@ MIDDLE = np.array([np.cos(BEND), 0.0, np.sin(BEND)])
 
 
 def shaft(phase):
-    """Input and output are parallel; `phase` is how far the yokes of the middle shaft are turned against each other, beyond
-    a right angle from where they lie in one plane."""
+    """Input and output are parallel; `phase` is how far the yokes of the middle shaft are turned against each other,
+    beyond a right angle from where they lie in one plane."""
     second = np.cos(phase) * LATERAL + np.sin(phase) * np.cross(MIDDLE, LATERAL)
     far, across = LENGTH * MIDDLE, np.cross(INPUT, second)
     model = Model()

@@ -42,7 +42,7 @@ def test_a_stop_just_below_the_top_of_a_throw_is_met(method, share):
 
 
 def test_an_impact_on_one_stop_lifts_a_joint_off_another():
-    """A bead runs to the end of its track on a cart that is pressed on a wall: cart and bead go on with half its speed."""
+    """A bead runs to the end of its track on a cart pressed on a wall: cart and bead go on with half its speed."""
     system = sliders([1.0, 1.0], [(0.0, np.inf), (-1.0, 0.2)], [Constant(-0.5), None])
     run = simulate_system(system, Course(3.0, 0.05, NOTHING), initial={"j0": (0.0, 0.0), "j1": (0.0, 1.0)})
     t = np.maximum(run.time - 0.2, 0.0)

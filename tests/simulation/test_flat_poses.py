@@ -1,5 +1,5 @@
-"""Four-bars that pass their flat pose, or pass it by a hair: which branch they take, by the closed form of their angles,
-and what a run says of it."""
+"""Four-bars that pass their flat pose, or pass it by a hair: which branch they take, by the closed form of their
+angles, and what a run says of it."""
 
 import re
 
@@ -13,7 +13,7 @@ CRANK = 0.3
 
 
 def four_bar(coupler, start):
-    """Crank and rocker of one length on a base of 1 m; at the start the rocker is on the left of crank pin to base pin."""
+    """Crank and rocker of one length on a base of 1 m; at first the rocker is on the left of crank pin to base pin."""
     foot, pin = np.array([1.0, 0.0, 0.0]), CRANK * np.array([np.cos(start), np.sin(start), 0.0])
     elbow = np.array([*joint_at(coupler, start), 0.0])
     model = Model()

@@ -242,7 +242,8 @@ def behaviours(draw: Any) -> Behaviour:
 
 SPECIAL: dict[Any, Any] = {
     Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
-    Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies, Release: releases, MassProperties: mass_properties, Simulation: simulations,
+    Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies,
+    Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip
 
 

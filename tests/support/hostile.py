@@ -49,7 +49,8 @@ RULES = (
     RuleOutcome("KF904", "range-not-checked", "inconclusive", "no rule checks ranges yet"),
 )
 ACCEPTED = Ignored(
-    Finding("KF407", "contact-unintended", "warning", ("c|<i>", "d"), "'c|<i>' and 'd' touch", file="parts/arm 1.toml", line=3),
+    Finding("KF407", "contact-unintended", "warning", ("c|<i>", "d"), "'c|<i>' and 'd' touch", file="parts/arm 1.toml",
+            line=3),
     "manifest",
     "glued, see {drawing} <3>",
 )  # fmt: skip

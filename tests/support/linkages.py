@@ -52,7 +52,8 @@ def watt():
     return [
         hinge("base", "crank", (0, 0, 0)), hinge("crank", "coupler", (0, 2, 0)),
         hinge("coupler", "rocker", (3, 3, 0)), hinge("base", "rocker", (4, 0, 0)),
-        hinge("rocker", "rod", (5, 2.5, 0)), hinge("rod", "follower", (8, 3, 0)), hinge("base", "follower", (8, 0.5, 0)),
+        hinge("rocker", "rod", (5, 2.5, 0)), hinge("rod", "follower", (8, 3, 0)),
+        hinge("base", "follower", (8, 0.5, 0)),
     ]  # fmt: skip
 
 

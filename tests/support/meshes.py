@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 
-import manifold3d as m3
 import numpy as np
 
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import RawMesh
+from support.solids import centred_rod
 
 
 def mesh_of(vertices, faces, pose=None, scale=1.0, rounding=False):
@@ -28,15 +28,7 @@ def of_manifold(solid, **keys):
 
 
 def rod(radius, length, segments, **keys):
-    return of_manifold(m3.Manifold.cylinder(length, radius, radius, segments, True), **keys)
-
-
-def solid_rod(radius, length, segments):
-    return m3.Manifold.cylinder(length, radius, radius, segments, True)
-
-
-def block(x, y, z):
-    return m3.Manifold.cube((x, y, z), True)
+    return of_manifold(centred_rod(radius, length, segments), **keys)
 
 
 def kinds(surfaces, share=0.0):

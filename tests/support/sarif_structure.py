@@ -1,7 +1,7 @@
 """What SARIF 2.1.0 demands of the objects that kinform writes: a reader written from the standard, not from the writer.
 
-The schema of the standard is not part of this repository. Of each object the properties that exist and their kind, which
-are required, and the conditions between properties that a schema cannot say.
+The schema of the standard is not part of this repository. Of each object the properties that exist and their kind,
+which are required, and the conditions between properties that a schema cannot say.
 """
 
 from __future__ import annotations

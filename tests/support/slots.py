@@ -1,4 +1,4 @@
-"""A block in a slot and a lever between pegs, as meshes through to joints, and runs in which a part is moved by hand."""
+"""A block in a slot and a lever between pegs, as meshes through to joints, and runs in which a part is moved."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def lever_between_pegs():
 
 
 def derived(solids, X=None, ground=None, scale=1e-3, contact=None):
-    """Assembly, surfaces, contacts and kinematics of solids in units of `scale` (m); `contact`: that tolerance in these."""
+    """Assembly, surfaces, contacts and kinematics of solids in units of `scale` (m); `contact`: that tolerance."""
     X = np.eye(4) if X is None else X
     made = assembly(*(part(name, solid, X, scale) for name, solid in solids.items()), ground=ground)
     if contact is not None:

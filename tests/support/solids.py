@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 
 import numpy as np
+from generators.writers import binary_stl
 from manifold3d import CrossSection, Manifold
+from random_assemblies import shapes
 from scipy.spatial.transform import Rotation
 
 from kinform import contacts, kinematics, surfaces
@@ -14,11 +16,27 @@ from support.assemblies import HERE, assembly
 
 
 def box(x0, x1, y0, y1, z0, z1):
-    return Manifold.cube((x1 - x0, y1 - y0, z1 - z0)).translate((x0, y0, z0))
+    return shapes.box((x0, x1), (y0, y1), (z0, z1))
+
+
+def block(x, y, z):
+    """A box of this size about the origin."""
+    return box(-x / 2, x / 2, -y / 2, y / 2, -z / 2, z / 2)
 
 
 def rod(radius, z0, z1, segments=40, phase=0.0):
-    return Manifold.cylinder(z1 - z0, radius, radius, segments).rotate((0, 0, phase)).translate((0, 0, z0))
+    return shapes.cylinder(radius, (z0, z1), segments, phase)
+
+
+def centred_rod(radius, length, segments):
+    """A rod along z about the origin."""
+    return rod(radius, -length / 2, length / 2, segments)
+
+
+def save(solid, path, scale=1.0):
+    """Write a solid as binary STL."""
+    mesh = solid.to_mesh64()
+    binary_stl(path, (np.asarray(mesh.vert_properties)[:, :3] * scale, np.asarray(mesh.tri_verts)))
 
 
 def ball(radius, segments=40, phase=0.0):

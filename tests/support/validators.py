@@ -1,4 +1,4 @@
-"""Programs that judge what kinform writes, where `make validators` has put them; a test without its judge is skipped."""
+"""Programs that judge what kinform writes, where `make validators` puts them; a test without its judge is skipped."""
 
 from __future__ import annotations
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 from dataclasses import replace
 
-import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.meshes import block, of_manifold, solid_rod
+from support.meshes import of_manifold
+from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover, rigid_copies, surfaces_of_copy
@@ -18,8 +18,8 @@ from kinform.surfaces import recover, rigid_copies, surfaces_of_copy
 def bracket(**keys):
     solid = (
         block(0.05, 0.03, 0.01)
-        - solid_rod(0.006, 0.02, 40).translate((0.012, 0.004, 0))
-        + solid_rod(0.004, 0.03, 32).translate((-0.015, -0.005, 0.01))
+        - centred_rod(0.006, 0.02, 40).translate((0.012, 0.004, 0))
+        + centred_rod(0.004, 0.03, 32).translate((-0.015, -0.005, 0.01))
     )
     return named(of_manifold(solid, **keys))
 
@@ -75,6 +75,6 @@ def test_all_copies_are_of_the_lowest_digest():
 
 
 def test_symmetric_shapes_are_copies_too():
-    cube = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True)))
-    turned = named(of_manifold(m3.Manifold.cube((0.01, 0.01, 0.01), True), pose=pose(2)))
+    cube = named(of_manifold(block(0.01, 0.01, 0.01)))
+    turned = named(of_manifold(block(0.01, 0.01, 0.01), pose=pose(2)))
     assert len(rigid_copies(by_digest(cube, turned))) == 1

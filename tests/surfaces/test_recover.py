@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from support.meshes import block, kinds, mesh_of, of_manifold, rod, solid_rod
+from support.meshes import kinds, mesh_of, of_manifold, rod
+from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
@@ -44,7 +45,7 @@ def test_a_coarse_prism_stays_a_prism(segments):
 
 
 def test_a_bore_is_concave():
-    found = surfaces_of(of_manifold(block(0.03, 0.03, 0.01) - solid_rod(0.006, 0.02, 48)))
+    found = surfaces_of(of_manifold(block(0.03, 0.03, 0.01) - centred_rod(0.006, 0.02, 48)))
     assert kinds(found) == {"cylinder": 1, "plane": 6}
     assert only(found, "cylinder").side == -1
 
@@ -77,7 +78,7 @@ def test_a_stadium_is_two_cylinders_and_planes_tangent_to_them():
 
 def test_a_flat_on_a_shaft_is_a_plane():
     flat = block(0.02, 0.02, 0.04).translate((0.014, 0, 0))
-    assert kinds(surfaces_of(of_manifold(solid_rod(0.005, 0.03, 48) - flat)), 0.01) == {"cylinder": 1, "plane": 3}
+    assert kinds(surfaces_of(of_manifold(centred_rod(0.005, 0.03, 48) - flat)), 0.01) == {"cylinder": 1, "plane": 3}
 
 
 def test_a_flat_between_two_bevels_is_no_cylinder():
@@ -87,7 +88,7 @@ def test_a_flat_between_two_bevels_is_no_cylinder():
 
 
 def test_crossed_bores_are_two_cylinders():
-    along = solid_rod(0.004, 0.05, 40)
+    along = centred_rod(0.004, 0.05, 40)
     solid = block(0.03, 0.03, 0.03) - along - along.rotate((90, 0, 0))
     found = surfaces_of(of_manifold(solid))
     bores = [s for s in found.surfaces if s.kind == "cylinder"]
@@ -106,7 +107,7 @@ def test_a_stepped_shaft_has_a_cylinder_a_step():
 
 def test_a_plate_with_a_hundred_holes():
     holes = m3.Manifold.batch_boolean(
-        [solid_rod(0.001, 0.01, 20).translate((0.005 * i, 0.005 * k, 0)) for i in range(10) for k in range(10)],
+        [centred_rod(0.001, 0.01, 20).translate((0.005 * i, 0.005 * k, 0)) for i in range(10) for k in range(10)],
         m3.OpType.Add,
     )
     plate = block(0.06, 0.06, 0.004).translate((0.0225, 0.0225, 0))
@@ -114,7 +115,7 @@ def test_a_plate_with_a_hundred_holes():
 
 
 def test_every_facet_belongs_to_one_surface_in_the_order_of_area():
-    found = surfaces_of(of_manifold(block(0.03, 0.03, 0.01) - solid_rod(0.006, 0.02, 48)))
+    found = surfaces_of(of_manifold(block(0.03, 0.03, 0.01) - centred_rod(0.006, 0.02, 48)))
     counted = np.concatenate([s.faces for s in found.surfaces])
     assert sorted(counted.tolist()) == list(range(len(found.labels)))
     areas = [s.area for s in found.surfaces]
@@ -140,7 +141,7 @@ def test_pose_and_scale_move_the_surfaces_with_the_part(seed, scale, segments):
 
 
 def test_the_order_of_facets_and_vertices_does_not_matter():
-    mesh = of_manifold(block(0.03, 0.03, 0.01) - solid_rod(0.006, 0.02, 48))
+    mesh = of_manifold(block(0.03, 0.03, 0.01) - centred_rod(0.006, 0.02, 48))
     rng = np.random.default_rng(3)
     order, names = rng.permutation(len(mesh.faces)), rng.permutation(len(mesh.vertices))
     back = np.argsort(names)

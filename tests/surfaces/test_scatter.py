@@ -8,7 +8,8 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.meshes import block, kinds, mesh_of, of_manifold, solid_rod
+from support.meshes import kinds, mesh_of, of_manifold
+from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
@@ -25,7 +26,7 @@ def scattered(mesh, size, seed=0):
 def drilled():
     plate = block(0.06, 0.04, 0.012)
     for x in (-0.018, 0.0, 0.018):
-        plate = plate - solid_rod(0.005, 0.03, 48).translate((x, 0, 0))
+        plate = plate - centred_rod(0.005, 0.03, 48).translate((x, 0, 0))
     return of_manifold(plate)
 
 
@@ -102,7 +103,7 @@ def test_rounding_far_from_the_origin_leaves_a_cylinder(segments, lost):
     pose = np.eye(4)
     pose[:3, :3] = Rotation.random(random_state=segments).as_matrix()
     pose[:3, 3] = away * np.array([0.7, 0.6, 0.4])
-    found = recover(of_manifold(solid_rod(radius, 0.02, segments), pose=pose, rounding=True), Tolerances())
+    found = recover(of_manifold(centred_rod(radius, 0.02, segments), pose=pose, rounding=True), Tolerances())
     assert kinds(found) == {"cylinder": 1, "plane": 2}
 
 

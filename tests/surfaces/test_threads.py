@@ -8,6 +8,7 @@ from generators.threads import Thread, threaded
 from manifold3d import CrossSection, Manifold
 from scipy.spatial.transform import Rotation
 from support.meshes import kinds, of_manifold
+from support.solids import block
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
@@ -48,7 +49,7 @@ def test_a_screw_has_one_helicoid_with_its_pitch_and_hand(lead, starts, segments
 def test_a_nut_has_one_helicoid_that_faces_the_axis(lean, root):
     tool = threaded(Thread(root, 10.0, 4.0, 1, lean), -9.0, 9.0, 20, 7.0).manifold
     pose = posed(3)
-    found = found_on(Manifold.cube((40.0, 40.0, 16.0), True) - tool, pose)
+    found = found_on(block(40.0, 40.0, 16.0) - tool, pose)
     screw = the_helicoid(found)
     assert screw.side == -1 or lean == 0.0
     assert_is(screw, 4.0, pose)

@@ -6,7 +6,8 @@ import manifold3d as m3
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.meshes import block, kinds, mesh_of, of_manifold, solid_rod
+from support.meshes import kinds, mesh_of, of_manifold
+from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import recover
@@ -61,7 +62,7 @@ def test_a_ring_or_a_fillet_is_a_torus(around, rings, start, sweep, seed):
 def test_a_groove_is_concave():
     outline = 0.004 * np.stack([np.cos(a := np.linspace(0, 2 * np.pi, 24, endpoint=False)), np.sin(a)], axis=1)
     tube = m3.Manifold.revolve(m3.CrossSection([outline + [0.03, 0.0]]), 64)
-    (groove,) = tori(recover(of_manifold(solid_rod(0.03, 0.03, 64) - tube), Tolerances()))
+    (groove,) = tori(recover(of_manifold(centred_rod(0.03, 0.03, 64) - tube), Tolerances()))
     assert groove.side == -1
     assert groove.radius == pytest.approx(0.03, rel=1e-5)
     assert groove.minor_radius == pytest.approx(0.004, rel=1e-5)
@@ -81,7 +82,7 @@ def test_single_precision_stays_within_the_stated_uncertainty():
 
 
 def test_simpler_kinds_win():
-    for solid in (m3.Manifold.sphere(0.01, 48), solid_rod(0.01, 0.03, 48), block(0.03, 0.02, 0.01)):
+    for solid in (m3.Manifold.sphere(0.01, 48), centred_rod(0.01, 0.03, 48), block(0.03, 0.02, 0.01)):
         assert not tori(recover(of_manifold(solid), Tolerances()))
 
 
