@@ -86,6 +86,13 @@ def test_a_wrong_index_is_told_with_its_line(index):
     assert caught.value.faults[0].line == 4
 
 
+def test_a_wrong_index_is_told_how_many_vertices_there_are():
+    with pytest.raises(MeshError, match="out of range at line 4: the file has 3 vertices"):
+        parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    with pytest.raises(MeshError, match="out of range at line 2: 1 vertex precede it"):
+        parse_obj("v 0 0 0\nf -2 1 1\n")
+
+
 def test_facts_about_a_cube():
     health = built(CUBE, SIDES).health
     assert (health.watertight, health.consistent_winding, health.manifold_status) == (True, True, "NoError")

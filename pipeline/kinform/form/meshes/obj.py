@@ -194,7 +194,6 @@ def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.i
 def _index_fault(stated: int, line: int, before: int, count: int) -> Fault:
     if stated == 0:
         return Fault(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
-    count_there = (
-        f"{counted(before, 'vertex')} precede it" if stated < 0 else f"the file has {counted(count, 'vertex')}"
-    )
-    return Fault(f"has index {stated} out of range at line {line}: {count_there}", f"correct it, or {REEXPORT}", line)
+    vertices = counted(before if stated < 0 else count, "vertex", "vertices")
+    there = f"{vertices} precede it" if stated < 0 else f"the file has {vertices}"
+    return Fault(f"has index {stated} out of range at line {line}: {there}", f"correct it, or {REEXPORT}", line)
