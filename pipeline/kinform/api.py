@@ -43,8 +43,8 @@ class Named(Mapping[str, Item], Generic[Item]):
         try:
             return self._items[name]
         except KeyError:
-            known = ", ".join(self._items) or "none"
-            raise KeyError(f"no {self._what} is named {name!r}; there are: {known}") from None
+            names = ", ".join(self._items) or "none"
+            raise KeyError(f"no {self._what} is named {name!r}; there are: {names}") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._items)
@@ -96,8 +96,8 @@ class Results:
     @property
     def joints(self) -> Named[Joint]:
         """Joints between bodies, by name: type, axis, point, freedoms, status, evidence."""
-        found = _computed(self.design.kinematics, "joints", "joints").joints
-        return Named("joint", found, lambda joint: f"{joint.type} ({joint.status})")
+        joints = _computed(self.design.kinematics, "joints", "joints").joints
+        return Named("joint", joints, lambda joint: f"{joint.type} ({joint.status})")
 
     @property
     def mobility(self) -> Mobility:

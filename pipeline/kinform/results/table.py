@@ -90,11 +90,13 @@ def _has_surrogates(value: str) -> bool:
 
 
 def _read_texts(stored: NDArray[Any]) -> list[str | None]:
-    found: list[str | None] = [v.decode() if isinstance(v, bytes) else v for v in stored.tolist()]
-    for i, value in enumerate(found):
-        if value.startswith(_NOTHING):  # type: ignore[union-attr]
-            found[i] = None if value == _NOTHING else str(json.loads(value[1:]))  # type: ignore[index]
-    return found
+    texts = [v.decode() if isinstance(v, bytes) else v for v in stored.tolist()]
+    return [_text_of(text) if text.startswith(_NOTHING) else text for text in texts]
+
+
+def _text_of(stored: str) -> str | None:
+    """The text that was stored as one that begins with ␀."""
+    return None if stored == _NOTHING else str(json.loads(stored[1:]))
 
 
 def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
@@ -102,10 +104,10 @@ def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
 
 
 def _read_reals(stored: NDArray[np.float64]) -> list[float | None]:
-    found: list[float | None] = stored.tolist()
+    values: list[float | None] = stored.tolist()
     for i in np.flatnonzero(_missing(stored)).tolist():
-        found[i] = None
-    return found
+        values[i] = None
+    return values
 
 
 def _missing(stored: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -132,8 +134,8 @@ def _write_json(value: Any) -> str:
 
 def _each(function: Callable[[Any], Any], values: Sequence[Any]) -> list[Any]:
     """The function of each value, computed once a distinct one."""
-    known: dict[Any, Any] = {}
-    return [known[value] if value in known else known.setdefault(value, function(value)) for value in values]
+    results: dict[Any, Any] = {}
+    return [results[value] if value in results else results.setdefault(value, function(value)) for value in values]
 
 
 def _scalar(field: str, dtype: Any, unit: str, write: Callable[..., Any], read: Callable[..., list[Any]]) -> Column:

@@ -47,8 +47,8 @@ def advance(
     if result is not None:
         ledger.keep(stage.name)
     else:
-        known = before.inputs.get(stage.name, {}) if stage.name in before.stages else None
-        ledger.compute(stage.name, fingerprints.changes(known, inputs))
+        inputs_before = before.inputs.get(stage.name, {}) if stage.name in before.stages else None
+        ledger.compute(stage.name, fingerprints.changes(inputs_before, inputs))
         result = compute(stage.view(design.assembly))
     marks = replace(
         start.fingerprints,

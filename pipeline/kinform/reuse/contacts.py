@@ -139,7 +139,7 @@ def _why_pairs(view: Assembly, parts: Mapping[str, Inputs], wanted: Sequence[Pai
     old = _of_parts(CONTACTS.view(asked), before.surfaces)
     reasons = [f"{name} is new" for name in names if name not in old]
     for name in names:
-        changed = [key for key, own in parts[name].items() if name in old and old[name].get(key) != own]
+        changed = [key for key, now in parts[name].items() if name in old and old[name].get(key) != now]
         reasons += [f"{key} changed" for key in changed]
     if reasons:
         return few(reasons)

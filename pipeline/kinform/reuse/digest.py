@@ -27,7 +27,7 @@ _FEW = 4096
 """Values up to which nothing is gathered before it is hashed."""
 _PACKED = struct.Struct("<d").pack
 _REAL, _INTEGER = np.dtype("<f8"), np.dtype("<i8")
-_known: weakref.WeakKeyDictionary[Any, str] = weakref.WeakKeyDictionary()
+_hashes: weakref.WeakKeyDictionary[Any, str] = weakref.WeakKeyDictionary()
 """Hashes of results that are still in use; these classes compare by identity."""
 
 
@@ -67,8 +67,7 @@ def _array(out: Chunks, value: NDArray[Any]) -> None:
 
 def _plain(array: Any) -> Any:
     """The array in C order and little-endian."""
-    found = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-    return found.reshape(np.shape(array))
+    return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(np.shape(array))
 
 
 @functools.lru_cache(4096)
@@ -122,11 +121,11 @@ def _record(out: Chunks, value: Any) -> None:
 
 def _result(out: Chunks, value: Any) -> None:
     """A result by its hash, which is computed once."""
-    if value not in _known:
-        own: Chunks = []
-        _record(own, value)
-        _known[value] = hashlib.sha256(b"".join(own)).hexdigest()
-    out.append(f"r{_known[value]};".encode())
+    if value not in _hashes:
+        content: Chunks = []
+        _record(content, value)
+        _hashes[value] = hashlib.sha256(b"".join(content)).hexdigest()
+    out.append(f"r{_hashes[value]};".encode())
 
 
 def _fields_of(cls: type) -> tuple[bytes, Callable[[Any], tuple[Any, ...]]]:

@@ -72,6 +72,11 @@ LAW_ROWS = (
     text("law"), real("level", "rad, m, N·m, N or V"), real("offset", "as level"), real("slope", "as level, a s"),
     real("amplitude", "as level"), real("speed", "rad/s"), real("phase", "rad"),
 )  # fmt: skip
+TABLES = {
+    "systems": SYSTEM_ROWS, "components": COMPONENT_ROWS, **PARAMETERS, "nodes": NODE_ROWS, "ports": PORT_ROWS,
+    "exposed": EXPOSED_ROWS, "laws": LAW_ROWS,
+}  # fmt: skip
+"""In the order of the file."""
 REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"))
 
 
@@ -82,84 +87,60 @@ def write(group: h5py.Group, design: Design) -> None:
     place = {component.name: k for k, component in enumerate(behaviour.system.components)}
     rows = _Rows()
     rows.take(behaviour.nested, -1, 0, "", place)
-    _write(group, "systems", SYSTEM_ROWS, rows.systems)
-    _write(group, "components", COMPONENT_ROWS, rows.components)
-    for kind, columns in PARAMETERS.items():
-        _write(group, kind, columns, rows.kinds[kind])
-    _write(group, "nodes", NODE_ROWS, rows.nodes)
-    _write(group, "ports", PORT_ROWS, rows.ports)
-    _write(group, "exposed", EXPOSED_ROWS, rows.exposed)
-    _write(group, "laws", LAW_ROWS, [_law(signal) for signal in rows.signals])
+    for name, columns in TABLES.items():
+        of_columns = list(zip(*rows.tables[name], strict=True)) or [()] * len(columns)
+        write_rows(group, name, columns, of_columns)
     tables = [signal if isinstance(signal, Table) else Table((), ()) for signal in rows.signals]
     write_ragged(group, "law_times", [table.knots for table in tables], "s")
     write_ragged(group, "law_levels", [table.levels for table in tables], "rad, m, N·m, N or V")
     REASONS.write(group, behaviour)
 
 
-def _write(group: h5py.Group, name: str, columns: tuple[Column, ...], rows: list[dict[str, Any]]) -> None:
-    write_rows(group, name, columns, [[row[column.field] for row in rows] for column in columns])
-
-
 class _Rows:
-    """The rows of all tables as systems are taken apart."""
+    """The rows of all tables as systems are taken apart, in the order of their columns."""
 
     def __init__(self) -> None:
-        self.systems: list[dict[str, Any]] = []
-        self.components: list[dict[str, Any]] = []
-        self.kinds: dict[str, list[dict[str, Any]]] = defaultdict(list)
-        self.nodes: list[dict[str, Any]] = []
-        self.ports: list[dict[str, Any]] = []
-        self.exposed: list[dict[str, Any]] = []
+        self.tables: dict[str, list[tuple[Any, ...]]] = defaultdict(list)
         self.signals: list[Signal] = []
 
     def take(self, system: System, inside: int, place: int, names: str, flat_place: dict[str, int]) -> None:
         """Add the system, which is `place`-th in the system of row `inside`; `names` comes before names inside."""
-        number, counted = len(self.systems), count(system)
-        self.systems.append(
-            {
-                "name": system.name, "subject": system.subject, "inside": inside, "place": place,
-                "prefixed": system.prefixed, "unknowns": counted.unknowns, "of_components": counted.of_components,
-                "of_nodes": counted.of_nodes, "of_surroundings": counted.of_surroundings,
-            }
-        )  # fmt: skip
+        tables, count_of = self.tables, count(system)
+        number = len(tables["systems"])
+        counts = (count_of.unknowns, count_of.of_components, count_of.of_nodes, count_of.of_surroundings)
+        tables["systems"].append((system.name, system.subject, inside, place, system.prefixed, *counts))
         for node in system.nodes:
-            self.ports += [{"node": len(self.nodes), "component": c, "port": p} for c, p in node.ports]
-            self.nodes.append({"system": number, "size": node.size})
-        for port, (component, inner) in system.exposed:
-            self.exposed.append({"system": number, "port": port, "component": component, "inner": inner})
+            tables["ports"] += [(len(tables["nodes"]), *port) for port in node.ports]
+            tables["nodes"].append((number, node.size))
+        tables["exposed"] += [(number, port, *inner) for port, inner in system.exposed]
         for k, member in enumerate(system.components):
             if isinstance(member, System):
                 deeper = f"{names}{member.name}/" if member.prefixed else names
                 self.take(member, number, k, deeper, flat_place)
                 continue
-            kind = kind_of(member)
-            self.components.append(
-                {
-                    "name": member.name, "subject": member.subject, "kind": kind, "system": number, "place": k,
-                    "flat": flat_place[names + member.name], "row": len(self.kinds[kind]),
-                    "equations": member.equations,
-                }
-            )  # fmt: skip
-            self.kinds[kind].append(self._parameters(member))
+            kind, at = kind_of(member), flat_place[names + member.name]
+            row = (member.name, member.subject, kind, number, k, at, len(tables[kind]), member.equations)
+            tables["components"].append(row)
+            values = self._parameters(member)
+            tables[kind].append(tuple(values[column.field] for column in PARAMETERS[kind]))
 
     def _parameters(self, component: Component) -> dict[str, Any]:
-        row = {name: getattr(component, name) for name in hints(type(component)) if name != "subject"}
+        values = {name: getattr(component, name) for name in hints(type(component))}
         for name in ("signal", "target"):
-            if name in row:
-                row["law"] = len(self.signals)
-                self.signals.append(row.pop(name))
+            if name in values:
+                values["law"] = len(self.signals)
+                self._add(values[name])
         if isinstance(component, JointComponent):
-            row |= {"type": component.kind.name, **vars(component.geometry)}
-        if "controller" in row:
-            row |= vars(row["controller"])
-        return row
+            values |= {"type": component.kind.name, **vars(component.geometry)}
+        return values | (vars(values["controller"]) if "controller" in values else {})
 
-
-def _law(signal: Signal) -> dict[str, Any]:
-    for name, cls in SIGNALS.items():
-        if type(signal) is cls:
-            return {column.field: getattr(signal, column.field, None) for column in LAW_ROWS} | {"law": name}
-    raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+    def _add(self, signal: Signal) -> None:
+        kinds = [name for name, cls in SIGNALS.items() if type(signal) is cls]
+        if not kinds:
+            raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+        self.signals.append(signal)
+        numbers = (getattr(signal, column.field, None) for column in LAW_ROWS[1:])
+        self.tables["laws"].append((kinds[0], *numbers))
 
 
 def read(group: h5py.Group) -> Behaviour:
