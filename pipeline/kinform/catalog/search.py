@@ -81,6 +81,7 @@ def source_state(entry: Entry, folder: str | Path) -> str:
 
 
 def _conditions(wanted: Wanted) -> tuple[list[str], list[object]]:
+    """Conditions of SQL that all have to hold, and their parameters in order."""
     joints = "(SELECT count(*) FROM joints WHERE design = designs.path{})"
     conditions: list[str] = []
     values: list[object] = []

@@ -82,6 +82,7 @@ def open_catalog(path: str | Path) -> Iterator[sqlite3.Connection]:
 
 
 def _connection(path: Path) -> sqlite3.Connection:
+    """The database behind a file, after its signature and schema; raises InputError with the remedy."""
     make = "make one: kinform catalog add DIR"
     try:
         with path.open("rb") as stream:

@@ -69,6 +69,7 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
 
 
 def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:
+    """Bodies that came, went, merged, were renamed or have other parts; parts with new names; the ground."""
     old, new = dict(before.bodies or ()), dict(after.bodies or ())
     for was, name in sorted(other.items(), key=lambda item: item[1]):
         yield Change("part-renamed", (name,), f"was named {quoted(was)}, with the same mesh", was, name)

@@ -45,6 +45,7 @@ def joint_changes(
 
 
 def _joint(old: JointState, new: JointState, within: Tolerance, say: Lengths) -> Iterator[Change]:
+    """A joint that is still there: another type hides all else, as axes of different types do not compare."""
     subject = (new.name,)
     if old.type != new.type:
         gain = new.freedoms - old.freedoms
@@ -91,6 +92,7 @@ def _joint(old: JointState, new: JointState, within: Tolerance, say: Lengths) ->
 def _axes(
     subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: Lengths
 ) -> Iterator[Change]:
+    """The angle between two lines, and how far the new one is from where the old one was located."""
     if old is None or new is None:
         if old is not new:
             message = f"{what} is {'known now' if old is None else 'no longer known'}"

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from kinform.changes.behaviours import Axis, BodyMass, JointState, Snapshot, Vector
 from kinform.changes.change import Change
 from kinform.changes.comparison import Comparison, compare
+from kinform.changes.constants import DIRECTION_PLACES, GRAIN_SHARE, LENGTH_ERROR
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
@@ -36,9 +37,6 @@ ACCEPTED = Tolerance(length=1e-5, angle=math.radians(0.05), mass=1e-6, share=5e-
 FREE = "free"
 """The end of a range at which nothing stops the joint."""
 
-_PLACES = 6
-"""Decimals of directions."""
-
 
 @dataclass(frozen=True)
 class Lock:
@@ -57,7 +55,7 @@ def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
         raise ValueError("joints are not known")
     grain = _Grain(tolerance)
     masses = {body.name: body for body in behaviour.masses or ()}
-    found: dict[str, Any] = {
+    lock: dict[str, Any] = {
         "schema": SCHEMA,
         "assembly": behaviour.assembly,
         "tolerances": {
@@ -75,25 +73,27 @@ def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
         "joints": [_joint(joint, grain) for joint in behaviour.joints],
     }
     if behaviour.interferences is not None:
-        found["overlaps"] = [
+        lock["overlaps"] = [
             {"parts": list(parts), "depth_mm": grain.length(depth)} for parts, depth in behaviour.interferences
         ]
-    return _dumped(found) + "\n"
+    return _text(lock) + "\n"
 
 
 def read_lock(text: str, file: str) -> Lock:
     """The lock in a text; raises InputError, naming `file`, where it is none."""
     try:
-        found = json.loads(text)
-        if not isinstance(found, dict) or found.get("schema") != SCHEMA:
-            stated = found.get("schema") if isinstance(found, dict) else None
+        lock = json.loads(text)
+        if not isinstance(lock, dict) or lock.get("schema") != SCHEMA:
+            stated = lock.get("schema") if isinstance(lock, dict) else None
             raise ValueError(f"its schema is {stated!r}, not {SCHEMA!r}")
-        behaviour = _read(found)
+        behaviour = _read(lock)
         names = [name for name, _ in behaviour.bodies or ()] + [str(joint.name) for joint in behaviour.joints or ()]
-        return Lock(behaviour, _read_tolerance(found["tolerances"]), file, _lines(text, names))
+        return Lock(behaviour, _read_tolerance(lock["tolerances"]), file, _lines(text, names))
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        told = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
-        problem = Problem(f"this is no lock of kinform: {told}", file, None, "write it anew: kinform lock F.h5 -o FILE")
+        message = f"{error.args[0]!r} is missing" if isinstance(error, KeyError) else str(error)
+        problem = Problem(
+            f"this is no lock of kinform: {message}", file, None, "write it anew: kinform lock F.h5 -o FILE"
+        )
         raise InputError([problem]) from None
 
 
@@ -102,15 +102,14 @@ def with_lock(report: CheckReport, design: Design, lock: Lock) -> CheckReport:
     from kinform.changes.behaviours import snapshot
     from kinform.consistency import amended
 
-    found = compare(lock.behaviour, snapshot(design), lock.tolerance)
-    return amended(report, design, _outcome(found, lock))
+    return amended(report, design, _outcome(compare(lock.behaviour, snapshot(design), lock.tolerance), lock))
 
 
-def _outcome(found: Comparison, lock: Lock) -> Outcome:
+def _outcome(comparison: Comparison, lock: Lock) -> Outcome:
     from kinform.consistency import Outcome
 
-    findings = tuple(_finding(change, lock) for change in found.changes)
-    lacking = [what for what, why in found.missing if why.endswith("after")]
+    findings = tuple(_finding(change, lock) for change in comparison.changes)
+    lacking = [what for what, why in comparison.missing if why.endswith("after")]
     if lacking:
         return Outcome("inconclusive", findings, f"{', '.join(lacking)} of {lock.file} have not been computed")
     return Outcome("decided", findings)
@@ -131,18 +130,18 @@ class _Grain:
         self.tolerance = tolerance
 
     def length(self, metres: float) -> float:
-        return _rounded(1e3 * metres, 1e2 * self.tolerance.length)
+        return _rounded(1e3 * metres, GRAIN_SHARE * 1e3 * self.tolerance.length)
 
     def angle(self, radians: float) -> float:
-        return _rounded(math.degrees(radians), 0.1 * math.degrees(self.tolerance.angle))
+        return _rounded(math.degrees(radians), GRAIN_SHARE * math.degrees(self.tolerance.angle))
 
     def mass(self, kilograms: float) -> float:
-        grain = 0.1 * max(1e3 * self.tolerance.mass, self.tolerance.share * 1e3 * kilograms)
+        grain = GRAIN_SHARE * max(1e3 * self.tolerance.mass, self.tolerance.share * 1e3 * kilograms)
         return _rounded(1e3 * kilograms, grain)
 
     def moments(self, values: Sequence[float]) -> list[float]:
         """g·mm²."""
-        grain = 1e9 * 0.1 * self.tolerance.share * max(map(abs, values))
+        grain = 1e9 * GRAIN_SHARE * self.tolerance.share * max(map(abs, values))
         return [_rounded(1e9 * value, grain) for value in values]
 
     def place(self, point: Vector) -> list[float]:
@@ -153,8 +152,8 @@ def _rounded(value: float, grain: float) -> float:
     """The nearest decimal number as coarse as the grain allows; whole numbers as such."""
     if not math.isfinite(value) or grain <= 0.0:
         return value
-    found = round(value, -math.floor(math.log10(grain))) + 0.0
-    return int(found) if found == int(found) and abs(found) < 2**53 else found
+    decimal = round(value, -math.floor(math.log10(grain))) + 0.0
+    return int(decimal) if decimal == int(decimal) and abs(decimal) < 2**53 else decimal
 
 
 def _short(value: float) -> float:
@@ -171,26 +170,26 @@ def _mass(body: BodyMass, grain: _Grain) -> dict[str, Any]:
 
 
 def _joint(joint: JointState, grain: _Grain) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    row: dict[str, Any] = {
         "name": joint.name, "bodies": list(joint.bodies), "type": joint.type, "status": joint.status,
         "freedoms": joint.freedoms,
     }  # fmt: skip
     for name, axis in (("axis", joint.axis), ("axis2", joint.axis2)):
         if axis is not None:
-            found[name] = [round(x, _PLACES) + 0.0 for x in axis.direction]
+            row[name] = [round(x, DIRECTION_PLACES) + 0.0 for x in axis.direction]
     point = joint.centre if joint.axis is None or joint.axis.point is None else joint.axis.point
     if point is not None:
-        found["point_mm"] = grain.place(point)
+        row["point_mm"] = grain.place(point)
     if joint.pitch is not None:
-        found["pitch_mm"] = grain.length(joint.pitch)
+        row["pitch_mm"] = grain.length(joint.pitch)
     if joint.range_status != "unknown" or joint.range_lower is not None or joint.range_upper is not None:
         unit, say = ("mm", grain.length) if joint.slides else ("deg", grain.angle)
         limits = [x if x is None else FREE if math.isinf(x) else say(x) for x in (joint.range_lower, joint.range_upper)]
-        found["range"] = {"status": joint.range_status, unit: limits}
-    return found
+        row["range"] = {"status": joint.range_status, unit: limits}
+    return row
 
 
-def _dumped(value: Any) -> str:
+def _text(value: Any) -> str:
     """JSON with a line a body, a joint and an overlap."""
     lines = []
     for key, item in value.items():
@@ -205,27 +204,28 @@ def _dumped(value: Any) -> str:
 def _lines(text: str, names: Iterable[str]) -> dict[str, int]:
     """The first line (from 1) that names each of them, as the lock is written."""
     wanted = {f'"name": {json.dumps(name, ensure_ascii=False)}': name for name in names}
-    found: dict[str, int] = {}
+    lines: dict[str, int] = {}
     for number, line in enumerate(text.splitlines(), start=1):
         for start in re.findall(r'"name": "(?:[^"\\]|\\.)*"', line):
             if start in wanted:
-                found.setdefault(wanted[start], number)
-    return found
+                lines.setdefault(wanted[start], number)
+    return lines
 
 
-def _read(found: Mapping[str, Any]) -> Snapshot:
-    bodies, joints = found["bodies"], found["joints"]
+def _read(lock: Mapping[str, Any]) -> Snapshot:
+    """The behaviour in a lock, as far as a lock has it: no simulation, no findings."""
+    bodies, joints = lock["bodies"], lock["joints"]
     weighed = [body for body in bodies if "mass_g" in body]
     light = [body for body in bodies if "mass_g" not in body]
     if weighed and light:
         raise ValueError(f"body {light[0]['name']!r} has no mass_g, and others have")
-    overlaps = found.get("overlaps")
+    overlaps = lock.get("overlaps")
     return Snapshot(
-        assembly=str(found["assembly"]),
+        assembly=str(lock["assembly"]),
         bodies=tuple((str(body["name"]), tuple(map(str, body["parts"]))) for body in bodies),
-        ground=found["ground"],
+        ground=lock["ground"],
         joints=tuple(_read_joint(joint) for joint in joints),
-        mobility=tuple(found["mobility"].items()),
+        mobility=tuple(lock["mobility"].items()),
         masses=tuple(_read_mass(body) for body in weighed) if weighed else None,
         interferences=None
         if overlaps is None
@@ -258,6 +258,7 @@ def _read_tensor(values: Sequence[float] | None) -> tuple[float, ...] | None:
 
 
 def _read_joint(joint: Mapping[str, Any]) -> JointState:
+    """A joint of a lock; its point is that of its axis, or its centre where its axes meet there."""
     kind, axis = str(joint["type"]), _read_direction(joint.get("axis"))
     axis2 = _read_direction(joint.get("axis2"))
     point = _read_vector(joint.get("point_mm"), 1e-3)
@@ -284,23 +285,21 @@ def _read_joint(joint: Mapping[str, Any]) -> JointState:
 
 
 def _read_vector(values: Iterable[float] | None, scale: float) -> Vector | None:
-    return None if values is None else _vector(values, scale)
-
-
-def _vector(values: Iterable[float], scale: float) -> Vector:
+    if values is None:
+        return None
     x, y, z = (scale * float(value) for value in values)
     return (x, y, z)
 
 
 def _read_direction(values: Iterable[float] | None) -> Vector | None:
-    found = _read_vector(values, 1.0)
-    if found is not None and abs(math.hypot(*found) - 1.0) > 1e-3:
-        raise ValueError(f"the direction {list(found)} is not of length 1")
-    return found
+    direction = _read_vector(values, 1.0)
+    if direction is not None and abs(math.hypot(*direction) - 1.0) > LENGTH_ERROR:
+        raise ValueError(f"the direction {list(direction)} is not of length 1")
+    return direction
 
 
-def _read_tolerance(found: Mapping[str, Any]) -> Tolerance:
-    values = {key: float(found[key]) for key in ("length_mm", "angle_deg", "mass_g", "mass_percent")}
+def _read_tolerance(stated: Mapping[str, Any]) -> Tolerance:
+    values = {key: float(stated[key]) for key in ("length_mm", "angle_deg", "mass_g", "mass_percent")}
     for key, value in values.items():
         if not (math.isfinite(value) and value >= 0.0):
             raise ValueError(f"the tolerance {key} is {value:g}, and has to be a finite number from 0")

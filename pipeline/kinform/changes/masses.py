@@ -26,6 +26,7 @@ def mass_changes(
 
 
 def _mass(old: BodyMass, new: BodyMass, within: Tolerance, say: Lengths) -> Iterator[Change]:
+    """Mass, centre of mass and principal moments; the axes of inertia where the moments are the same."""
     subject = (new.name,)
     if (old.mass is None) != (new.mass is None):
         message = "mass is no longer known" if new.mass is None else "mass is known now"

@@ -34,7 +34,7 @@ class Tolerance:
     @staticmethod
     def of(stated: Iterable[str]) -> Tolerance:
         """From texts like "0.1mm", "0.05 deg", "1g", "0.5%"; ValueError for another."""
-        found = Tolerance()
+        tolerance = Tolerance()
         for text in stated:
             match = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(\D+?)\s*", text)
             unit = None if match is None else UNITS.get(match[2])
@@ -44,8 +44,8 @@ class Tolerance:
                 value = math.nan
             if unit is None or not (math.isfinite(value) and value >= 0.0):
                 raise ValueError(f"{text!r} is no tolerance: expected a number and one of {', '.join(UNITS)}")
-            found = replace(found, **{unit[0]: value * unit[1]})
-        return found
+            tolerance = replace(tolerance, **{unit[0]: value * unit[1]})
+        return tolerance
 
     def masses_agree(self, one: float, two: float) -> bool:
         """Whether two masses (kg) are the same."""

@@ -153,12 +153,12 @@ def _joint(package: _Package, link: Link, name: str) -> None:
         _ball(package, link, name, ball, q, 0.0 * v if equations.held.intersection(rates) else v)
         return
     parts: dict[str, str] = {}
-    given = equations.led | equations.held | _geared(equations)
+    determined = equations.led | equations.held | _geared(equations)
     for motion in link.motions:
         screw, k = motion.primitive, motion.coordinate
         assert isinstance(screw, OneFreedom)
         lead = float(screw.slide @ screw.omega)
-        parts[joint.kind.coordinates[k][0]] = _screw(screw, float(q[k]), float(v[k]), rates[k] not in given)
+        parts[joint.kind.coordinates[k][0]] = _screw(screw, float(q[k]), float(v[k]), rates[k] not in determined)
         if rates[k] in equations.held:
             at = name if joint.kind.rates == 1 else f"{name}.{_PART[kind][k]}"
             hold = f"{name}_held_{k + 1}"
@@ -184,11 +184,11 @@ _PART = {"cylindrical": ("turn", "slide"), "planar": ("turn", "u", "v"), "univer
 def _geared(equations: Equations) -> frozenset[int]:
     """Rates that gears give."""
     system = equations.model.system
-    given: set[int] = set()
+    geared: set[int] = set()
     for gear in equations.gears:
         rates = [equations.rates_of(system.joint_at(gear.name, port))[0] for port in ("a", "b")]
-        given.add(next((k for k in rates if k not in equations.led and k not in given), rates[0]))
-    return frozenset(given)
+        geared.add(next((k for k in rates if k not in equations.led and k not in geared), rates[0]))
+    return frozenset(geared)
 
 
 def _screw(screw: OneFreedom, q: float, v: float, known: bool) -> str:

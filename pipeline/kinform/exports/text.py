@@ -43,7 +43,7 @@ def _quoted(text: object) -> str:
 
 @cache
 def _environment() -> jinja2.Environment:
-    made = jinja2.Environment(
+    environment = jinja2.Environment(
         loader=jinja2.PackageLoader("kinform.exports", "templates"),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -51,8 +51,14 @@ def _environment() -> jinja2.Environment:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    made.filters |= {"number": number, "vector": vector, "xml": _attribute, "quoted": _quoted, "comment": comment}
-    return made
+    environment.filters |= {
+        "number": number,
+        "vector": vector,
+        "xml": _attribute,
+        "quoted": _quoted,
+        "comment": comment,
+    }
+    return environment
 
 
 def render(template: str, **values: Any) -> bytes:

@@ -7,16 +7,16 @@ speaks of it was left undecided, and what was found is what was asked for.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from kinform.consistency import Comparison, compare_joint
 from kinform.design import Design
 from kinform.foundation import words
-from kinform.model.findings import SEVERITIES
+from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
-from kinform.reports.page.phrases import axis, contact, joint_sentence, requirement_words
+from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words, requirement_words
 
 __all__ = ["MARKS", "Row", "rows"]
 
@@ -31,11 +31,11 @@ class Row:
     """One thing and what the three descriptions say of it; empty text: nothing."""
 
     name: str
-    form: str
-    behaviour: str
-    function: str
-    mark: str
-    findings: tuple[int, ...]
+    form: str = ""
+    behaviour: str = ""
+    function: str = ""
+    mark: str = ""
+    findings: tuple[int, ...] = ()
     """Positions in the report."""
 
     @property
@@ -72,12 +72,11 @@ class _Table:
             matched = {c.joint.name for c in compared.values() if c.joint is not None}
             for joint in wanted:
                 yield self._intended(joint, compared[joint.name])
-            for found in kinematics.joints:
-                if found.name not in matched:
-                    yield self._other(found)
+            yield from (self._other(joint) for joint in kinematics.joints if joint.name not in matched)
         else:
             for joint in wanted:
-                yield self._row(joint.name, "", "not derived yet", self._stated(joint), (joint.name,), False)
+                row = Row(joint.name, behaviour="not derived yet", function=self._stated(joint))
+                yield self._judged_by_name(row, {joint.name}, False)
         if self.design.simulation is not None and self.design.simulation.status != "not requested":
             yield self._motion()
         for requirement in sorted(self.design.assembly.function.requirements, key=lambda r: r.name):
@@ -88,124 +87,116 @@ class _Table:
         for k, finding in enumerate(self.findings):
             if k not in self.used and (finding.severity != "note" or finding.code in self.undecided):
                 of_form = finding.code < "KF300"
-                said = finding.found or finding.message
+                behaviour = finding.found or finding.message
                 mark = {"error": "disagrees", "warning": "doubtful", "note": "not decided"}[finding.severity]
                 name = ", ".join(finding.subject) or finding.rule
-                yield Row(name, said if of_form else "", "" if of_form else said, finding.intended or "", mark, (k,))
+                form, behaviour = (behaviour, "") if of_form else ("", behaviour)
+                yield Row(name, form, behaviour, finding.intended or "", mark, (k,))
 
     def _mobility(self, kinematics: Kinematics) -> Row:
         assembly, mobility = self.design.assembly, kinematics.mobility
         form = f"{words.counted(len(assembly.parts), 'part')}"
         if self.design.contacts is not None:
             form += f", {words.counted(len(self.design.contacts.patches), 'contact patch', 'contact patches')}"
-        found = f"{words.counted(len(kinematics.bodies), 'body', 'bodies')}, mobility {mobility.effective}"
-        idle = f" and {mobility.idle} idle" if mobility.idle else ""
-        finite = "" if mobility.finite in (None, mobility.instantaneous) else f"; only {mobility.finite} finite"
+        behaviour = f"{words.counted(len(kinematics.bodies), 'body', 'bodies')}, mobility {mobility.effective}"
+        behaviour += f" and {mobility.idle} idle" if mobility.idle else ""
+        if mobility.finite not in (None, mobility.instantaneous):
+            behaviour += f"; only {mobility.finite} finite"
         stated = assembly.function.mobility
-        codes = ("KF301", "KF302", "KF303", "KF304", "KF305", "KF306")
-        findings = [k for k, f in enumerate(self.findings) if f.code in codes]
-        mark = None if stated is None else stated == mobility.effective
-        function = "" if stated is None else f"mobility {stated}"
-        return self._made("mobility of the whole", form, found + idle + finite, function, findings, mark, "KF301")
+        row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
+        right = None if stated is None else stated == mobility.effective
+        return self._judged(row, lambda finding: finding.code[:4] == "KF30", right, "KF301")
 
     def _intended(self, joint: IntendedJoint, found: Comparison) -> Row:
-        patches = []
-        if found.joint is not None and self.design.contacts is not None:
-            patches = [self.design.contacts.patches[k] for k in found.joint.patches]
-        names = {joint.name} | ({found.joint.name} if found.joint is not None else set())
+        derived = found.joint
         if found.state == "one body":
             behaviour = f"one body ({found.reason})" if found.reason else "one body"
         elif found.state == "absent":
             behaviour = "no contact, no joint"
-        elif found.joint is not None:
-            behaviour = joint_sentence(found.joint, self.units) + self._status(found.joint)
+        elif derived is not None:
+            behaviour = self._derived(derived)
         else:
             behaviour = found.type + (f", through {', '.join(found.through)}" if found.through else "")
-        form = contact(patches, self.units)
-        settled = None if found.state in ("stated", "undecided") else found.right_type
-        function = self._stated(joint)
-        row = self._row(joint.name, form, behaviour, function, tuple(sorted(names)), settled)
-        if row.mark == "agrees" and found.joint is not None and found.joint.status == "ambiguous":
-            return Row(row.name, row.form, row.behaviour, row.function, "not decided", row.findings)
-        return row
+        right = None if found.state in ("stated", "undecided") else found.right_type
+        names = {joint.name} if derived is None else {joint.name, str(derived.name)}
+        row = Row(joint.name, self._form(derived), behaviour, self._stated(joint))
+        row = self._judged_by_name(row, names, right)
+        ambiguous = row.mark == "agrees" and derived is not None and derived.status == "ambiguous"
+        return replace(row, mark="not decided") if ambiguous else row
 
     def _other(self, joint: Joint) -> Row:
-        patches = [self.design.contacts.patches[k] for k in joint.patches] if self.design.contacts is not None else []
-        behaviour = joint_sentence(joint, self.units) + self._status(joint)
-        row = self._row(joint.name, contact(patches, self.units), behaviour, "", (joint.name,), None)
-        if row.mark == "not decided" and joint.status != "ambiguous":
-            return Row(row.name, row.form, row.behaviour, row.function, "not stated", row.findings)
-        return row
+        row = self._judged_by_name(Row(joint.name, self._form(joint), self._derived(joint)), {joint.name}, None)
+        unstated = row.mark == "not decided" and joint.status != "ambiguous"
+        return replace(row, mark="not stated") if unstated else row
 
     def _requirement(self, wanted: Requirement) -> Row:
         """What is asked for, and what was found where it does not hold."""
-        found = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
-        row = self._row(
-            wanted.name, "", "; ".join(found), requirement_words(self.design.assembly, wanted), (wanted.name,), True
-        )
+        values = [f.found for f in self.findings if wanted.name in f.subject and f.severity != "note" and f.found]
+        row = Row(wanted.name, "", "; ".join(values), requirement_words(self.design.assembly, wanted))
+        row = self._judged_by_name(row, {wanted.name}, True)
         return replace(row, behaviour="met") if row.mark == "agrees" else row
 
     def _motion(self) -> Row:
-        run = self.design.simulation
+        design, run = self.design, self.design.simulation
         assert run is not None
         drives = [
-            f"{d.joint}: {d.kind}" + (f" ({d.law.type})" if d.law else "") for d in self.design.assembly.function.drives
+            f"{d.joint}: {d.kind}" + (f" ({d.law.type})" if d.law else "") for d in design.assembly.function.drives
         ]
-        codes = ("KF409", "KF410", "KF501", "KF502", "KF503", "KF504")
-        findings = [k for k, f in enumerate(self.findings) if f.code in codes or f.code[:3] == "KF5"]
         level = f"{run.level} simulation " if run.level else "simulation "
         text = f"{level}{run.status}" + (f": {run.reason}" if run.reason else "")
-        known = None if self.design.mass is None else sum(part.mass is not None for part in self.design.mass.parts)
-        form = "" if known is None else f"masses of {known} of {len(self.design.assembly.parts)} parts"
-        mark = (run.status == "done") or None
-        return self._made("motion", form, text, "; ".join(drives), findings, mark if drives else None, "KF501")
+        form = ""
+        if design.mass is not None:
+            weighed = sum(part.mass is not None for part in design.mass.parts)
+            form = f"masses of {weighed} of {len(design.assembly.parts)} parts"
+        right = True if drives and run.status == "done" else None
+        of_motion = lambda finding: finding.code in ("KF409", "KF410") or finding.code[:3] == "KF5"
+        return self._judged(Row("motion", form, text, "; ".join(drives)), of_motion, right, "KF501")
 
-    def _row(
-        self, name: str, form: str, behaviour: str, function: str, names: tuple[str, ...], right: bool | None
-    ) -> Row:
-        findings = [k for k, f in enumerate(self.findings) if set(f.subject) & set(names)]
-        return self._made(name, form, behaviour, function, findings, right, None)
+    def _judged_by_name(self, row: Row, names: set[str], right: bool | None) -> Row:
+        """The row with the findings about any of the names."""
+        return self._judged(row, lambda finding: not names.isdisjoint(finding.subject), right)
 
-    def _made(
-        self,
-        name: str,
-        form: str,
-        behaviour: str,
-        function: str,
-        findings: list[int],
-        right: bool | None,
-        rule: str | None,
-    ) -> Row:
-        """`right`: what was found is what was asked for; None: there is nothing to compare, or no answer."""
+    def _judged(self, row: Row, about: Callable[[Finding], bool], right: bool | None, rule: str = "") -> Row:
+        """The row with its findings and its mark.
+
+        `right`: what was found is what was asked for; None: there is nothing to compare, or no answer. `rule` is the code
+        of the rule that decides.
+        """
+        findings = [k for k, finding in enumerate(self.findings) if about(finding)]
         self.used.update(findings)
-        serious = [k for k in findings if self.findings[k].severity != "note"]
-        worst = max((SEVERITIES.index(self.findings[k].severity) for k in serious), default=0)
-        open_rule = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
-        if serious:
-            mark = "disagrees" if SEVERITIES[worst] == "error" else "doubtful"
+        severities = {self.findings[k].severity for k in findings}
+        undecided = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)
+        if severities - {"note"}:
+            mark = "disagrees" if "error" in severities else "doubtful"
         elif self.design.report is None:
-            mark = "not checked" if function else "not stated"
-        elif open_rule:
+            mark = "not checked" if row.function else "not stated"
+        elif undecided:
             mark = "not decided"
-        elif not function:
+        elif not row.function:
             mark = "not stated"
         else:
             mark = "agrees" if right else "not decided"
-        return Row(name, form, behaviour, function, mark, tuple(findings))
+        return replace(row, mark=mark, findings=tuple(findings))
 
-    def _status(self, joint: Joint) -> str:
-        return "" if joint.status == "determined" else f" ({joint.status})"
+    def _form(self, joint: Joint | None) -> str:
+        """The contact behind a joint."""
+        contacts = self.design.contacts
+        return (
+            ""
+            if joint is None or contacts is None
+            else contact([contacts.patches[k] for k in joint.patches], self.units)
+        )
+
+    def _derived(self, joint: Joint) -> str:
+        return joint_sentence(joint, self.units) + ("" if joint.status == "determined" else f" ({joint.status})")
 
     def _stated(self, joint: IntendedJoint) -> str:
-        text = joint.type
-        if joint.axis is not None:
-            text += f" {'along' if joint.type == 'prismatic' else 'normal to' if joint.type == 'planar' else 'about'} "
-            text += axis(joint.axis) + (f" and {axis(joint.axis2)}" if joint.axis2 is not None else "")
-        if joint.point is not None and joint.type not in ("prismatic", "planar", "fixed"):
-            text += f" through {words.place(joint.point, self.units)}"
-        if joint.range is not None:
-            text += f", range {_limits(joint, self.units)}"
-        return text
+        text = (
+            joint.type
+            + axis_words(joint.type, joint.axis, joint.axis2)
+            + point_words(joint.type, joint.point, self.units)
+        )
+        return text if joint.range is None else f"{text}, range {_limits(joint, self.units)}"
 
 
 def _limits(joint: IntendedJoint, units: str) -> str:

@@ -139,6 +139,7 @@ def _finding(finding: Finding, focus: Focus) -> dict[str, Any]:
 
 
 def _movement(scene: Scene, blob: Blob, movement: Movement) -> dict[str, Any]:
+    """A movement as the viewer takes it: marks by time, poses as columns of the blob."""
     number: dict[str, int] = {body.name: k for k, body in enumerate(scene.bodies)}
     scale, unit = _shown(scene, movement)
     return {

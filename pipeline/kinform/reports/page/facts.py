@@ -4,13 +4,13 @@ assumptions, rules."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kinform.consistency import explain
 from kinform.design import Design
 from kinform.foundation import words
-from kinform.model.collisions import JointRange, RangeEnd
-from kinform.model.findings import SEVERITIES
+from kinform.model.collisions import RangeEnd
+from kinform.model.findings import SEVERITIES, RuleOutcome
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import MOST_LISTED_PATCHES
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
@@ -18,7 +18,7 @@ from kinform.reports.page.subjects import wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
 __all__ = [
-    "Assumed", "FindingFacts", "JointFacts", "RuleFacts", "Verdict", "assumptions", "findings", "joints", "rules",
+    "Assumed", "FindingFacts", "JointFacts", "Verdict", "assumptions", "findings", "joints", "rules",
     "verdict_of",
 ]  # fmt: skip
 
@@ -81,16 +81,6 @@ class Assumed:
     what: str
 
 
-@dataclass(frozen=True)
-class RuleFacts:
-    """One rule and what became of it."""
-
-    code: str
-    rule: str
-    outcome: str
-    reason: str
-
-
 def verdict_of(design: Design) -> Verdict:
     """Of a design; without findings in the file it is not verified."""
     if design.report is None:
@@ -147,9 +137,12 @@ def joints(design: Design) -> list[JointFacts]:
 
 
 def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> JointFacts:
+    """A joint with its contact, what its singular values say, its range, and what holds it or is in its way."""
     units = design.assembly.units
-    found = () if design.contacts is None else design.contacts.patches
-    carried = sorted((found[k] for k in joint.patches if k < len(found)), key=lambda p: (-p.area, p.parts, p.surfaces))
+    patches = () if design.contacts is None else design.contacts.patches
+    carried = sorted(
+        (patches[k] for k in joint.patches if k < len(patches)), key=lambda p: (-p.area, p.parts, p.surfaces)
+    )
     listed = tuple(f"{' and '.join(p.parts)}: {patch_words(p, units)}" for p in carried[:MOST_LISTED_PATCHES])
     facts = [("between", " and ".join(joint.bodies)), ("evidence", ", ".join(joint.evidence) or "none")]
     values = [float(v) for v in joint.singular_values if math.isfinite(v)]
@@ -179,22 +172,22 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
 
 def _range(design: Design, joint: Joint) -> str:
     """How far the joint goes to both sides, and what stops it there."""
-    found = () if design.simulation is None else design.simulation.ranges or ()
-    known = next((item for item in found if item.joint == joint.name), None)
-    if known is None:
+    ranges = () if design.simulation is None else design.simulation.ranges or ()
+    computed = next((item for item in ranges if item.joint == joint.name), None)
+    if computed is None:
         return "not looked for"
-    if known.status == "unbounded":
+    if computed.status == "unbounded":
         return "unbounded: nothing stops it"
-    sides = [f"{side}: {_end(known, end, design)}" for side, end in (("lower", known.lower), ("upper", known.upper))]
-    return "; ".join(sides)
+    ends = (("lower", computed.lower), ("upper", computed.upper))
+    return "; ".join(f"{side}: {_end(computed.slides, end, design.assembly.units)}" for side, end in ends)
 
 
-def _end(known: JointRange, end: RangeEnd, design: Design) -> str:
+def _end(slides: bool, end: RangeEnd, units: str) -> str:
     if end.status == "unknown":
         return f"not known, {end.reason}" if end.reason else "not known"
     if end.value is None or not math.isfinite(end.value):
         return "nothing stops it"
-    value = words.length(end.value, design.assembly.units) if known.slides else words.angle(end.value, 4)
+    value = words.length(end.value, units) if slides else words.angle(end.value, 4)
     stopped = f"{' and '.join(end.parts)} meet" if end.parts else end.reason
     return f"{value} ({stopped})" if stopped else value
 
@@ -228,9 +221,9 @@ def assumptions(design: Design) -> list[Assumed]:
     return out
 
 
-def rules(design: Design) -> list[RuleFacts]:
-    """All rules: what could not be decided first, then what failed, passed, was skipped."""
+def rules(design: Design) -> list[RuleOutcome]:
+    """All rules, their names in words: what could not be decided first, then what failed, passed, was skipped."""
     order = ("inconclusive", "failed", "passed", "skipped")
-    found = [] if design.report is None else design.report.rules
-    listed = [RuleFacts(r.code, r.rule.replace("-", " "), r.outcome, r.reason) for r in found]
-    return sorted(listed, key=lambda r: order.index(r.outcome))
+    outcomes = [] if design.report is None else design.report.rules
+    spelt = [replace(rule, rule=rule.rule.replace("-", " ")) for rule in outcomes]
+    return sorted(spelt, key=lambda rule: order.index(rule.outcome))

@@ -170,9 +170,9 @@ class _Linkage:
             reach = self._reach(rates, turns, end)
             many = max(SIDE_FRAMES, int(np.ceil(reach / FINEST_TURN))) if turns else SIDE_FRAMES
             steps = np.linspace(0.0, 1.0, many + 1)
-            found, why = self._followed(rates, driver, sign * reach * steps)
+            followed, why = self._followed(rates, driver, sign * reach * steps)
             note = note or why
-            poses.append(found)
+            poses.append(followed)
             shares.append(sign * steps)
             ends.append(sign * reach)
         every = np.concatenate([poses[0][:0:-1], poses[1]])

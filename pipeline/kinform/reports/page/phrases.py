@@ -12,7 +12,16 @@ from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import LEAST_GAP
 
-__all__ = ["assumption", "axis", "contact", "joint_sentence", "patch_words", "requirement_words"]
+__all__ = [
+    "assumption",
+    "axis",
+    "axis_words",
+    "contact",
+    "joint_sentence",
+    "patch_words",
+    "point_words",
+    "requirement_words",
+]
 
 ANGLES = ("half_angle", "angle_tolerance")
 LENGTHS = ("tolerance", "distance")
@@ -31,12 +40,9 @@ HIDDEN = ("rows", "X_WF")
 def axis(direction: Iterable[float]) -> str:
     """x, -z, or the components."""
     values = [round(float(v), 4) + 0.0 for v in direction]
-    for name, place in (("x", 0), ("y", 1), ("z", 2)):
-        unit = [0.0, 0.0, 0.0]
-        for sign, text in ((1.0, name), (-1.0, "-" + name)):
-            unit[place] = sign
-            if values == unit:
-                return text
+    for k, name in enumerate("xyz"):
+        if abs(values[k]) == 1.0 and values.count(0.0) == 2:
+            return name if values[k] > 0.0 else f"-{name}"
     return "(" + ", ".join(f"{v:g}" for v in values) + ")"
 
 
@@ -45,16 +51,26 @@ def joint_sentence(joint: Joint, units: str) -> str:
     if joint.type == "general":
         return f"general, {words.counted(joint.freedoms, 'freedom')}"
     text = joint.type
-    if joint.axis is not None and joint.type != "fixed":
-        text += f" {'along' if joint.type == 'prismatic' else 'normal to' if joint.type == 'planar' else 'about'} "
-        text += axis(joint.axis)
-        if joint.axis2 is not None:
-            text += f" and {axis(joint.axis2)}"
+    if joint.type != "fixed":
+        text += axis_words(joint.type, joint.axis, joint.axis2)
     if joint.pitch is not None:
         text += f", {words.length(joint.pitch, units)} a turn"
-    if joint.point is not None and joint.type not in ("fixed", "prismatic", "planar"):
-        text += f" through {words.place(joint.point, units)}"
-    return text
+    return text + point_words(joint.type, joint.point, units)
+
+
+def axis_words(type: str, first: Iterable[float] | None, second: Iterable[float] | None) -> str:
+    """ " about z and x": the axes of a joint of this type; empty without them."""
+    if first is None:
+        return ""
+    how = {"prismatic": "along", "planar": "normal to"}.get(type, "about")
+    return f" {how} {axis(first)}" + ("" if second is None else f" and {axis(second)}")
+
+
+def point_words(type: str, point: Iterable[float] | None, units: str) -> str:
+    """ " through (0, 0, 21) mm": the point (m) of a joint of this type; empty where it means nothing."""
+    if point is None or type in ("fixed", "prismatic", "planar"):
+        return ""
+    return f" through {words.place(point, units)}"
 
 
 def patch_words(patch: Patch, units: str) -> str:
@@ -93,6 +109,7 @@ def requirement_words(assembly: Assembly, requirement: Requirement) -> str:
 
 
 def _value_words(assembly: Assembly, requirement: Requirement, key: str, value: Any) -> str:
+    """A value of a requirement with its unit, by what its key measures."""
     units = assembly.units
     if isinstance(value, dict):
         kind = f"{value['type']} " if "type" in value else ""

@@ -135,22 +135,22 @@ class Artist:
                     (1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP_COLOUR), strict=True)
                 )  # type: ignore[assignment]
             away = (moved or {}).get(self.scene.bodies[body].name)
-            known = self.known.get(part.name) if away is None else None
-            if known is None:
+            item = self.known.get(part.name) if away is None else None
+            if item is None:
                 health = part.mesh.health
                 closed = health.watertight and health.consistent_winding and health.volume > 0.0
                 pose = part.X_WP if away is None else away @ part.X_WP
-                known = _item(self.scene.shapes[part.mesh.digest], pose, colour, closed)
+                item = _item(self.scene.shapes[part.mesh.digest], pose, colour, closed)
                 if away is None:
-                    self.known[part.name] = known
-            out.append(replace(known, colour=colour))
+                    self.known[part.name] = item
+            out.append(replace(item, colour=colour))
         return out
 
     def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
-        found = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
+        overlaps = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
         return [
             _item(shape, np.eye(4), rgb(OVERLAP_COLOUR), False)
-            for item, shape in zip(found, self.scene.overlaps, strict=True)
+            for item, shape in zip(overlaps, self.scene.overlaps, strict=True)
             if shape is not None and len(shape.faces) and wanted(item.parts)
         ]
 
@@ -224,8 +224,8 @@ def _shade(image: Array, buffers: Buffers, corners: Array, faces: Ints, normals:
         row, column = np.divmod(pixel, width)
         facet = buffers.facet.ravel()[pixel]
         weights = _weights(corners, facet, column + 0.5, row + 0.5)
-        own = faces[facet].T
-        normal = np.array([sum(w * axis[k] for w, k in zip(weights, own, strict=True)) for axis in normals])
+        vertices = faces[facet].T
+        normal = np.array([sum(w * axis[k] for w, k in zip(weights, vertices, strict=True)) for axis in normals])
         normal /= np.maximum(np.sqrt(_dot(normal, normal)), 1e-300)
         normal *= np.where(normal[2] < 0.0, -1.0, 1.0)
         light = _light(normal)

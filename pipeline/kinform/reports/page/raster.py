@@ -66,11 +66,21 @@ def view_of(seen: Array, width: int, height: int, margin: float = VIEW_MARGIN) -
     return View(0.5 * (low + high), float(scale), width, height)
 
 
+@dataclass(frozen=True, eq=False)
+class _DepthBuffer:
+    """Of each pixel what is in front: how far away it is in the higher half of the number, the facet in the lower."""
+
+    keys: NDArray[np.uint64]
+    low: float
+    reach: float
+    """m: nearness of the furthest corner, and from there to the nearest."""
+
+
 def rasterise(view: View, corners: Array) -> Buffers:
     """What is in front at each pixel, of facets (t, 3, 3) given as `view.project` gives their corners."""
-    depth = np.full(view.width * view.height, NOTHING)
     low = float(corners[..., 2].min(initial=0.0))
     reach = max(float(corners[..., 2].max(initial=1.0)) - low, 1e-300)
+    buffer = _DepthBuffer(np.full(view.width * view.height, NOTHING), low, reach)
     rows = _rows(view, corners)
     begin = 0
     lengths = np.maximum(rows.last - rows.first + 1, 0)
@@ -78,10 +88,10 @@ def rasterise(view: View, corners: Array) -> Buffers:
     while begin < len(lengths):
         done = int(ends[begin - 1]) if begin else 0
         stop = max(begin + 1, int(np.searchsorted(ends, done + PORTION)))
-        _fill(view, corners, rows, lengths, slice(begin, stop), depth, low, reach)
+        _fill(view, corners, rows, lengths, slice(begin, stop), buffer)
         begin = stop
-    facet = np.where(depth == NOTHING, -1, (depth & np.uint64(0xFFFFFFFF)).astype(np.int64))
-    near = low + reach * (1.0 - (depth >> np.uint64(32)).astype(np.float64) / 0xFFFFFFFE)
+    facet = np.where(buffer.keys == NOTHING, -1, (buffer.keys & np.uint64(0xFFFFFFFF)).astype(np.int64))
+    near = low + reach * (1.0 - (buffer.keys >> np.uint64(32)).astype(np.float64) / 0xFFFFFFFE)
     return Buffers(facet.reshape(view.height, view.width), near.reshape(view.height, view.width))
 
 
@@ -96,6 +106,7 @@ class _Rows:
 
 
 def _rows(view: View, corners: Array) -> _Rows:
+    """The middles of pixels within each facet, row by row, between the crossings of its edges with the row."""
     top = np.clip(np.ceil(_least(corners[..., 1]) - 0.5), 0, view.height).astype(np.int64)
     bottom = np.clip(np.floor(-_least(-corners[..., 1]) - 0.5), -1, view.height - 1).astype(np.int64)
     count = np.maximum(bottom - top + 1, 0)
@@ -125,16 +136,8 @@ def _least(values: Array) -> Array:
     return np.asarray(np.minimum(np.minimum(values[:, 0], values[:, 1]), values[:, 2]))
 
 
-def _fill(
-    view: View,
-    corners: Array,
-    rows: _Rows,
-    lengths: Ints,
-    part: slice,
-    depth: NDArray[np.uint64],
-    low: float,
-    reach: float,
-) -> None:
+def _fill(view: View, corners: Array, rows: _Rows, lengths: Ints, part: slice, buffer: _DepthBuffer) -> None:
+    """The pixels of some of the rows, each with its depth in the plane of its facet."""
     facet, count = rows.facet[part], lengths[part]
     start = np.cumsum(count) - count
     column = np.arange(int(count.sum())) - np.repeat(start - rows.first[part], count)
@@ -146,9 +149,9 @@ def _fill(
     slope_y = (v[:, 2] * u[:, 0] - u[:, 2] * v[:, 0]) / area
     base = a[:, 2] + slope_y * (rows.row[part] + 0.5 - a[:, 1]) - slope_x * (a[:, 0] - 0.5)
     near = np.repeat(base, count) + np.repeat(slope_x, count) * column
-    far = np.clip((1.0 - (near - low) / reach), 0.0, 1.0)
+    far = np.clip((1.0 - (near - buffer.low) / buffer.reach), 0.0, 1.0)
     key = (far * 0xFFFFFFFE).astype(np.uint64) << np.uint64(32) | np.repeat(facet, count).astype(np.uint64)
-    np.minimum.at(depth, np.repeat(rows.row[part] * view.width, count) + column, key)
+    np.minimum.at(buffer.keys, np.repeat(rows.row[part] * view.width, count) + column, key)
 
 
 def png(pixels: NDArray[np.uint8]) -> bytes:
