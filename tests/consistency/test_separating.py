@@ -7,7 +7,7 @@ import pytest
 from support.solids import block, save
 
 from kinform import stages
-from kinform.statics.carrying import missing, wrenches_at
+from kinform.statics.carrying import pushes_at, uncarried
 
 BLOCK = 0.04
 """m: edge of a cube that stands on a table; its mass is 0.5 kg."""
@@ -87,15 +87,17 @@ def test_a_cube_tips_when_its_weight_would_stand_beyond_its_edge(tmp_path, offse
 def test_what_cannot_be_carried_is_told_whole():
     corners = np.array([[x, y, 0.0] for x in (-1, 1) for y in (-1, 1)])
     up = np.tile([0.0, 0, 1], (4, 1))
-    pushes = wrenches_at(corners, up, np.zeros(3), 1.0)
+    pushes = pushes_at(corners, up, np.zeros(3), 1.0)
     none = np.zeros((0, 6))
     for wrench in ([0, 0, 0, 0, 0, 3.0], [2.9, 0, 0, 0, 0, 3.0], [1.4, -1.4, 0, 0, 0, 3.0]):
-        assert np.linalg.norm(missing(pushes, none, np.array(wrench))) < 1e-12
-    np.testing.assert_allclose(missing(pushes, none, np.array([0, 0, 0, 0, 0, -3.0])), [0, 0, 0, 0, 0, -3], atol=1e-12)
+        assert np.linalg.norm(uncarried(pushes, none, np.array(wrench))) < 1e-12
+    np.testing.assert_allclose(
+        uncarried(pushes, none, np.array([0, 0, 0, 0, 0, -3.0])), [0, 0, 0, 0, 0, -3], atol=1e-12
+    )
     sideways = np.array([0, 0, 0, 2.0, 0, 3.0])
-    np.testing.assert_allclose(missing(pushes, none, sideways), [0, 0, 0, 2, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(uncarried(pushes, none, sideways), [0, 0, 0, 2, 0, 0], atol=1e-12)
     given = np.array([[0, 0, 0, 1.0, 0, 0]])
-    assert np.linalg.norm(missing(pushes, given, sideways)) < 1e-12
+    assert np.linalg.norm(uncarried(pushes, given, sideways)) < 1e-12
 
 
 def carriage(folder, amplitude):

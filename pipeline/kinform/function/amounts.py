@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.inertias import add_inertias
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.mass import MassReport
 
@@ -29,31 +31,27 @@ class Amount:
 
     def about(self, axis: Array, point: Array | None) -> float:
         """Moment of inertia (kg·m²) about the unit axis through the point (m), or through the centre."""
-        own = float(axis @ self.inertia @ axis)
+        about_centre = float(axis @ self.inertia @ axis)
         if point is None:
-            return own
-        return own + self.mass * self.distance(axis, point) ** 2
+            return about_centre
+        return about_centre + self.mass * self.distance(axis, point) ** 2
 
     def distance(self, axis: Array, point: Array) -> float:
         """Distance (m) of the centre of mass from a line."""
-        return float(np.linalg.norm(np.cross(axis, self.centre - point)))
+        return float(np.linalg.norm(cross(axis, self.centre - point)))
 
 
 def amount_of(report: MassReport, parts: Sequence[str]) -> Amount | str:
     """The parts together by the parallel axis theorem; a sentence where a mass is not known."""
-    found = {p.name: p for p in report.parts}
-    chosen = [found[name] for name in sorted(parts)]
+    by_name = {p.name: p for p in report.parts}
+    chosen = [by_name[name] for name in sorted(parts)]
     for part in chosen:
         if part.mass is None:
             return f"the mass of '{part.name}' is not known: {part.reason}"
     masses = [part.mass or 0.0 for part in chosen]
-    whole = math.fsum(masses)
-    if not whole > 0.0:
+    if not math.fsum(masses) > 0.0:
         return "the mass is zero"
-    centre = np.sum([m * p.centre_of_mass for m, p in zip(masses, chosen, strict=True)], axis=0) / whole
-    inertia = np.zeros((3, 3))
-    for m, part in zip(masses, chosen, strict=True):
-        d = part.centre_of_mass - centre
-        inertia += part.inertia + m * (d @ d * np.eye(3) - np.outer(d, d))
+    centres = np.array([part.centre_of_mass for part in chosen])
+    whole, centre, inertia = add_inertias(masses, centres, [part.inertia for part in chosen])
     bound = math.fsum(m * p.mass_bound for m, p in zip(masses, chosen, strict=True)) / whole
     return Amount(whole, centre, inertia, bound)

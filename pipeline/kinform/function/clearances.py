@@ -3,7 +3,9 @@
 Mating surfaces touch or nearly do wherever the pair is, and so do the edges beside them. A surface that mates counts
 against all of the other part but the surfaces that it mates with, those that border on these, and those that it is
 within the contact tolerance of at the pose of the meshes. Of the other facets, pairs are left out that are both within
-that of the other part there. Each facet that is near there still meets all that is not. Where two parts overlap beyond their mating surfaces nothing else is left out. A part that lies wholly inside another is not told from one outside: surfaces are compared, not solids.
+that of the other part there. Each facet that is near there still meets all that is not. Where two parts overlap beyond
+their mating surfaces nothing else is left out. A part that lies wholly inside another is not told from one outside:
+surfaces are compared, not solids.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy as np
 
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
+from kinform.function.constants import GRID
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
@@ -23,7 +26,7 @@ from kinform.model.surfaces import MeshSurfaces
 
 __all__ = ["Apart", "Nearest", "apart"]
 
-_GRID = np.array([[i, j, 8 - i - j] for i in range(9) for j in range(9 - i)]) / 8.0
+_GRID = np.array([[i, j, GRID - i - j] for i in range(GRID + 1) for j in range(GRID + 1 - i)]) / GRID
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +96,7 @@ class Apart:
                 return Nearest(low, names, best.place)
             distance, facets = _distance(a, pair.first.X_WP, b, X_second)
             if distance < best.distance:
-                place = _between(_placed(a, facets[0], pair.first.X_WP), _placed(b, facets[1], X_second))
+                place = _between(_corners_at(a, facets[0], pair.first.X_WP), _corners_at(b, facets[1], X_second))
                 best = Nearest(distance, names, place)
         return best
 
@@ -106,7 +109,7 @@ def apart(
     second: Sequence[str],
 ) -> Apart | None:
     """The two groups of parts, as far as they have meshes; None where one has none."""
-    sides = [[p for p in assembly.parts if p.name in names and _meshed(p)] for names in (first, second)]
+    sides = [[p for p in assembly.parts if p.name in names and _has_facets(p)] for names in (first, second)]
     if not sides[0] or not sides[1]:
         return None
     shared: dict[tuple[str, bytes], _Side] = {}
@@ -118,7 +121,7 @@ def apart(
     return Apart(pairs, centre, float(np.linalg.norm(points - centre, axis=1).max()), size)
 
 
-def _meshed(part: Part) -> bool:
+def _has_facets(part: Part) -> bool:
     return part.mesh is not None and len(part.mesh.faces) > 0
 
 
@@ -158,7 +161,8 @@ def _pair(
 def _mating(
     a: Part, b: Part, surfaces: Mapping[str, MeshSurfaces], paired: Sequence[tuple[int, int]], tolerance: float
 ) -> list[tuple[Flags, Flags]]:
-    """Facets of each surface of `a` that mates (`paired` with one of `b`), and those of `b` that are nothing to its mates."""
+    """Facets of each surface of `a` that mates (`paired` with one of `b`), and those of `b` that are nothing to its
+    mates."""
     assert a.mesh is not None
     assert b.mesh is not None
     own, other = surfaces.get(a.mesh.digest), surfaces.get(b.mesh.digest)
@@ -260,7 +264,7 @@ def _distance(a: _Side, X_a: Array, b: _Side, X_b: Array) -> tuple[float, tuple[
     return distance, (facets[0], facets[1])
 
 
-def _placed(side: _Side, facet: int, X: Array) -> Array:
+def _corners_at(side: _Side, facet: int, X: Array) -> Array:
     return np.asarray(side.triangles[facet] @ X[:3, :3].T + X[:3, 3])
 
 

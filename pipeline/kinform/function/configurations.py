@@ -13,21 +13,27 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinform.foundation.algebra.screws import Frame
+from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
+from kinform.function.constants import (
+    BODY_MOVES,
+    CLOSING_STEP,
+    CLOSING_STEPS,
+    DEPENDENT,
+    LEAST_SIZE,
+    LOOPS_CLOSED,
+    RATE_MOVES,
+    SOLVED,
+)
 from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 
 __all__ = ["Chain", "Coordinate", "chain_between", "close", "mechanism_of"]
-
-
-CLOSED = 1e-9
-"""Residual (rad, share of the size) at which loops count as closed."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,12 @@ class Chain:
     @property
     def freedoms(self) -> int:
         """Freedoms of first order in the pose of the meshes."""
-        values = np.linalg.svd(self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0], compute_uv=False)
-        return len(self.coordinates) - int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
+        return len(null_space(self._rows, DEPENDENT))
+
+    @property
+    def _rows(self) -> Array:
+        """(6 loops + ties, n) Jacobian of the loops in the pose of the meshes."""
+        return np.asarray(self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0])
 
     @property
     def lower(self) -> Array:
@@ -84,15 +94,12 @@ class Chain:
     def undetermined(self, body: str) -> tuple[str, ...]:
         """Joints without a known range that can move the body, in the pose of the meshes, while all joints with one
         stand still."""
-        rows = self.system.close(np.zeros((1, len(self.coordinates)))).jacobian[0]
         held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
-        _, values, right = np.linalg.svd(np.concatenate([rows, held]))
-        rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
         tip = self.system.reach[self.index(body)]
         moved = [
-            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > 1e-6]
-            for loose in right[rank:]
-            if np.abs((tip * loose) @ self.system.screws).max() > 1e-9
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
+            for loose in null_space(np.concatenate([self._rows, held]), DEPENDENT)
+            if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
 
@@ -149,6 +156,7 @@ def mechanism_of(assembly: Assembly, kinematics: Kinematics) -> Chain | str:
 
 
 def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], root: str, prefer: str) -> Chain | str:
+    """The chain of these joints, or why it has no poses; what gears tie are coordinates with a fixed ratio."""
     teeth = {coupling.through: coupling for coupling in kinematics.couplings if coupling.meshing is not None}
     for joint in joints:
         if joint.status == "ambiguous":
@@ -174,7 +182,7 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
 
 
 def _size(assembly: Assembly) -> float:
-    return max([0.05, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
+    return max([LEAST_SIZE, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
 
 
 def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> list[Coordinate]:
@@ -206,17 +214,17 @@ def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str
     return out
 
 
-def close(chain: Chain, q: Array, held: NDArray[np.bool_]) -> Array | None:
+def close(chain: Chain, q: Array, held: Flags) -> Array | None:
     """The closed configuration (n,) near q that leaves the `held` coordinates as they are; None where Newton's
     steps of least size find none."""
     q = q.copy()
     free = ~held
-    for _ in range(40):
+    for _ in range(CLOSING_STEPS):
         state = chain.system.close(q[None])
         residual = state.residual[0]
-        if float(np.abs(residual).max(initial=0.0)) < CLOSED:
+        if float(np.abs(residual).max(initial=0.0)) < LOOPS_CLOSED:
             return q
-        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=1e-9)[0]
+        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=SOLVED)[0]
         size = float(np.abs(step).max(initial=0.0))
-        q[free] += step * min(1.0, 0.3 / max(size, 1e-300))
+        q[free] += step * min(1.0, CLOSING_STEP / max(size, 1e-300))
     return None

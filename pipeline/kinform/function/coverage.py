@@ -13,25 +13,35 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra.subspaces import null_space
+from kinform.foundation.algebra.vectors import cross
 from kinform.function.configurations import Chain, close
-from kinform.model.arrays import Array
+from kinform.function.constants import (
+    AGAIN,
+    APPROACH_STEP,
+    AT_BOUND,
+    DAMPING,
+    DAMPING_BETTER,
+    DAMPING_RANGE,
+    DAMPING_STUCK,
+    DAMPING_WORSE,
+    DEPENDENT,
+    FAR,
+    RANGE_ROUNDING,
+    SAMPLES,
+    STARTS,
+    STARTS_AGAIN,
+    STIFF,
+    TARGET_CLOSED,
+    TOGETHER,
+    TURNS,
+    WALK,
+    WALK_STEP,
+    WALK_TRIES,
+)
+from kinform.model.arrays import Array, Flags
 
 __all__ = ["Coverage", "cover"]
-
-
-SAMPLES = 4000
-WALK = 600
-"""Configurations in the box of ranges, and along closed loops."""
-STARTS = 6
-"""Samples from which each target is approached."""
-AGAIN, MORE = 40, 48
-"""How many of the farthest targets are approached again, and from how many samples."""
-TURNS = 60
-CLOSED = 1e-8
-FAR = 1.0
-"""Loops may close in several ways: what is farther (rad, or sizes) from all that the walk came through is not counted."""
-STIFF = 10.0
-"""Weight of a loop that is open beside a target that is missed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,34 +61,34 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
     Those of the farthest targets that stay beyond `near` (m or rad) are approached again from many more samples.
     """
     tip = chain.index(body)
-    own = carried if directions else chain.local(carried)
+    image_of = carried if directions else chain.local(carried)
     aims = targets if directions else chain.local(targets)
     enough = near if directions else near / chain.frame.length
     q = _sampled(chain)
-    images = _images(chain, tip, own, q, directions)
+    images = _images(chain, tip, image_of, q, directions)
     # a sample itself is an answer too
     gaps = _distance(images[:, None], aims[None], directions)
     first = gaps.argmin(axis=0)
     best, where = gaps[first, np.arange(len(aims))], images[first]
 
     def attempt(which: NDArray[np.intp], starts: int) -> None:
-        size = max(1, 400 // starts)
+        size = max(1, TOGETHER // starts)
         for chunk in (which[k : k + size] for k in range(0, len(which), size)):
             seeds = _seeds(aims[chunk], images, starts)
             repeated = np.repeat(aims[chunk], seeds.shape[1], axis=0)
-            solved, image, valid = _approach(chain, tip, own, q[seeds.ravel()], repeated, directions)
+            solved, image, valid = _approach(chain, tip, image_of, q[seeds.ravel()], repeated, directions)
             if chain.looped:
                 valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < FAR
             miss = np.where(valid, _distance(image, repeated, directions), np.inf).reshape(seeds.shape)
             pick = miss.argmin(axis=1)
-            found = miss[np.arange(len(chunk)), pick]
-            better = found < best[chunk]
-            best[chunk[better]] = found[better]
+            nearest = miss[np.arange(len(chunk)), pick]
+            better = nearest < best[chunk]
+            best[chunk[better]] = nearest[better]
             where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
 
     attempt(np.arange(len(aims)), STARTS)
     missed = np.flatnonzero(best > enough)
-    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], MORE)
+    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], STARTS_AGAIN)
     if not directions:
         best, where = best * chain.frame.length, where * chain.frame.length + chain.frame.centre
     return Coverage(best, where, len(q))
@@ -92,21 +102,18 @@ def _sampled(chain: Chain) -> Array:
     if not chain.looped:
         return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
     free = np.zeros(len(low), dtype=np.bool_)
-    found, queue = [start], 0
-    while len(found) < WALK and queue < 8 * WALK:
-        base = found[int(rng.integers(len(found)))]
-        queue += 1
-        state = chain.system.close(base[None])
-        _, values, right = np.linalg.svd(state.jacobian[0])
-        rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
-        loose = right[rank:]
+    closed, tries = [start], 0
+    while len(closed) < WALK and tries < WALK_TRIES * WALK:
+        base = closed[int(rng.integers(len(closed)))]
+        tries += 1
+        loose = null_space(chain.system.close(base[None]).jacobian[0], DEPENDENT)
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose
-        stepped = close(chain, base + 0.25 * way / np.abs(way).max(), free)
-        if stepped is not None and np.all(stepped >= low - 1e-9) and np.all(stepped <= high + 1e-9):
-            found.append(stepped)
-    return np.array(found)
+        stepped = close(chain, base + WALK_STEP * way / np.abs(way).max(), free)
+        if stepped is not None and (stepped >= low - RANGE_ROUNDING).all() and (stepped <= high + RANGE_ROUNDING).all():
+            closed.append(stepped)
+    return np.array(closed)
 
 
 def _box(chain: Chain) -> tuple[Array, Array]:
@@ -118,9 +125,9 @@ def _box(chain: Chain) -> tuple[Array, Array]:
     return np.where(turns, np.maximum(low, -np.pi), low), np.where(turns, np.minimum(high, np.pi), high)
 
 
-def _images(chain: Chain, tip: int, own: Array, q: Array, directions: bool) -> Array:
+def _images(chain: Chain, tip: int, image_of: Array, q: Array, directions: bool) -> Array:
     X = chain.system.bodies(q)[:, tip]
-    turned = X[:, :3, :3] @ own
+    turned = X[:, :3, :3] @ image_of
     return np.asarray(turned if directions else turned + X[:, :3, 3])
 
 
@@ -138,46 +145,46 @@ def _seeds(aims: Array, images: Array, starts: int) -> NDArray[np.intp]:
 
 
 def _approach(
-    chain: Chain, tip: int, own: Array, q: Array, aims: Array, directions: bool
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+    chain: Chain, tip: int, image_of: Array, q: Array, aims: Array, directions: bool
+) -> tuple[Array, Array, Flags]:
     """Configurations (d, n), their images (d, 3), and which of them are closed."""
     system = chain.system
     low, high = _box(chain)
-    damping = np.full(len(q), 1e-3)
-    image, miss, rows, residual = _linear(chain, tip, own, q, aims, directions)
+    damping = np.full(len(q), DAMPING)
+    image, miss, rows, residual = _linear(chain, tip, image_of, q, aims, directions)
     for _ in range(TURNS):
         gradient = (np.swapaxes(rows, 1, 2) @ residual[..., None])[..., 0]
-        stuck = ((q <= low + 1e-12) & (gradient > 0.0)) | ((q >= high - 1e-12) & (gradient < 0.0))
+        stuck = ((q <= low + AT_BOUND) & (gradient > 0.0)) | ((q >= high - AT_BOUND) & (gradient < 0.0))
         active = np.where(stuck[:, None, :], 0.0, rows)
         normal = np.swapaxes(active, 1, 2) @ active
         normal += damping[:, None, None] * np.eye(system.coordinates)
         step = -np.linalg.solve(normal, (np.swapaxes(active, 1, 2) @ residual[..., None]))[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, 0.5 / np.maximum(longest, 1e-300))
+        step *= np.minimum(1.0, APPROACH_STEP / np.maximum(longest, 1e-300))
         trial = np.clip(q + step, low, high)
-        new_image, new_miss, new_rows, new_residual = _linear(chain, tip, own, trial, aims, directions)
+        new_image, new_miss, new_rows, new_residual = _linear(chain, tip, image_of, trial, aims, directions)
         better = new_miss < miss
         q = np.where(better[:, None], trial, q)
         image = np.where(better[:, None], new_image, image)
         rows = np.where(better[:, None, None], new_rows, rows)
         residual = np.where(better[:, None], new_residual, residual)
         miss = np.where(better, new_miss, miss)
-        damping = np.clip(np.where(better, 0.2 * damping, 5.0 * damping), 1e-12, 1e6)
-        if not better.any() and damping.min() > 1e2:
+        damping = np.clip(np.where(better, DAMPING_BETTER, DAMPING_WORSE) * damping, *DAMPING_RANGE)
+        if not better.any() and damping.min() > DAMPING_STUCK:
             break
     opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / STIFF
-    return q, image, opened < CLOSED
+    return q, image, opened < TARGET_CLOSED
 
 
 def _linear(
-    chain: Chain, tip: int, own: Array, q: Array, aims: Array, directions: bool
+    chain: Chain, tip: int, image_of: Array, q: Array, aims: Array, directions: bool
 ) -> tuple[Array, Array, Array, Array]:
     """Images (d, 3), squared misses (d,), derivatives (d, 3 + loops, n) and residuals (d, 3 + loops)."""
     system = chain.system
-    image = _images(chain, tip, own, q, directions)
+    image = _images(chain, tip, image_of, q, directions)
     state = system.close(q)
     columns = state.columns * system.reach[tip][None, :, None]
-    turn = np.cross(columns[..., :3], image[:, None, :])
+    turn = cross(columns[..., :3], image[:, None, :])
     moves = turn if directions else turn + columns[..., 3:]
     rows = np.concatenate([np.swapaxes(moves, 1, 2), STIFF * state.jacobian], axis=1)
     residual = np.concatenate([image - aims, STIFF * state.residual], axis=1)

@@ -9,15 +9,13 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from kinform.function.constants import OPPOSED
+from kinform.model.arrays import Array
 from kinform.model.contacts import Contacts, Patch
 
 __all__ = ["Clearance", "clearances"]
 
 ROUND = ("cylinder", "sphere", "cone")
-OPPOSED = -np.cos(np.radians(1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +27,7 @@ class Clearance:
     """m; negative is press."""
     error: float
     """m: of the fitted surfaces, and of their chords where facets alone speak."""
-    place: NDArray[np.float64]
+    place: Array
 
 
 def clearances(contacts: Contacts, first: Collection[str], second: Collection[str]) -> tuple[Clearance, ...]:
@@ -59,6 +57,6 @@ def _between(patch: Patch, first: Collection[str], second: Collection[str]) -> b
     return (a in first and b in second) or (b in first and a in second)
 
 
-def _out(patch: Patch, first: Collection[str]) -> NDArray[np.float64]:
+def _out(patch: Patch, first: Collection[str]) -> Array:
     """Normal out of the first group."""
     return patch.axis if patch.parts[0] in first else -patch.axis

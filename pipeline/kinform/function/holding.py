@@ -11,37 +11,38 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from kinform.foundation.algebra.subspaces import null_space
+from kinform.foundation.algebra.vectors import cross
 from kinform.function.configurations import Chain, close
+from kinform.function.constants import DEPENDENT, LEAST_WORK, MOVES, NO_WORK, POSE_STEPS, SOLVED, STILL
 from kinform.model.arrays import Array
 
-__all__ = ["Force", "holding_effort", "posed"]
+__all__ = ["Force", "configuration_at", "holding_effort"]
 
 
 Force = Callable[[str, Array], tuple[Array, Array] | None]
 """Force (3,) N and torque (3,) N·m about the world's origin on a body that is displaced by (4, 4); None: unknown."""
 
-STILL = 1e-9
 
-
-def posed(chain: Chain, values: Mapping[str, float]) -> Array | str:
+def configuration_at(chain: Chain, values: Mapping[str, float]) -> Array | str:
     """Coordinates (n,) with these joint values (rad or m, kinform's sign), the others where loops put them."""
     q = np.zeros(len(chain.coordinates))
     held = np.zeros(len(q), dtype=np.bool_)
     for name, value in values.items():
-        own = [k for k, c in enumerate(chain.coordinates) if c.joint == name]
-        if len(own) != 1:
+        columns = [k for k, c in enumerate(chain.coordinates) if c.joint == name]
+        if len(columns) != 1:
             return f"joint '{name}' is not in the mechanism, or has several freedoms"
-        q[own[0]], held[own[0]] = chain.coordinates[own[0]].unit * value, True
+        q[columns[0]], held[columns[0]] = chain.coordinates[columns[0]].unit * value, True
     if not chain.looped:
         return q
-    target, found = q, np.zeros(len(q))
-    for share in np.linspace(0.05, 1.0, 20):
-        found[held] = share * target[held]
-        closed = close(chain, found, held)
+    target, pose = q, np.zeros(len(q))
+    for share in np.linspace(1.0 / POSE_STEPS, 1.0, POSE_STEPS):
+        pose[held] = share * target[held]
+        closed = close(chain, pose, held)
         if closed is None:
             return "the loops cannot be closed in this pose"
-        found = closed
-    return found
+        pose = closed
+    return pose
 
 
 def holding_effort(
@@ -65,20 +66,18 @@ def holding_effort(
     matrix = np.concatenate(rows)
     aim = np.zeros(len(matrix))
     aim[-1] = 1.0
-    motion = np.linalg.lstsq(matrix, aim, rcond=1e-9)[0]
-    if float(np.abs(matrix @ motion - aim).max()) > 1e-6:
+    motion = np.linalg.lstsq(matrix, aim, rcond=SOLVED)[0]
+    if float(np.abs(matrix @ motion - aim).max()) > MOVES:
         return f"joint '{joint}' cannot move while the other drives stand still: it shares the load with them"
     power = _powers(chain, q, state.columns[0], springs, force)
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > 1e-7 * max(values.max(initial=0.0), 1e-300)))
     work = _work(power, motion)
     if isinstance(work, str):
         return work
-    for loose in right[rank:]:
+    for loose in null_space(matrix, DEPENDENT):
         left = _work(power, loose)
         if isinstance(left, str):
             return left
-        if abs(left) > 1e-6 * max(abs(work), 1e-9):
+        if abs(left) > NO_WORK * max(abs(work), LEAST_WORK):
             return "gravity moves more than the drives hold: which joint holds the rest is not stated"
     return -work * chain.coordinates[own].unit
 
@@ -108,7 +107,7 @@ def _powers(
             if wrench is None:
                 unknown.append(chain.bodies[k])
                 continue
-            at_origin = v - np.cross(omega, centre)
+            at_origin = v - cross(omega, centre)
             total += float(wrench[0] @ at_origin + wrench[1] @ omega)
         for rate, coordinate in zip(rates, chain.coordinates, strict=True):
             total += springs.get(coordinate.joint, 0.0) * rate / coordinate.unit

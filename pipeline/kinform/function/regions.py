@@ -8,16 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.function.constants import ALONG, INSIDE, RIM
 from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array
 
 __all__ = ["Targets", "targets_of"]
-
-
-INSIDE, RIM = 240, 48
-"""Directions inside of a cone, and on its rim."""
-ALONG = 7
-"""Places along each edge of a box."""
 
 
 @dataclass(frozen=True, eq=False)

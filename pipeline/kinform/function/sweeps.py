@@ -2,10 +2,10 @@
 
 Along a motion (conservative advancement): a pose in which the distance exceeds what is required by e certifies all
 poses up to which no point moves by more than e. Over ranges (branch and bound): the middle of a cell certifies it
-if no point moves by more than e from there; else the cell is halved. Both stop at a pose that falls short; what is told is
-the first that does, between it and the clear pose before (along a motion), or on the straight way of the coordinates
-from the pose of the meshes to it (over ranges). Steps are never shorter than `floor`: distances are certain up to that. Between two given poses of a motion
-the second group moves along the screw that leads from one to the other.
+if no point moves by more than e from there; else the cell is halved. Both stop at a pose that falls short; what is told
+is the first that does, between it and the clear pose before (along a motion), or on the straight way of the coordinates
+from the pose of the meshes to it (over ranges). Steps are never shorter than `floor`: distances are certain up to that.
+Between two given poses of a motion the second group moves along the screw that leads from one to the other.
 """
 
 from __future__ import annotations
@@ -16,20 +16,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.foundation.algebra.displacements import displacement, twist_of
+from kinform.foundation.algebra.displacements import displacement, inverse, twist_of
+from kinform.foundation.algebra.vectors import cross
 from kinform.function.clearances import Apart, Nearest
 from kinform.function.configurations import Chain
+from kinform.function.constants import BUDGET, FIRST, FLOOR, FLOOR_TOGETHER
 from kinform.model.arrays import Array
 
 __all__ = ["Swept", "along", "over"]
-
-
-BUDGET = 4000
-"""Poses that are measured before giving up."""
-FIRST = 1e-3
-"""Share of the shortest step to which the first pose that falls short is found."""
-FLOOR = 1e-4
-"""Shortest step, of the size of the smaller group; ten times that where several joints move at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +45,8 @@ class Swept:
 
 def along(groups: Apart, first: Array, second: Array, required: float) -> Swept:
     """Along displacements (T, 4, 4) of both groups from the pose of the meshes."""
-    relative = _inverse(first) @ second
-    twists = [twist_of(X) for X in _inverse(relative[:-1]) @ relative[1:]]
+    relative = inverse(first) @ second
+    twists = [twist_of(X) for X in inverse(relative[:-1]) @ relative[1:]]
     moved = np.array([_speed(twist, groups) for twist in twists])
     way = np.concatenate([[0.0], np.cumsum(moved)])
     floor = FLOOR * groups.size
@@ -87,7 +81,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
     """Over all values of the coordinates (n,) of a chain without loops between `low` and `high`."""
     a, b = chain.index(first), chain.index(second)
     lever = _levers(chain, groups, b, low, high)
-    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else 10.0)
+    floor = FLOOR * groups.size * (1.0 if np.count_nonzero(lever) < 2 else FLOOR_TOGETHER)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     cells: list[tuple[float, int, Array, Array]] = [(0.0, 0, middle, half)]
     worst, values = Nearest(np.inf, ("", ""), np.zeros(3)), middle
@@ -99,7 +93,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
 
     while cells:
         if count >= BUDGET:
-            return Swept(worst, 0.0, _named(chain, values), False, floor, count)
+            return Swept(worst, 0.0, _joint_values(chain, values), False, floor, count)
         _, _, middle, half = heapq.heappop(cells)
         reach = float(lever @ half)
         near = nearest(middle, reach)
@@ -110,7 +104,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
             # towards the pose of the meshes, as far as the ranges hold it
             start = np.clip(np.zeros(len(low)), low, high)
             q, near = _on_the_way(nearest, required, start, middle, lever, floor, near)
-            return Swept(near, 0.0, _named(chain, q), True, floor, count)
+            return Swept(near, 0.0, _joint_values(chain, q), True, floor, count)
         if near.distance - required >= reach or reach <= floor:
             continue
         k = int(np.argmax(lever * half))
@@ -121,7 +115,7 @@ def over(groups: Apart, chain: Chain, first: str, second: str, low: Array, high:
             shifted = middle.copy()
             shifted[k] += side * smaller[k]
             heapq.heappush(cells, (near.distance - reach, number, shifted, smaller))
-    return Swept(worst, 0.0, _named(chain, values), True, floor, count)
+    return Swept(worst, 0.0, _joint_values(chain, values), True, floor, count)
 
 
 def _short(near: Nearest, required: float) -> bool:
@@ -175,18 +169,9 @@ def _on_the_way(
     return end, found
 
 
-def _inverse(X: Array) -> Array:
-    out = np.zeros_like(X)
-    turned = np.swapaxes(X[:, :3, :3], 1, 2)
-    out[:, :3, :3] = turned
-    out[:, :3, 3] = -(turned @ X[:, :3, 3, None])[..., 0]
-    out[:, 3, 3] = 1.0
-    return out
-
-
 def _speed(twist: Array, groups: Apart) -> float:
     """How far a point of the second group moves at most."""
-    centre = twist[3:] + np.cross(twist[:3], groups.centre)
+    centre = twist[3:] + cross(twist[:3], groups.centre)
     return float(np.linalg.norm(centre) + groups.radius * np.linalg.norm(twist[:3]))
 
 
@@ -207,7 +192,7 @@ def _levers(chain: Chain, groups: Apart, tip: int, low: Array, high: Array) -> A
             out[k] = length
             continue
         omega, v = screws[k, :3], screws[k, 3:]
-        on_axis = np.cross(omega, v)
+        on_axis = cross(omega, v)
         on_axis = on_axis + omega * float(omega @ (point - on_axis))
         beyond += float(np.linalg.norm(point - on_axis))
         point = on_axis
@@ -215,5 +200,5 @@ def _levers(chain: Chain, groups: Apart, tip: int, low: Array, high: Array) -> A
     return out
 
 
-def _named(chain: Chain, q: Array) -> tuple[float, ...]:
+def _joint_values(chain: Chain, q: Array) -> tuple[float, ...]:
     return tuple(float(x) / c.unit for x, c in zip(q, chain.coordinates, strict=True))

@@ -1,4 +1,4 @@
-"""Collects the mass properties of all parts and adds them up to those of bodies."""
+"""Mass properties of parts and bodies: as the user states them, else from geometry and density, else why not."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.mass.parts import SolidShape, known, part_properties, unknown
-from kinform.mass.principal import impossible
-from kinform.model.assembly import Assembly, Mesh
+from kinform.foundation.algebra.inertias import add_inertias
+from kinform.mass.constants import FLAT
+from kinform.mass.principal import impossible, principal
+from kinform.mass.solids import SolidIntegrals, integrate_solid, mass_bound
+from kinform.model.arrays import Array, freeze
+from kinform.model.assembly import Assembly, Mesh, MeshHealth, Part
 from kinform.model.kinematics import Body, Kinematics
 from kinform.model.mass import MassProperties, MassReport
 from kinform.model.surfaces import MeshSurfaces
+from kinform.model.tolerances import Tolerances
 
 __all__ = ["compile_mass"]
 
@@ -30,7 +34,7 @@ def compile_mass(
     watertight, is wound inconsistently or has no density has no mass, and neither has a body that
     contains it: the reasons are in `problems`. Parts whose properties are `known` are not measured again.
     """
-    shapes: dict[str, SolidShape] = {}
+    shapes: dict[str, _SolidShape] = {}
     parts = []
     for part in assembly.parts:
         if known is not None and part.name in known:
@@ -39,7 +43,7 @@ def compile_mass(
         shape = None
         if part.mesh is not None:
             shape = _shape(part.mesh, shapes, surfaces, assembly)
-        parts.append(part_properties(part, shape))
+        parts.append(_part_properties(part, shape))
     by_name = {properties.name: properties for properties in parts}
     bodies = tuple(
         _body_properties(body, [by_name[name] for name in body.parts])
@@ -52,14 +56,14 @@ def compile_mass(
 
 def _shape(
     mesh: Mesh,
-    shapes: dict[str, SolidShape],
+    shapes: dict[str, _SolidShape],
     surfaces: dict[str, MeshSurfaces] | None,
     assembly: Assembly,
-) -> SolidShape:
+) -> _SolidShape:
     """The shape of the mesh, from `shapes` when a part with the same mesh was seen before."""
     if mesh.digest not in shapes:
         recovered = None if surfaces is None else surfaces.get(mesh.digest)
-        shapes[mesh.digest] = SolidShape(mesh, recovered, assembly.tolerances)
+        shapes[mesh.digest] = _SolidShape(mesh, recovered, assembly.tolerances)
     return shapes[mesh.digest]
 
 
@@ -70,21 +74,98 @@ def _body_properties(body: Body, parts: list[MassProperties]) -> MassProperties:
     volume = None if None in volumes else math.fsum(v for v in volumes if v is not None)
     missing = [part.name for part in parts if part.mass is None]
     if missing or not parts:
-        return unknown(body.name, origin, "no mass of " + ", ".join(missing), volume)
+        return _without_mass(body.name, origin, "no mass of " + ", ".join(missing), volume)
     if len(parts) == 1 and parts[0].mass is not None:
         wrong = impossible(parts[0].mass, parts[0].inertia)
-        return unknown(body.name, origin, wrong, volume) if wrong else replace(parts[0], name=body.name)
-    masses = np.array([part.mass for part in parts], dtype=np.float64)
-    mass = math.fsum(masses)
+        return _without_mass(body.name, origin, wrong, volume) if wrong else replace(parts[0], name=body.name)
+    masses = [part.mass or 0.0 for part in parts]
     centres = np.array([part.centre_of_mass for part in parts])
-    # Offsets from one of the centres: far from the origin the mean would lose digits.
-    offsets = centres - centres[0]
-    mean = masses @ offsets / mass
-    inertia = np.zeros((3, 3))
-    for part, share, offset in zip(parts, masses, offsets - mean, strict=True):
-        inertia += part.inertia + share * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    mass, centre, inertia = add_inertias(masses, centres, [part.inertia for part in parts])
     wrong = impossible(mass, inertia)
     if wrong:
-        return unknown(body.name, origin, wrong, volume)
-    bound = float(masses @ [part.mass_bound for part in parts]) / mass
-    return known(body.name, mass, volume, centres[0] + mean, inertia, bound, origin)
+        return _without_mass(body.name, origin, wrong, volume)
+    bound = float(np.array(masses) @ [part.mass_bound for part in parts]) / mass
+    return _with_mass(body.name, mass, volume, centre, inertia, bound, origin)
+
+
+class _SolidShape:
+    """What one mesh gives to every part that uses it: its integrals, or the reason why it has none."""
+
+    def __init__(self, mesh: Mesh, surfaces: MeshSurfaces | None, tolerances: Tolerances):
+        self.integrals: SolidIntegrals | None = None
+        self.bound = math.nan
+        self.reason = _not_a_solid(mesh.health)
+        if self.reason:
+            return
+        integrals = integrate_solid(mesh.vertices, mesh.faces)
+        flat = FLAT * mesh.diagonal**3
+        if abs(integrals.volume) <= flat:
+            self.reason = "the mesh encloses no volume"
+        elif integrals.volume < 0.0:
+            self.reason = "the mesh is inside out: its facets enclose a negative volume"
+        else:
+            self.integrals = integrals
+            self.bound = mass_bound(mesh, integrals.volume, surfaces, tolerances)
+
+
+def _not_a_solid(health: MeshHealth) -> str:
+    """Why the mesh bounds no solid; "" when it does."""
+    if health.facets == 0:
+        return "the mesh has no facets"
+    if not health.watertight:
+        return f"the mesh is not watertight ({health.open_edges} open and {health.overused_edges} overused edges)"
+    if not health.consistent_winding:
+        return "the facets of the mesh are wound inconsistently"
+    return ""
+
+
+def _part_properties(part: Part, shape: _SolidShape | None) -> MassProperties:
+    """Mass properties of a part in the world, at the pose of the meshes."""
+    volume = shape.integrals.volume if shape is not None and shape.integrals is not None else None
+    R_WP, p_WP = part.X_WP[:3, :3], part.X_WP[:3, 3]
+    if part.override is not None:
+        stated = part.override
+        wrong = impossible(stated.mass, stated.inertia)
+        if not wrong and not np.all(np.isfinite(stated.centre_of_mass)):
+            wrong = "the centre of mass is not a number"
+        if wrong:
+            return _without_mass(part.name, "override", f"the stated values are impossible: {wrong}", volume)
+        centre = R_WP @ stated.centre_of_mass + p_WP
+        return _with_mass(part.name, stated.mass, volume, centre, R_WP @ stated.inertia @ R_WP.T, 0.0, "override")
+    if shape is None:
+        return _without_mass(part.name, "stick", "it has no mesh and no mass is stated", None)
+    if not part.solid:
+        return _without_mass(part.name, "geometry", "it is not solid: its surfaces bound no volume", None)
+    if shape.integrals is None:
+        return _without_mass(part.name, "geometry", shape.reason, None)
+    if part.density is None:
+        return _without_mass(part.name, "geometry", "no density is stated for it", volume)
+    if not (math.isfinite(part.density) and part.density > 0.0):
+        return _without_mass(part.name, "geometry", f"its density is {part.density:.6g} kg/m³", volume)
+    solid = shape.integrals
+    return _with_mass(
+        part.name,
+        part.density * solid.volume,
+        solid.volume,
+        R_WP @ solid.centroid + p_WP,
+        part.density * (R_WP @ solid.inertia @ R_WP.T),
+        shape.bound,
+        "geometry",
+    )
+
+
+def _with_mass(
+    name: str, mass: float, volume: float | None, centre: Array, inertia: Array, bound: float, origin: str
+) -> MassProperties:
+    """Properties with their principal axes; inertia (3, 3) about the centre, world axes."""
+    inertia = 0.5 * (inertia + inertia.T)
+    moments, axes = principal(inertia)
+    for array in (centre, inertia, moments, axes):
+        freeze(array)
+    return MassProperties(name, mass, volume, centre, inertia, moments, axes, bound, origin)
+
+
+def _without_mass(name: str, origin: str, reason: str, volume: float | None) -> MassProperties:
+    """Properties of something whose mass cannot be known, and why."""
+    none3, none33 = freeze(np.full(3, np.nan)), freeze(np.full((3, 3), np.nan))
+    return MassProperties(name, None, volume, none3, none33, none3, none33, math.nan, origin, reason)

@@ -5,15 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross
+from kinform.mass.constants import EQUAL_MOMENTS, NEAREST, ROUNDED_MOMENTS
 from kinform.model.arrays import Array
 
 __all__ = ["impossible", "principal"]
-
-
-EQUAL = 1e-9
-"""Moments that differ by less than this share of the largest are one: rounding makes their axes."""
-ROUNDED = 1e-6
-"""Share of the largest moment by which stated moments may break a law: six printed digits."""
 
 
 def principal(inertia: Array) -> tuple[Array, Array]:
@@ -26,7 +21,7 @@ def principal(inertia: Array) -> tuple[Array, Array]:
     if not np.all(np.isfinite(inertia)):
         return np.full(3, np.nan), np.full((3, 3), np.nan)
     moments, axes = np.linalg.eigh(inertia)
-    same = EQUAL * float(np.abs(moments).max())
+    same = EQUAL_MOMENTS * float(np.abs(moments).max())
     start = 0
     for end in range(1, 4):
         if end == 3 or moments[end] - moments[end - 1] > same:
@@ -47,12 +42,12 @@ def impossible(mass: float, inertia: Array) -> str:
     if mass <= 0.0:
         return f"the mass is {mass:.6g} kg, not positive"
     size = float(np.abs(inertia).max())
-    if float(np.abs(inertia - inertia.T).max()) > ROUNDED * size:
+    if float(np.abs(inertia - inertia.T).max()) > ROUNDED_MOMENTS * size:
         return "the inertia tensor is not symmetric"
     low, middle, high = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
-    if low < -ROUNDED * size:
+    if low < -ROUNDED_MOMENTS * size:
         return f"the inertia tensor has a negative principal moment ({low:.6g} kg·m²)"
-    if low + middle < (1.0 - ROUNDED) * high:
+    if low + middle < (1.0 - ROUNDED_MOMENTS) * high:
         return f"the principal moments break the triangle inequality ({low:.6g} + {middle:.6g} < {high:.6g} kg·m²)"
     return ""
 
@@ -65,6 +60,6 @@ def _nearest_to_world(space: Array) -> Array:
         for vector in basis:
             rest = rest - np.outer(vector, vector)
         length = np.linalg.norm(rest, axis=0)
-        column = int(np.flatnonzero(length >= length.max() - 1e-3)[0])
+        column = int(np.flatnonzero(length >= length.max() - NEAREST)[0])
         basis.append(rest[:, column] / length[column])
     return np.column_stack(basis)

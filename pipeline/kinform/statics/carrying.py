@@ -9,29 +9,31 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
+from kinform.statics.constants import BOTH_WAYS
 
-__all__ = ["missing", "wrenches_at"]
+__all__ = ["pushes_at", "uncarried"]
 
 
-def wrenches_at(points: Array, normals: Array, centre: Array, length: float) -> Array:
+def pushes_at(points: Array, normals: Array, centre: Array, length: float) -> Array:
     """(n, 6) unit pushes along normals at points (n, 3), about the centre, torques over the length."""
-    return np.hstack([np.cross(points - centre, normals) / length, normals])
+    return np.hstack([cross(points - centre, normals) / length, normals])
 
 
-def missing(pushes: Array, given: Array, wrench: Array) -> Array:
+def uncarried(pushes: Array, both_ways: Array, wrench: Array) -> Array:
     """(6,) part of the wrench (torque over the length; force) that neither the pushes (n, 6), with factors from zero
-    up, nor what is given both ways (m, 6), as by a drive, can make up: the least there is. Of several contacts at
+    up, nor what acts both ways (m, 6), as a drive does, can make up: the least there is. Of several contacts at
     once everything is as many times as long."""
     from scipy.optimize import nnls
 
     size = float(np.linalg.norm(wrench))
     if size == 0.0:
         return np.zeros(len(wrench))
-    if len(given):
+    if len(both_ways):
         # What drives give is free: only what is across of it has to be pushed.
-        left, values, _ = np.linalg.svd(given.T, full_matrices=True)
-        across = left[:, int(np.count_nonzero(values > 1e-9 * values[0])) :]
+        left, values, _ = np.linalg.svd(both_ways.T, full_matrices=True)
+        across = left[:, int(np.count_nonzero(values > BOTH_WAYS * values[0])) :]
     else:
         across = np.eye(len(wrench))
     wanted, columns = across.T @ wrench / size, across.T @ pushes.T

@@ -13,17 +13,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kinform.foundation.algebra.subspaces import null_space
+from kinform.foundation.algebra.vectors import cross_matrix, perpendicular
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
+from kinform.statics.constants import DEPENDENT, MOST_JOINTS
 
 __all__ = ["axes_of", "decidable", "self_stresses"]
-
-
-DEPENDENT = 1e-7
-"""Relative singular value below which a balance depends on the others, as in the count of freedoms."""
-MOST = 60
-"""Joints up to which all wrenches are looked for."""
 
 
 def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array], list[Array]]:
@@ -42,7 +39,7 @@ def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array],
     if joint.type in ("prismatic", "cylindrical"):
         slides.append(axis)
     if joint.type == "planar":
-        slides += list(np.linalg.svd(axis[None])[2][1:])
+        slides += perpendicular(axis)
     if joint.type == "universal" and joint.axis2 is not None:
         turns.append(R @ X[:3, :3] @ joint.axis2)
     if joint.type == "screw":
@@ -52,7 +49,7 @@ def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array],
 
 def decidable(run: Simulation) -> bool:
     """Whether all wrenches that balance can be looked through: of few joints, and without gears among them."""
-    return len(run.joint_names) <= MOST and not run.gear_names
+    return len(run.joint_names) <= MOST_JOINTS and not run.gear_names
 
 
 def self_stresses(
@@ -72,22 +69,18 @@ def self_stresses(
         body = run.body_names.index(joint.bodies[0])
         place = turns[n] @ at + run.p_WB[k, body]
         block = np.eye(6)
-        block[:3, 3:] = (
-            np.array([[0, -place[2], place[1]], [place[2], 0, -place[0]], [-place[1], place[0], 0]]) / length
-        )
+        block[:3, 3:] = cross_matrix(place) / length
         for name, sign in zip(joint.bodies, (-1.0, 1.0), strict=True):
             if name in moving:
                 rows[6 * moving[name] : 6 * moving[name] + 6, 6 * n : 6 * n + 6] += sign * block
-        for kind, offset in zip(axes_of(joint, turns[n], across[n])[:2], (0, 3), strict=True):
-            for axis in kind:
-                row = np.zeros(6 * len(joints))
-                row[6 * n + offset : 6 * n + offset + 3] = axis
-                still.append(row)
-        for screw in axes_of(joint, turns[n], across[n])[2]:
+        turning, sliding, screws = axes_of(joint, turns[n], across[n])
+        freedoms = [np.concatenate([axis, np.zeros(3)]) for axis in turning]
+        freedoms += [np.concatenate([np.zeros(3), axis]) for axis in sliding]
+        scaled = [screw * np.array([length, length, length, 1.0, 1.0, 1.0]) for screw in screws]
+        freedoms += [screw / np.linalg.norm(screw) for screw in scaled]
+        for freedom in freedoms:
             row = np.zeros(6 * len(joints))
-            row[6 * n : 6 * n + 6] = screw * np.array([length, length, length, 1.0, 1.0, 1.0])
-            still.append(row / np.linalg.norm(row))
+            row[6 * n : 6 * n + 6] = freedom
+            still.append(row)
     matrix = np.concatenate([rows, np.array(still).reshape(-1, 6 * len(joints))])
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > DEPENDENT * max(values.max(initial=0.0), 1e-300)))
-    return np.asarray(right[rank:].reshape(-1, len(joints), 6))
+    return null_space(matrix, DEPENDENT).reshape(-1, len(joints), 6)

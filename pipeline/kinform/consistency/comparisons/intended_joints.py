@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.questions.through_helpers import motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -169,7 +170,7 @@ def _tolerance(assembly: Assembly, contacts: Contacts | None, patches: list[Patc
 
 def _between(a: Array, b: Array) -> float:
     """Angle between two undirected lines (rad, 0 to π/2)."""
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), abs(float(a @ b)))
+    return math.atan2(float(np.linalg.norm(cross(a, b))), abs(float(a @ b)))
 
 
 def _apart(axis: Array, point: Array, other_axis: Array, other_point: Array) -> float:

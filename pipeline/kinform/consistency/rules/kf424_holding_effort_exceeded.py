@@ -32,10 +32,11 @@ from kinform.consistency.requirements import (
     undecided,
     violated,
 )
+from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, telling
 from kinform.function import resolve_joint
 from kinform.function.configurations import Chain, mechanism_of
-from kinform.function.holding import Force, holding_effort, posed
+from kinform.function.holding import Force, configuration_at, holding_effort
 from kinform.function.requirement_kinds import Hold
 from kinform.model.arrays import Array
 from kinform.model.function import SimulationRequest
@@ -91,7 +92,7 @@ def _held(context: Context, chain: Chain, joint: Joint, pose: Mapping[str, float
         asked = wanted.get(coordinate.joint)
         if asked is not None and not coordinate.lower - AT_END <= asked <= coordinate.upper + AT_END:
             return f"joint '{stated_as(context, coordinate.joint)[0]}' would be outside of its range"
-    q = posed(chain, wanted)
+    q = configuration_at(chain, wanted)
     if isinstance(q, str):
         return q
     values: dict[str, float] = {c.joint: float(x) / c.unit for c, x in zip(chain.coordinates, q, strict=True)}
@@ -126,7 +127,7 @@ def _force(context: Context) -> Force:
             return None
         R, p = X[:3, :3], X[:3, 3]
         total = weight.mass * gravity
-        moment = np.cross(R @ weight.centre_of_mass + p, total)
+        moment = cross(R @ weight.centre_of_mass + p, total)
         for name, load in loads:
             if name != body:
                 continue
@@ -134,7 +135,7 @@ def _force(context: Context) -> Force:
             point = R @ (weight.centre_of_mass if load.point is None else load.point) + p
             if load.force is not None:
                 total = total + turn @ load.force
-                moment = moment + np.cross(point, turn @ load.force)
+                moment = moment + cross(point, turn @ load.force)
             if load.torque is not None:
                 moment = moment + turn @ load.torque
         return total, moment

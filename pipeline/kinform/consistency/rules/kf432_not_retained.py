@@ -19,6 +19,7 @@ import numpy as np
 from kinform.consistency.constants import NO_TURN, SAME_DIRECTION
 from kinform.consistency.context import Context
 from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, undecided, violated
+from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.words import direction, quoted
 from kinform.function.requirement_kinds import Retained
 from kinform.model.arrays import Array
@@ -132,9 +133,7 @@ def _pure_slides(twists: Array) -> Array:
     """(k, 3) orthonormal directions in which the body can move without turning; twists (f, 6)."""
     if not len(twists):
         return np.zeros((0, 3))
-    _, values, right = np.linalg.svd(twists[:, :3].T)
-    rank = int(np.count_nonzero(values > NO_TURN * max(values.max(initial=0.0), 1e-300)))
-    moving = right[rank:] @ twists[:, 3:]
+    moving = null_space(twists[:, :3].T, NO_TURN) @ twists[:, 3:]
     _, sizes, ways = np.linalg.svd(moving, full_matrices=False)
     return np.asarray(ways[sizes > NO_TURN * max(float(np.abs(twists[:, 3:]).max(initial=0.0)), 1e-300)])
 

@@ -17,7 +17,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.foundation.words import angle, length, number
 from kinform.model.findings import Finding
-from kinform.statics.separating import SLIDES, Slip, slips
+from kinform.statics.disengaging import SLIDES, Slip, slips
 
 __all__ = ["RULE"]
 

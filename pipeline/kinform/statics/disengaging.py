@@ -1,0 +1,88 @@
+"""Where a slider has left what guides it, in a run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.design import Design
+from kinform.kinematics.separation.contact_rows import is_stated
+from kinform.model.arrays import Array
+from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.simulation import Simulation
+
+__all__ = ["SLIDES", "Slip", "slide_of", "slips", "span_along"]
+
+
+SLIDES = {"prismatic": 0, "cylindrical": 1, "screw": 0}
+"""Column of the coordinate that slides, by type of joint."""
+
+
+@dataclass(frozen=True, eq=False)
+class Slip:
+    """A joint whose slider has left all that guides it."""
+
+    joint: Joint
+    time: float
+    value: float
+    """rad or m then."""
+    limit: float
+    """rad or m at which the last of its patches ends."""
+
+
+def slips(design: Design) -> tuple[Slip, ...]:
+    """First time at which each joint with a slide has left the last of the patches along which it slides."""
+    from kinform.collisions.shapes import Shapes
+    from kinform.collisions.single import guide, joint_twist
+
+    run, kinematics, contacts = design.simulation, design.kinematics, design.contacts
+    assert run is not None and kinematics is not None and contacts is not None
+    shapes = Shapes(design.assembly, design.surfaces, contacts, _meshed(design, kinematics))
+    out = []
+    for joint in kinematics.joints:
+        if joint.type not in SLIDES or joint.name not in run.joint_names or joint.axis is None or is_stated(joint):
+            continue
+        values = _coordinate(run, joint)
+        # a cylindrical joint as a guide sees it
+        sliding = replace(joint, type="prismatic") if joint.type == "cylindrical" else joint
+        low, high = guide(shapes, sliding, joint_twist(sliding))
+        beyond = np.flatnonzero((values < low) | (values > high))
+        if len(beyond):
+            value = float(values[beyond[0]])
+            out.append(Slip(joint, float(run.time[beyond[0]]), value, low if value < low else high))
+    return tuple(out)
+
+
+def slide_of(run: Simulation, joint: Joint) -> Array:
+    """(T,) m that the joint has slid along its axis; zero for those that do not."""
+    if joint.type not in SLIDES:
+        return np.zeros(len(run.time))
+    values: Array = _coordinate(run, joint)
+    return values * (joint.pitch or 0.0) / (2.0 * math.pi) if joint.type == "screw" else values
+
+
+def _coordinate(run: Simulation, joint: Joint) -> Array:
+    """(T,) rad or m: the coordinate along which the joint slides."""
+    return np.asarray(
+        run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)]) + SLIDES[joint.type]]
+    )
+
+
+def span_along(design: Design, name: str, surface: int, axis: Array) -> tuple[float, float] | None:
+    """Lowest and highest place (m) along `axis` of a surface of a part; None where the surface is not known."""
+    part = design.assembly.part(name)
+    known = None if part.mesh is None else design.surfaces.get(part.mesh.digest)
+    if part.mesh is None or known is None or surface < 0:
+        return None
+    corners = part.mesh.vertices[np.unique(part.mesh.faces[known.labels == surface])]
+    if not len(corners):
+        return None
+    heights = (corners @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]) @ axis
+    return float(heights.min()), float(heights.max())
+
+
+def _meshed(design: Design, kinematics: Kinematics) -> dict[str, frozenset[str]]:
+    with_mesh = {part.name for part in design.assembly.parts if part.mesh is not None}
+    return {body.name: frozenset(part for part in body.parts if part in with_mesh) for body in kinematics.bodies}
