@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kinform.consistency.control import accepted
+from kinform.consistency.control import outcome_without
 from kinform.errors import InputError, Problem
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored
 
@@ -77,11 +77,13 @@ def with_baseline(report: CheckReport, baseline: Baseline) -> tuple[CheckReport,
     groups: dict[Key, list[Finding]] = {}
     for finding in report.findings:
         groups.setdefault(_key(finding), []).append(finding)
-    known = {key for key, found in groups.items() if _adopted(key, found, baseline)}
-    kept = tuple(f for f in report.findings if _key(f) not in known or not _counts(f))
-    ignored = [Ignored(f, "baseline") for f in report.findings if _key(f) in known and _counts(f)]
+    adopted = {key for key, findings in groups.items() if _is_adopted(key, findings, baseline)}
+    kept = tuple(f for f in report.findings if _key(f) not in adopted or not _counts(f))
+    ignored = [Ignored(f, "baseline") for f in report.findings if _key(f) in adopted and _counts(f)]
     rules = tuple(
-        accepted(rule, [f for f in kept if f.code == rule.code], [i for i in ignored if i.finding.code == rule.code])
+        outcome_without(
+            rule, [f for f in kept if f.code == rule.code], [i for i in ignored if i.finding.code == rule.code]
+        )
         for rule in report.rules
     )
     every = sorted((*report.ignored, *ignored), key=lambda item: (item.finding.code, item.finding.subject, item.by))
@@ -89,9 +91,9 @@ def with_baseline(report: CheckReport, baseline: Baseline) -> tuple[CheckReport,
     return replace(report, findings=kept, rules=rules, ignored=tuple(every), gone=gone), gone
 
 
-def _adopted(key: Key, found: Iterable[Finding], baseline: Baseline) -> bool:
+def _is_adopted(key: Key, findings: Iterable[Finding], baseline: Baseline) -> bool:
     """Whether there are no more findings of the key than before, at each severity and above."""
-    here = Counter(f.severity for f in found)
+    here = Counter(f.severity for f in findings)
     more = 0
     for severity in reversed(SEVERITIES):
         more += here[severity] - baseline.counts.get((key, severity), 0)

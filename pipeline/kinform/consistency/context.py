@@ -13,11 +13,12 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
+from kinform.consistency.comparisons.coupled import coupled_through
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
-from kinform.model.assembly import Assembly, Mesh, Part
+from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts
 from kinform.model.function import Function, Requirement
@@ -29,14 +30,20 @@ __all__ = ["Context", "MeshUse", "Need", "Unused"]
 
 Stage = TypeVar("Stage")
 Need = Literal[
-    "meshes", "closed meshes", "contacts", "kinematics", "mass", "simulation", "motion", "comparisons",
-    "stated mobility", "stated joints", "stated ranges", "stated couplings", "stated drives", "stated loads",
-    "stated assumptions", "stated initial values", "inferred fasteners", "several parts",
-    "stated mobility of sub-assemblies",
+    "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",
+    "simulation", "motion", "comparisons", "stated mobility", "stated joints", "stated ranges", "stated couplings",
+    "stated drives", "stated loads", "stated assumptions", "stated initial values", "inferred fasteners",
+    "several parts", "stated mobility of sub-assemblies",
 ]  # fmt: skip
 """What a rule may need of a design: meshes, results of stages, something that the manifest states."""
 APPLIES: dict[Need, tuple[Callable[[Context], object], str]] = {
     "meshes": (lambda c: c.meshes, "no part has a mesh"),
+    "solid meshes": (lambda c: any(use.solid for use in c.meshes), "no part is a solid with a mesh"),
+    "stated masses": (lambda c: c.overridden, "no part with a mesh has a stated mass"),
+    "sizes": (
+        lambda c: c.meshes or sum(joint.point is not None for joint in c.function.joints) > 1,
+        "no part has a mesh, and fewer than two joints have a point",
+    ),
     "closed meshes": (lambda c: c.closed_meshes, "no mesh is closed"),
     "several parts": (lambda c: len(c.assembly.parts) > 1, "the assembly has only one part"),
     "stated mobility": (lambda c: c.function.mobility is not None, "the function states no mobility"),
@@ -140,6 +147,11 @@ class Context:
         return tuple(u for u in self.meshes if u.mesh.health.watertight and u.mesh.health.consistent_winding)
 
     @cached_property
+    def overridden(self) -> tuple[tuple[Part, MassOverride], ...]:
+        """Parts with a mesh whose mass is stated, with what is stated."""
+        return tuple((p, p.override) for p in self.assembly.parts if p.mesh is not None and p.override is not None)
+
+    @cached_property
     def shaped(self) -> frozenset[str]:
         """Bodies of which a part has a mesh; empty without kinematics."""
         if self.design.kinematics is None:
@@ -170,9 +182,9 @@ class Context:
             still = skipped("nothing moved")
             return self.lacks("simulation") or (still if len(self.simulation.time) < 2 else None)
         if need == "comparisons":
-            given = skipped("all joints come from the function itself: there is no geometry to compare")
+            no_geometry = skipped("all joints come from the function itself: there is no geometry to compare")
             missing = self.lacks("stated joints") or self.lacks("kinematics")
-            return missing or (given if all(c.state == "stated" for c in self._every_comparison) else None)
+            return missing or (no_geometry if all(c.state == "stated" for c in self._every_comparison) else None)
         if need == "contacts" and not self.meshes:
             return self.lacks("meshes")
         if need == "simulation" and not self.simulation_requested:
@@ -244,6 +256,20 @@ class Context:
     def intended_bodies(self) -> frozenset[str]:
         """Bodies that an intended joint names; empty without kinematics."""
         return frozenset(name for pair in self.intended_pairs for name in pair)
+
+    @cached_property
+    def unintended_joints(self) -> tuple[Joint, ...]:
+        """Joints between two bodies that intended joints name, where no intended joint joins these two, and no stated
+        coupling goes through them."""
+        stated = self.function.couplings
+        meshing = {name for c in stated for name in coupled_through(self.assembly, self.kinematics, c)}
+        return tuple(
+            j
+            for j in self.kinematics.joints
+            if tuple(sorted(j.bodies)) not in self.intended_pairs
+            and self.intended_bodies.issuperset(j.bodies)
+            and str(j.name) not in meshing
+        )
 
     def body(self, name: str) -> str | None:
         """Name of the body that contains a part or group; None without kinematics."""

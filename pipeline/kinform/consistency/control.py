@@ -11,7 +11,7 @@ from kinform.foundation.words import counted
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
 
-__all__ = ["Applied", "accepted", "apply", "idle_ignore", "means", "selected", "unused"]
+__all__ = ["Applied", "apply", "idle_ignore", "is_selected", "means", "outcome_without", "unused_entries"]
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""
@@ -28,9 +28,9 @@ class Applied:
     """Entries that had an effect."""
 
 
-def selected(rule: Rule, settings: CheckSettings) -> bool:
+def is_selected(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is to run."""
-    return not settings.select or any(_chosen(rule, word) for word in settings.select)
+    return not settings.select or any(_selects(rule, word) for word in settings.select)
 
 
 def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
@@ -54,18 +54,18 @@ def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     return Applied(_outcome_under(rule, outcome, ignored, settled, whole), tuple(kept), tuple(ignored), tuple(used))
 
 
-def accepted(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequence[Ignored]) -> RuleOutcome:
+def outcome_without(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequence[Ignored]) -> RuleOutcome:
     """The outcome of a decided rule of which these findings are left and these ignored."""
     if rule.outcome != "failed" or not ignored or any(f.severity != "note" for f in left):
         return rule
     return replace(rule, outcome="passed" if left else "ignored", reason=_reasons(ignored))
 
 
-def unused(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore]) -> tuple[Unused, ...]:
+def unused_entries(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore]) -> tuple[Unused, ...]:
     """Entries of `[check]` that had no effect."""
     out = []
     for word in settings.select:
-        if not any(_chosen(rule, word) for rule in rules):
+        if not any(_selects(rule, word) for rule in rules):
             out.append(Unused(word, f"[check] selects {word!r}, and no rule has this code or name"))
     for word, _ in settings.severity:
         if not any(means(rule, word) for rule in rules):
@@ -110,5 +110,5 @@ def means(rule: Rule, word: str) -> bool:
     return word.casefold() in (rule.code.casefold(), rule.name)
 
 
-def _chosen(rule: Rule, word: str) -> bool:
+def _selects(rule: Rule, word: str) -> bool:
     return means(rule, word) or (word[:2].casefold() == "kf" and rule.code.casefold().startswith(word.casefold()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from kinform.consistency.context import Context
-from kinform.consistency.control import Applied, apply, idle_ignore, means, selected, unused
+from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
 from kinform.consistency.places import with_place
 from kinform.consistency.requirements import RequirementRule
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
@@ -28,12 +28,12 @@ def check(design: Design) -> CheckReport:
     judges = {r.kind: r.judge for r in RULES if isinstance(r, RequirementRule) and _judged(r, settings)}
     context = Context(replace(design, kinematics=design.ranged), judges)
     applied = {rule.code: _run(rule, context) for rule in RULES if rule is not CONTROL}
-    used = [entry for one in applied.values() for entry in one.used]
+    used = [entry for run in applied.values() for entry in run.used]
     # these two speak later: of the other rules, and where a lock is given
     used += [entry for entry in settings.ignore if means(CONTROL, entry.code) or means(LOCKED, entry.code)]
-    alone = all(one.outcome.outcome in ("skipped", "ignored") for one in applied.values())
+    alone = all(run.outcome.outcome in ("skipped", "ignored") for run in applied.values())
     applied[CONTROL.code] = apply(
-        CONTROL, CONTROL.outcome(replace(context, unused_settings=unused(RULES, settings, used))), settings
+        CONTROL, CONTROL.outcome(replace(context, unused_settings=unused_entries(RULES, settings, used))), settings
     )
     rules = [applied[rule.code].outcome for rule in RULES]
     if alone:
@@ -41,9 +41,9 @@ def check(design: Design) -> CheckReport:
         nothing = RuleOutcome(CONTROL.code, CONTROL.name, "skipped", "no other rule ran")
         rules = [nothing if rule.code == CONTROL.code else rule for rule in rules]
     return CheckReport(
-        findings=tuple(sorted((f for one in applied.values() for f in one.findings), key=_order)),
+        findings=tuple(sorted((f for run in applied.values() for f in run.findings), key=_order)),
         rules=tuple(rules),
-        ignored=tuple(sorted((i for one in applied.values() for i in one.ignored), key=lambda i: _order(i.finding))),
+        ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
     )
 
 
@@ -71,12 +71,13 @@ def amended(report: CheckReport, design: Design, outcome: Outcome) -> CheckRepor
 
 def _asked(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is selected, or one that it speaks for."""
-    return any(selected(other, settings) for other in RULES if other.code == rule.code or other.code in rule.speaks_for)
+    codes = (rule.code, *rule.speaks_for)
+    return any(is_selected(other, settings) for other in RULES if other.code in codes)
 
 
 def _judged(rule: Rule, settings: CheckSettings) -> bool:
     """Whether the rule is selected, or one that speaks for it."""
-    return any(selected(other, settings) for other in RULES if other.code == rule.code or rule.code in other.speaks_for)
+    return any(is_selected(other, settings) for other in RULES if rule.code in (other.code, *other.speaks_for))
 
 
 def _run(rule: Rule, context: Context) -> Applied:

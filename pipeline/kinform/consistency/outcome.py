@@ -7,7 +7,18 @@ from dataclasses import dataclass
 
 from kinform.model.findings import Finding
 
-__all__ = ["Answer", "Outcome", "decided", "inconclusive", "met", "skipped", "triple", "undecided", "violated"]
+__all__ = [
+    "Answer",
+    "Outcome",
+    "decided",
+    "inconclusive",
+    "met",
+    "settled",
+    "skipped",
+    "triple",
+    "undecided",
+    "violated",
+]
 
 
 @dataclass(frozen=True)
@@ -38,6 +49,11 @@ def decided(findings: Iterable[Finding] = (), reason: str = "") -> Outcome:
 def inconclusive(reason: str, findings: Iterable[Finding] = ()) -> Outcome:
     """Something that the rule is about could not be decided."""
     return Outcome("inconclusive", tuple(findings), reason)
+
+
+def settled(findings: Iterable[Finding], doubt: str, reason: str = "") -> Outcome:
+    """Inconclusive where there is a doubt, else decided, for this reason."""
+    return inconclusive(doubt, findings) if doubt else decided(findings, reason)
 
 
 def skipped(reason: str) -> Outcome:

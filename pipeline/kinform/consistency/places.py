@@ -19,7 +19,7 @@ __all__ = ["with_place"]
 
 
 def with_place(context: Context, finding: Finding) -> Finding:
-    """The finding with a place, where its subject is a part, body or joint, and with a file and line of the manifest."""
+    """The finding with a place, where its subject is a part, body or joint, and with file and line of the manifest."""
     joint = _joint(context, finding.subject)
     place = finding.place
     if place is None:

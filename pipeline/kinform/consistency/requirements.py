@@ -22,8 +22,8 @@ from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 
 __all__ = [
-    "JOINTS", "MASSES", "SINGLE", "Answer", "RequirementRule", "effort", "kind_of_value", "met", "requirement_rule", "shared_parts", "shown_value", "simulated",
-    "single_joint", "stated_as", "undecided", "violated", "worst_of",
+    "JOINTS", "MASSES", "SINGLE", "Answer", "RequirementRule", "effort", "kind_of_value", "met", "requirement_rule",
+    "shared_parts", "shown_value", "simulated", "single_joint", "stated_as", "undecided", "violated", "worst_of",
 ]  # fmt: skip
 
 SIMULATE = "Ask for a simulation that runs to its end: [simulation], and a [[function.drive]] that moves the joints."

@@ -8,10 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped, triple
+from kinform.consistency.outcome import Outcome, decided, inconclusive, settled, skipped, triple
 from kinform.model.findings import SEVERITIES, Finding
 
-__all__ = ["Declared", "Outcome", "Rule", "decided", "inconclusive", "skipped"]
+__all__ = ["Declared", "Findings", "Outcome", "Rule", "decided", "inconclusive", "settled", "skipped"]
+
+Findings = Iterable[Finding]
+"""What is wrong; a check that gives no more than this has decided."""
 
 
 class Declared(Protocol):
@@ -33,8 +36,8 @@ class Rule:
     """Of its findings, where nothing speaks for another."""
     documentation: str | None
     """Docstring of the rule's module: what is checked, why it matters, what to do, an example."""
-    check: Callable[[Context], Outcome]
-    """Runs where everything in `needs` is there."""
+    check: Callable[[Context], Outcome | Findings]
+    """Findings, or more that is to be said; runs where everything in `needs` is there."""
     needs: tuple[Need, ...] = ()
     """What the check reads, in the order in which it is asked for: the first that is not there is the outcome."""
     speaks_for: tuple[str, ...] = ()
@@ -47,7 +50,8 @@ class Rule:
             lacking = context.lacks(need)
             if lacking is not None:
                 return lacking
-        return self.check(context)
+        answer = self.check(context)
+        return answer if isinstance(answer, Outcome) else decided(answer)
 
     def at(self, severity: str) -> Rule:
         """The rule with findings of another severity."""

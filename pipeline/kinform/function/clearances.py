@@ -116,8 +116,8 @@ def apart(
     pairs = tuple(_pair(a, b, contacts, surfaces, shared) for a in sides[0] for b in sides[1])
     points = np.concatenate([_corners(p.mesh.vertices, p.X_WP) for p in sides[1] if p.mesh is not None])
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    own = np.concatenate([_corners(p.mesh.vertices, p.X_WP) for p in sides[0] if p.mesh is not None])
-    size = min(float(np.linalg.norm(np.ptp(own, axis=0))), float(np.linalg.norm(np.ptp(points, axis=0))))
+    of_first = np.concatenate([_corners(p.mesh.vertices, p.X_WP) for p in sides[0] if p.mesh is not None])
+    size = min(float(np.linalg.norm(np.ptp(group, axis=0))) for group in (of_first, points))
     return Apart(pairs, centre, float(np.linalg.norm(points - centre, axis=1).max()), size)
 
 
@@ -165,18 +165,18 @@ def _mating(
     mates."""
     assert a.mesh is not None
     assert b.mesh is not None
-    own, other = surfaces.get(a.mesh.digest), surfaces.get(b.mesh.digest)
-    if own is None or other is None or not paired:
+    of_a, of_b = surfaces.get(a.mesh.digest), surfaces.get(b.mesh.digest)
+    if of_a is None or of_b is None or not paired:
         return []
     index = MeshIndex(b.mesh)
     together: dict[bytes, tuple[Flags, Flags]] = {}
     for surface in sorted({i for i, _ in paired}):
         mates = {j for i, j in paired if i == surface}
-        beside = mates | {k for j in mates for k in index.neighbours(other, j)}
-        mine = own.labels == surface
-        far = ~np.isin(other.labels, sorted(beside))
+        beside = mates | {k for j in mates for k in index.neighbours(of_b, j)}
+        mine = of_a.labels == surface
+        far = ~np.isin(of_b.labels, sorted(beside))
         touched = _near(a, mine, b, far, tolerance)[1] if far.any() else far
-        far &= ~np.isin(other.labels, np.unique(other.labels[touched]))
+        far &= ~np.isin(of_b.labels, np.unique(of_b.labels[touched]))
         before = together.get(far.tobytes())
         together[far.tobytes()] = (mine if before is None else before[0] | mine, far)
     return [together[key] for key in sorted(together)]
@@ -184,10 +184,10 @@ def _mating(
 
 def _without(mesh: Mesh, surfaces: Mapping[str, MeshSurfaces], mated: set[int]) -> Flags:
     keep = np.ones(len(mesh.faces), dtype=np.bool_)
-    found = surfaces.get(mesh.digest)
+    of_mesh = surfaces.get(mesh.digest)
     for k in mated:
-        if found is not None and 0 <= k < len(found.surfaces):
-            keep[found.surfaces[k].faces] = False
+        if of_mesh is not None and 0 <= k < len(of_mesh.surfaces):
+            keep[of_mesh.surfaces[k].faces] = False
     return keep
 
 

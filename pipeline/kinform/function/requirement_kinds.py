@@ -16,8 +16,8 @@ import numpy as np
 from kinform.model.arrays import Array
 
 __all__ = [
-    "Balance", "Box", "CentreOfMass", "Clear", "Cone", "Fit", "Follow", "Hold", "Inertia", "Kind", "Mass", "Poses", "Reach",
-    "Reaction", "Region", "Retained", "Speed", "Torque",
+    "Balance", "Box", "CentreOfMass", "Clear", "Cone", "Fit", "Follow", "Hold", "Inertia", "JointLimit", "Kind", "Mass",
+    "Poses", "Reach", "Reaction", "Region", "Retained", "Speed", "Torque",
 ]  # fmt: skip
 
 
@@ -124,21 +124,23 @@ class Hold(Kind):
 
 
 @dataclass(frozen=True, eq=False)
-class Torque(Kind):
-    """A joint takes at most `limit` (N·m or N) in the simulation."""
+class JointLimit(Kind):
+    """Something of a joint stays below `limit` in the simulation."""
+
+    joint: str
+    limit: float
+
+
+class Torque(JointLimit):
+    """The effort that its drive gives: N·m or N."""
 
     kind = "torque"
-    joint: str
-    limit: float
 
 
-@dataclass(frozen=True, eq=False)
-class Speed(Kind):
-    """A joint moves with at most `limit` (rad/s or m/s) in the simulation."""
+class Speed(JointLimit):
+    """Its speed: rad/s or m/s."""
 
     kind = "speed"
-    joint: str
-    limit: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +175,8 @@ class CentreOfMass(Kind):
 
 @dataclass(frozen=True, eq=False)
 class Inertia(Kind):
-    """A moment of inertia about a unit axis (3,), through a point (3,) m or the centre of mass, between bounds (kg·m²)."""
+    """A moment of inertia about a unit axis (3,), through a point (3,) m or the centre of mass, is between bounds
+    (kg·m²)."""
 
     kind = "inertia"
     axis: Array

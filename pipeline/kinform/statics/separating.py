@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.design import Design
+from kinform.foundation.algebra.displacements import inverse, poses
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
@@ -87,8 +88,8 @@ class _Patch:
 
 @dataclass(frozen=True, eq=False)
 class _JointContact:
-    """The contact of one joint along a run of T output times; wrenches of it are as its first body sees them, about the
-    frame's centre, torques over its length."""
+    """The contact of one joint along a run of T output times; wrenches of it are as its first body sees them, about
+    the frame's centre, torques over its length."""
 
     joint: Joint
     patches: Sequence[_Patch]
@@ -130,7 +131,7 @@ class _JointContact:
         return np.concatenate(out)
 
     def driven(self, k: int) -> Array:
-        """(m, 6) wrenches along the freedoms of the joint, through its point: what acts on its shaft is no contact's."""
+        """(m, 6) wrenches along the joint's freedoms, through its point: what acts on its shaft is no contact's."""
         turns, slides, screws = axes_of(self.joint, np.eye(3), self.across[k])
         wrenches = [np.concatenate([turn / self.frame.length, np.zeros(3)]) for turn in turns]
         wrenches += [np.concatenate([screw[:3] / self.frame.length, np.zeros(3)]) for screw in screws]
@@ -227,15 +228,9 @@ def _contact_of(reactions: _Reactions, joint: Joint) -> _JointContact | None:
 
 def _relative(run: Simulation, joint: Joint) -> tuple[Array, Array]:
     """(T, 3, 3) turn of the first body, and (T, 4, 4) displacement of the second as the first sees it."""
-    from scipy.spatial.transform import Rotation
-
-    first, second = (run.body_names.index(name) for name in joint.bodies)
-    turns = [Rotation.from_quat(np.roll(run.q_WB[:, k], -1, axis=1)).as_matrix() for k in (first, second)]
-    X = np.zeros((len(run.time), 4, 4))
-    X[:, :3, :3] = turns[0].transpose(0, 2, 1) @ turns[1]
-    X[:, :3, 3] = np.einsum("tji,tj->ti", turns[0], run.p_WB[:, second] - run.p_WB[:, first])
-    X[:, 3, 3] = 1.0
-    return turns[0], X
+    numbers = [run.body_names.index(name) for name in joint.bodies]
+    first, second = (poses(run.p_WB[:, k], run.q_WB[:, k]) for k in numbers)
+    return first[:, :3, :3], inverse(first) @ second
 
 
 def _patches(reactions: _Reactions, joint: Joint) -> Iterator[_Patch]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Declared, Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Declared, Outcome, Rule, settled
 from kinform.foundation.words import counted, quoted
 from kinform.function import resolve_joint
 
@@ -59,7 +59,7 @@ def without_freedom(
                     remedy=remedy,
                 )
             )
-    return inconclusive("; ".join(dict.fromkeys(unknown)), findings) if unknown else decided(findings)
+    return settled(findings, "; ".join(dict.fromkeys(unknown)))
 
 
 def loose_carriers(context: Context, name: str) -> str:

@@ -15,9 +15,9 @@ from kinform.consistency.constants import (
     UNCERTAIN_RATIO,
     UNCOUNTED_TEETH,
 )
-from kinform.consistency.context import Context
 from kinform.foundation.words import rate
 from kinform.function import resolve_joint
+from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Kinematics
 
@@ -33,16 +33,16 @@ class Ratio:
     through: tuple[str, ...]
 
 
-def derived_ratio(context: Context, stated: Stated) -> Ratio | str:
+def derived_ratio(assembly: Assembly, kinematics: Kinematics, stated: Stated) -> Ratio | str:
     """What the geometry gives for a stated coupling, or the reason why it gives nothing."""
-    ends = [resolve_joint(context.assembly, context.kinematics, name) for name in stated.joints]
+    ends = [resolve_joint(assembly, kinematics, name) for name in stated.joints]
     for end in ends:
         if end.joint is None:
             return end.reason
     first, second = (str(end.joint.name) for end in ends if end.joint is not None)
     if first == second:
         return "both names stand for one joint"
-    chain = _chain(context.kinematics, first, second)
+    chain = _chain(kinematics, first, second)
     if chain is None:
         return "no contact of teeth, cam or screw is found that ties these joints"
     ratio, relative = float(ends[0].sign * ends[1].sign), 0.0
@@ -59,28 +59,29 @@ def derived_ratio(context: Context, stated: Stated) -> Ratio | str:
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
         relative += max(DEVIATIONS * spread, SCREW_PITCH if coupling.kind == "screw" else UNCOUNTED_TEETH)
     if relative > UNCERTAIN_RATIO * len(chain):
-        return f"the {shown_ratio(context, stated, ratio)} is uncertain by {100 * relative:.2g} %"
+        return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
 
 
-def shown_ratio(context: Context, stated: Stated, ratio: float) -> str:
-    """A ratio of SI values as the manifest has it, of degrees and lengths in the assembly's units: "ratio 0.02 mm/°"."""
-    slides = [_slides(context, name) for name in stated.joints]
-    return f"ratio {rate(ratio, slides[0], slides[1], context.units)}"
+def shown_ratio(assembly: Assembly, stated: Stated, ratio: float) -> str:
+    """A ratio of SI values as the manifest has it, of degrees and lengths in the assembly's units:
+    "ratio 0.02 mm/°"."""
+    slides = [_slides(assembly, name) for name in stated.joints]
+    return f"ratio {rate(ratio, slides[0], slides[1], assembly.units)}"
 
 
-def _slides(context: Context, name: str) -> bool:
+def _slides(assembly: Assembly, name: str) -> bool:
     """Whether values of the joint are lengths."""
-    return any(joint.name == name and joint.type == "prismatic" for joint in context.function.joints)
+    return any(joint.name == name and joint.type == "prismatic" for joint in assembly.function.joints)
 
 
-def coupled_through(context: Context, stated: Stated) -> tuple[str, ...]:
+def coupled_through(assembly: Assembly, kinematics: Kinematics, stated: Stated) -> tuple[str, ...]:
     """Names of the joints, teeth, cams or screws, that a stated coupling goes through; none where there are none."""
-    joints = [resolve_joint(context.assembly, context.kinematics, name).joint for name in stated.joints]
+    joints = [resolve_joint(assembly, kinematics, name).joint for name in stated.joints]
     names = [str(joint.name) for joint in joints if joint is not None]
     if len(names) < 2 or names[0] == names[1]:
         return ()
-    return tuple(str(coupling.through) for coupling, _ in _chain(context.kinematics, names[0], names[1]) or [])
+    return tuple(str(coupling.through) for coupling, _ in _chain(kinematics, names[0], names[1]) or [])
 
 
 def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupling, bool]] | None:

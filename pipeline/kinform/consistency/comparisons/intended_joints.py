@@ -163,9 +163,9 @@ def _slack(patches: list[Patch]) -> tuple[float, float]:
 
 def _tolerance(assembly: Assembly, contacts: Contacts | None, patches: list[Patch]) -> float:
     """Contact tolerance of the pairs of parts that carry the joint: the greatest."""
-    used = [contacts.tolerance.get(patch.parts) for patch in patches] if contacts is not None else []
-    known = [value for value in used if value is not None]
-    return max(known) if known else assembly.tolerances.contact or assembly.tolerances.contact_cap
+    tolerances = {} if contacts is None else contacts.tolerance
+    of_pairs = [tolerances[patch.parts] for patch in patches if patch.parts in tolerances]
+    return max(of_pairs) if of_pairs else assembly.tolerances.contact or assembly.tolerances.contact_cap
 
 
 def _between(a: Array, b: Array) -> float:

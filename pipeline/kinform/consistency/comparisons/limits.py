@@ -18,7 +18,7 @@ from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import simulated, single_joint
 from kinform.foundation.words import number, quoted, telling
 from kinform.function.amounts import Amount, amount_of
-from kinform.function.requirement_kinds import Speed, Torque
+from kinform.function.requirement_kinds import JointLimit
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
@@ -130,7 +130,7 @@ def coarse(simulation: Simulation) -> bool:
 
 
 def run_of_joint(
-    context: Context, requirement: Torque | Speed, *, dynamic: bool = False
+    context: Context, requirement: JointLimit, *, dynamic: bool = False
 ) -> tuple[Joint, Simulation, int] | Answer:
     """The joint of a requirement, the run, and the joint's column in it; or why there is none. Needs kinematics."""
     joint = single_joint(context, requirement.joint)
@@ -164,7 +164,7 @@ def _interval(low: float | None, high: float | None, shown: Callable[[float], st
 
 
 def _highest_between(values: Array) -> float:
-    """The highest vertex of the parabolas through three neighbours, where the curvature beside them is much the same."""
+    """The highest vertex of the parabolas through three neighbours, where the curvature beside is much the same."""
     if len(values) < 5:
         return -np.inf
     bend = np.diff(values, 2)

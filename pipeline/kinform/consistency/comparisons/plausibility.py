@@ -64,26 +64,26 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     units = assembly.units
     tiny = TINY.get(units, TINY_ELSE)
     material = sum(_material(part) for part in assembly.parts)
-    found = f"{length(size, units)} across"
+    across = f"{length(size, units)} across"
 
-    def doubt(severity: str, message: str, found: str = found) -> Doubt:
-        return Doubt(severity, (assembly.name,), message, found, assembly.source)
+    def doubt(severity: str, message: str, size_found: str = across) -> Doubt:
+        return Doubt(severity, (assembly.name,), message, size_found, assembly.source)
 
     if size > HUGE:
-        return doubt("error", f"the assembly is {found} with units = '{units}': no mechanism is that large")
+        return doubt("error", f"the assembly is {across} with units = '{units}': no mechanism is that large")
     if material > MASSIVE:
         amount = volume(material, units)
         return doubt(
             "error",
             f"the parts hold {amount} of solid material with units = '{units}': no mechanism is that heavy",
-            f"{found}, {amount} of material",
+            f"{across}, {amount} of material",
         )
     if 0.0 < size < tiny:
-        return doubt("error", f"the assembly is only {found} with units = '{units}'")
+        return doubt("error", f"the assembly is only {across} with units = '{units}'")
     if size > LARGE:
-        return doubt("warning", f"the assembly is {found} with units = '{units}': unusually large for a mechanism")
+        return doubt("warning", f"the assembly is {across} with units = '{units}': unusually large for a mechanism")
     if 0.0 < size < SMALL * tiny:
-        return doubt("warning", f"the assembly is only {found} with units = '{units}': unusually small")
+        return doubt("warning", f"the assembly is only {across} with units = '{units}': unusually small")
     return None
 
 
@@ -93,7 +93,7 @@ def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
     if len(boxes) < 2:
         return ()
     rests = dict(zip(boxes, _rests(np.array(list(boxes.values()))), strict=True))
-    found = []
+    outliers = []
     for part in assembly.parts:
         if part.name not in boxes:
             continue
@@ -105,8 +105,8 @@ def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
                 f"{quoted([part.name])} is {text} across, read with units = '{part.units}', "
                 f"and all other parts together {length(rest, assembly.units)}"
             )
-            found.append(Doubt("warning", (part.name,), message, f"{text} across", part.source))
-    return tuple(found)
+            outliers.append(Doubt("warning", (part.name,), message, f"{text} across", part.source))
+    return tuple(outliers)
 
 
 def _rests(boxes: Array) -> Array:

@@ -12,7 +12,7 @@ from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 
-__all__ = ["StatedRange", "matched", "shown", "stated_ranges"]
+__all__ = ["StatedRange", "joint_as_intended", "shown", "stated_ranges"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ def _of_sticks(context: Context, intended: IntendedJoint) -> StatedRange | None:
 
 
 def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparison) -> StatedRange:
-    run, match = context.design.simulation, matched(comparison)
+    run, match = context.design.simulation, joint_as_intended(comparison)
     if match is None:
         return StatedRange(intended, reason="no joint of that type was found directly between its parts")
     joint, sign = match
@@ -70,7 +70,7 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
     return StatedRange(intended, *ends, sign=sign, left_out=reach.left_out)
 
 
-def matched(comparison: Comparison) -> tuple[Joint, float] | None:
+def joint_as_intended(comparison: Comparison) -> tuple[Joint, float] | None:
     """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the
     designer's values run against those of kinform, else 1; None where there is none."""
     intended, joint = comparison.intended, comparison.joint

@@ -1,4 +1,4 @@
-"""All rules, one file each: its docstring is what `kinform explain` prints. A file here is a rule, and registered by that."""
+"""All rules, one file each: its docstring is what `kinform explain` prints. A file here is registered by being here."""
 
 from __future__ import annotations
 

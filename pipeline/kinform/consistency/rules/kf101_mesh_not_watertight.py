@@ -12,21 +12,17 @@ Example: a bracket exported with one face hidden has 24 edges with a facet on on
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, listed
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Solid parts with edges that are not shared by exactly two facets."""
-    solids = [use for use in context.meshes if use.solid]
-    if not solids:
-        return skipped("no part is a solid with a mesh")
-    findings = []
-    for use in solids:
+    for use in context.meshes:
         health = use.mesh.health
-        if health.watertight:
+        if health.watertight or not use.solid:
             continue
         causes = []
         if health.open_edges:
@@ -35,18 +31,15 @@ def check(context: Context) -> Outcome:
             causes.append(f"{counted(health.overused_edges, 'edge')} with more than two facets")
         if health.duplicate_facets:
             causes.append(counted(health.duplicate_facets, "duplicate facet"))
-        findings.append(
-            RULE.finding(
-                [part.name for part in use.parts if part.solid],
-                f"the mesh {use.label} is not watertight" + (f": {listed(causes)}" if causes else ""),
-                found=listed(causes) or None,
-                intended="a closed surface, every edge with two facets",
-                declared=next(part.source for part in use.parts if part.solid),
-                remedy="Close the mesh and export it again, or state `solid = false` for a part that is "
-                "meant to be incomplete.",
-            )
+        yield RULE.finding(
+            [part.name for part in use.parts if part.solid],
+            f"the mesh {use.label} is not watertight" + (f": {listed(causes)}" if causes else ""),
+            found=listed(causes) or None,
+            intended="a closed surface, every edge with two facets",
+            declared=next(part.source for part in use.parts if part.solid),
+            remedy="Close the mesh and export it again, or state `solid = false` for a part that is "
+            "meant to be incomplete.",
         )
-    return decided(findings)
 
 
-RULE = Rule("KF101", "mesh-not-watertight", "error", __doc__, check)
+RULE = Rule("KF101", "mesh-not-watertight", "error", __doc__, check, needs=("solid meshes",))

@@ -12,26 +12,24 @@ Example: a cube of 10 mm with a signed volume of -1000 mm³.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import volume
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Closed meshes of negative volume."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"the mesh {use.label} is inside out: its volume is {volume(use.mesh.health.volume, context.units)}",
-            found=volume(use.mesh.health.volume, context.units),
-            intended="a positive volume: facet normals out of the material",
-            declared=use.parts[0].source,
-            remedy="Flip the facets of the whole mesh and export it again.",
-        )
-        for use in context.closed_meshes
-        if use.mesh.health.volume < 0.0
-    )
+    for use in context.closed_meshes:
+        if use.mesh.health.volume < 0.0:
+            yield RULE.finding(
+                use.subject,
+                f"the mesh {use.label} is inside out: its volume is {volume(use.mesh.health.volume, context.units)}",
+                found=volume(use.mesh.health.volume, context.units),
+                intended="a positive volume: facet normals out of the material",
+                declared=use.parts[0].source,
+                remedy="Flip the facets of the whole mesh and export it again.",
+            )
 
 
 RULE = Rule("KF102", "mesh-inverted", "error", __doc__, check, needs=("closed meshes",))

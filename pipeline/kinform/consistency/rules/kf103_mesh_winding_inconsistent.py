@@ -11,25 +11,23 @@ Example: a plate of which one face was flipped by hand.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Meshes with facets in opposite senses; edges with more than two facets have no sense of their own."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"the facets of the mesh {use.label} do not all face the same way",
-            found="facets that face both ways",
-            intended="every edge run through once in each direction",
-            declared=use.parts[0].source,
-            remedy="Unify the normals of the mesh and export it again.",
-        )
-        for use in context.meshes
-        if not use.mesh.health.consistent_winding and use.mesh.health.overused_edges == 0
-    )
+    for use in context.meshes:
+        if not use.mesh.health.consistent_winding and use.mesh.health.overused_edges == 0:
+            yield RULE.finding(
+                use.subject,
+                f"the facets of the mesh {use.label} do not all face the same way",
+                found="facets that face both ways",
+                intended="every edge run through once in each direction",
+                declared=use.parts[0].source,
+                remedy="Unify the normals of the mesh and export it again.",
+            )
 
 
 RULE = Rule("KF103", "mesh-winding-inconsistent", "error", __doc__, check, needs=("meshes",))

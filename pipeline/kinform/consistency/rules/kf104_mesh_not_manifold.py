@@ -11,25 +11,24 @@ Example: two cubes in one file that share an edge: the edge has four facets.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Closed, consistently wound meshes whose manifold status is not "NoError"."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"the mesh {use.label} is closed but not a valid solid: manifold status {use.mesh.health.manifold_status}",
-            found=use.mesh.health.manifold_status,
-            intended="NoError",
-            declared=use.parts[0].source,
-            remedy="Remove facets that cross or touch others of the same part, and export the mesh again.",
-        )
-        for use in context.closed_meshes
-        if use.mesh.health.manifold_status != "NoError"
-    )
+    for use in context.closed_meshes:
+        if use.mesh.health.manifold_status != "NoError":
+            yield RULE.finding(
+                use.subject,
+                f"the mesh {use.label} is closed but not a valid solid: "
+                f"manifold status {use.mesh.health.manifold_status}",
+                found=use.mesh.health.manifold_status,
+                intended="NoError",
+                declared=use.parts[0].source,
+                remedy="Remove facets that cross or touch others of the same part, and export the mesh again.",
+            )
 
 
 RULE = Rule("KF104", "mesh-not-manifold", "warning", __doc__, check, needs=("closed meshes",))

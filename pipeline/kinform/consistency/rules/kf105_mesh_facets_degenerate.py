@@ -10,28 +10,26 @@ Example: three facets whose corners were rounded to the same point.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, length
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Meshes with facets that collapsed when vertices were welded."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"{counted(use.mesh.health.degenerate_facets, 'facet')} of the mesh {use.label} "
-            f"without area {'was' if use.mesh.health.degenerate_facets == 1 else 'were'} removed "
-            f"(vertices within {length(use.mesh.health.weld, context.units, 2)} are one)",
-            found=counted(use.mesh.health.degenerate_facets, "facet"),
-            intended="facets with an area",
-            declared=use.parts[0].source,
-            remedy="Nothing, unless there are many: then export the mesh with more digits.",
-        )
-        for use in context.meshes
-        if use.mesh.health.degenerate_facets > 0
-    )
+    for use in context.meshes:
+        if use.mesh.health.degenerate_facets > 0:
+            yield RULE.finding(
+                use.subject,
+                f"{counted(use.mesh.health.degenerate_facets, 'facet')} of the mesh {use.label} "
+                f"without area {'was' if use.mesh.health.degenerate_facets == 1 else 'were'} removed "
+                f"(vertices within {length(use.mesh.health.weld, context.units, 2)} are one)",
+                found=counted(use.mesh.health.degenerate_facets, "facet"),
+                intended="facets with an area",
+                declared=use.parts[0].source,
+                remedy="Nothing, unless there are many: then export the mesh with more digits.",
+            )
 
 
 RULE = Rule("KF105", "mesh-facets-degenerate", "note", __doc__, check, needs=("meshes",))

@@ -11,26 +11,24 @@ Example: an STL made by concatenating two exports of the same part.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Meshes with duplicate facets."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"the mesh {use.label} holds {counted(use.mesh.health.duplicate_facets, 'facet')} more than once",
-            found=counted(use.mesh.health.duplicate_facets, "duplicate facet"),
-            intended="every facet once",
-            declared=use.parts[0].source,
-            remedy="Remove the duplicates and export the mesh again.",
-        )
-        for use in context.meshes
-        if use.mesh.health.duplicate_facets > 0
-    )
+    for use in context.meshes:
+        if use.mesh.health.duplicate_facets > 0:
+            yield RULE.finding(
+                use.subject,
+                f"the mesh {use.label} holds {counted(use.mesh.health.duplicate_facets, 'facet')} more than once",
+                found=counted(use.mesh.health.duplicate_facets, "duplicate facet"),
+                intended="every facet once",
+                declared=use.parts[0].source,
+                remedy="Remove the duplicates and export the mesh again.",
+            )
 
 
 RULE = Rule("KF106", "mesh-facets-duplicate", "warning", __doc__, check, needs=("meshes",))

@@ -11,25 +11,23 @@ Example: a bearing exported with rings and balls in one file.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Meshes of more than one shell."""
-    return decided(
-        RULE.finding(
-            use.subject,
-            f"the mesh {use.label} consists of {use.mesh.health.shells} shells that move as one body",
-            found=f"{use.mesh.health.shells} shells",
-            intended="one shell, or pieces that move as one",
-            declared=use.parts[0].source,
-            remedy="Export pieces that move on their own as separate parts.",
-        )
-        for use in context.meshes
-        if use.mesh.health.shells > 1
-    )
+    for use in context.meshes:
+        if use.mesh.health.shells > 1:
+            yield RULE.finding(
+                use.subject,
+                f"the mesh {use.label} consists of {use.mesh.health.shells} shells that move as one body",
+                found=f"{use.mesh.health.shells} shells",
+                intended="one shell, or pieces that move as one",
+                declared=use.parts[0].source,
+                remedy="Export pieces that move on their own as separate parts.",
+            )
 
 
 RULE = Rule("KF107", "mesh-several-shells", "note", __doc__, check, needs=("meshes",))

@@ -17,18 +17,15 @@ Example: a camera gimbal drawn in millimetres and declared with `units = "m"` is
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Findings, Rule
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Implausible sizes of the assembly or of one part."""
-    placed = [joint for joint in context.function.joints if joint.point is not None]
-    if not context.meshes and len(placed) < 2:
-        return skipped("no part has a mesh, and fewer than two joints have a point")
-    return decided(
-        RULE.at(doubt.severity).finding(
+    for doubt in context.doubts:
+        yield RULE.at(doubt.severity).finding(
             doubt.subject,
             doubt.message,
             found=doubt.found,
@@ -36,8 +33,6 @@ def check(context: Context) -> Outcome:
             declared=doubt.source,
             remedy="Correct `units`: millimetres declared as metres are the usual cause.",
         )
-        for doubt in context.doubts
-    )
 
 
-RULE = Rule("KF110", "units-implausible", "error", __doc__, check)
+RULE = Rule("KF110", "units-implausible", "error", __doc__, check, needs=("sizes",))

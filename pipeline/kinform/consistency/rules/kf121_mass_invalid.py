@@ -30,13 +30,13 @@ def check(context: Context) -> Outcome:
     """Known masses that are impossible, and problems of the mass stage that no other rule explains."""
     lacking = context.lacks("mass")
     if lacking is not None:
-        weighed = any(part.density is not None or part.override is not None for part in context.assembly.parts)
-        return lacking if weighed else skipped("no part has a density or a stated mass")
+        stated = any(part.density is not None or part.override is not None for part in context.assembly.parts)
+        return lacking if stated else skipped("no part has a density or a stated mass")
     report = context.mass
-    known = [properties for properties in report.parts if properties.mass is not None]
-    if not known and not report.problems:
+    weighed = [properties for properties in report.parts if properties.mass is not None]
+    if not weighed and not report.problems:
         return skipped("no part has a mass")
-    wrong = {p.name: text for p in known if (text := _impossible(p))}
+    wrong = {p.name: text for p in weighed if (text := _impossible(p))}
     for name, text in report.problems:
         if name not in wrong and not _explained(context.assembly.part(name)):
             wrong[name] = text

@@ -14,7 +14,7 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
@@ -22,9 +22,9 @@ from kinform.model.findings import Finding
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Overlaps that are not mated fits."""
-    return decided(_finding(context, overlap) for overlap in context.contacts.interferences if not overlap.mated)
+    return [_finding(context, overlap) for overlap in context.contacts.interferences if not overlap.mated]
 
 
 def _finding(context: Context, overlap: Interference) -> Finding:

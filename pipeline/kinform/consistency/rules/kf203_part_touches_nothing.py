@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import quoted
 from kinform.model.arrays import Array
@@ -28,29 +28,25 @@ from kinform.model.contacts import Contacts
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Clusters of parts that are not connected with the ground."""
     clusters = _clusters(context.assembly, context.contacts)
     home = _home(context, clusters)
-    findings = []
     for cluster in clusters:
         if cluster == home or _intended(context.assembly, cluster):
             continue
         alone = len(cluster) == 1
         part = context.assembly.part(cluster[0])
-        findings.append(
-            RULE.finding(
-                cluster,
-                f"{quoted(cluster)} {'touches' if alone else 'touch'} "
-                f"{'no other part' if alone else 'each other, but no other part'}",
-                found="no surface within the contact tolerance of another part",
-                intended="contact with the rest of the assembly",
-                place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
-                declared=part.source,
-                remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
-            )
+        yield RULE.finding(
+            cluster,
+            f"{quoted(cluster)} {'touches' if alone else 'touch'} "
+            f"{'no other part' if alone else 'each other, but no other part'}",
+            found="no surface within the contact tolerance of another part",
+            intended="contact with the rest of the assembly",
+            place=part.X_WP[:3, 3] if part.mesh is None else _middle(context.assembly, cluster[0]),
+            declared=part.source,
+            remedy="Check the pose, add the part that is missing between, or join it by [[group]] or [[assume]].",
         )
-    return decided(findings)
 
 
 def _clusters(assembly: Assembly, contacts: Contacts) -> list[tuple[str, ...]]:

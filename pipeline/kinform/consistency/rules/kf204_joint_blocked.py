@@ -15,7 +15,7 @@ Example: an elbow of which 6 % of the contact area, beside the journal, forbids 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
@@ -23,9 +23,9 @@ from kinform.model.kinematics import Joint
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Joints whose status is blocked."""
-    return decided(_finding(context, joint) for joint in context.kinematics.joints if joint.status == "blocked")
+    return [_finding(context, joint) for joint in context.kinematics.joints if joint.status == "blocked"]
 
 
 def _finding(context: Context, joint: Joint) -> Finding:

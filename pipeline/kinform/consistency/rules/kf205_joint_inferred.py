@@ -11,7 +11,7 @@ Example: a servo horn that lies flat on a bracket: the common centre of their ri
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import listed, quoted
 
 __all__ = ["RULE"]
@@ -20,21 +20,19 @@ STATED = frozenset({"assumption", "function"})
 """Evidence that somebody stated: reported by KF207, or the function itself."""
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Joints whose status is inferred, except from statements."""
-    return decided(
-        RULE.finding(
-            [joint.name],
-            f"the {joint.type} joint of {quoted(joint.bodies)} is inferred from {listed(joint.evidence)}: "
-            f"{joint.reason}",
-            found=f"{joint.type}, inferred",
-            intended="a joint that contact alone decides",
-            place=context.place_of(joint),
-            remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
-        )
-        for joint in context.kinematics.joints
-        if joint.status == "inferred" and not STATED.intersection(joint.evidence)
-    )
+    for joint in context.kinematics.joints:
+        if joint.status == "inferred" and not STATED.intersection(joint.evidence):
+            yield RULE.finding(
+                [joint.name],
+                f"the {joint.type} joint of {quoted(joint.bodies)} is inferred from {listed(joint.evidence)}: "
+                f"{joint.reason}",
+                found=f"{joint.type}, inferred",
+                intended="a joint that contact alone decides",
+                place=context.place_of(joint),
+                remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
+            )
 
 
 RULE = Rule("KF205", "joint-inferred", "note", __doc__, check, needs=("kinematics", "meshes"))

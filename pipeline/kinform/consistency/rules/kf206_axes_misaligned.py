@@ -13,15 +13,14 @@ Example: a shaft tilted by 0.15° in a bearing of 40 mm length with 0.02 mm of c
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import angle, length, listed, quoted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Joints whose axes were mated beyond what the clearance allows."""
-    findings = []
     for name, tilt, offset in context.kinematics.misaligned:
         joint = context.joint(name)
         parts = []
@@ -30,17 +29,14 @@ def check(context: Context) -> Outcome:
         if offset > 0.0:
             parts.append(f"{length(offset, context.units, 3)} in position")
         excess = listed(parts) or "a small amount"
-        findings.append(
-            RULE.finding(
-                [name],
-                f"the axes of the two sides of {quoted([name])} differ by {excess} more than the clearance allows",
-                found=excess,
-                intended="axes that agree within the clearance",
-                place=context.place_of(joint),
-                remedy="Make both sides coaxial, or give the joint more clearance.",
-            )
+        yield RULE.finding(
+            [name],
+            f"the axes of the two sides of {quoted([name])} differ by {excess} more than the clearance allows",
+            found=excess,
+            intended="axes that agree within the clearance",
+            place=context.place_of(joint),
+            remedy="Make both sides coaxial, or give the joint more clearance.",
         )
-    return decided(findings)
 
 
 RULE = Rule("KF206", "axes-misaligned", "warning", __doc__, check, needs=("kinematics", "meshes"))

@@ -10,16 +10,16 @@ Example: a horn assumed fixed to a bracket because they are screwed together at 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import quoted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Every assumption of the manifest."""
-    return decided(
-        RULE.finding(
+    for assumption in context.assembly.assumptions:
+        yield RULE.finding(
             assumption.between,
             f"{quoted(assumption.between)} are assumed "
             + ("not to touch" if assumption.ignore else f"to be joined: {assumption.type}")
@@ -30,8 +30,6 @@ def check(context: Context) -> Outcome:
             declared=assumption.source,
             remedy="Nothing while the reason holds.",
         )
-        for assumption in context.assembly.assumptions
-    )
 
 
 RULE = Rule("KF207", "joint-assumed", "note", __doc__, check, needs=("stated assumptions",))

@@ -11,7 +11,7 @@ Example: a motor with `mobility = 1` whose rotor is fused to its stator by a wro
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Outcome, Rule, settled
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import mobility_within
 
@@ -43,9 +43,7 @@ def check(context: Context) -> Outcome:
                     remedy="Check the sub-assembly on its own; correct its joints, or its `mobility`.",
                 )
             )
-    if unknown:
-        return inconclusive(f"joints inside are ambiguous: {quoted(unknown)}", findings)
-    return decided(findings)
+    return settled(findings, f"joints inside are ambiguous: {quoted(unknown)}" if unknown else "")
 
 
 RULE = Rule(

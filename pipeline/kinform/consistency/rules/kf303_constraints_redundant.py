@@ -16,27 +16,25 @@ has none.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Redundancy of the whole assembly."""
     redundant = context.kinematics.mobility.redundant
-    if redundant <= 0:
-        return decided()
-    finding = RULE.finding(
-        (context.assembly.name,),
-        f"the assembly has {counted(redundant, 'redundant constraint')}: "
-        f"{'it is' if redundant == 1 else 'they are'} only met by exact parts",
-        found=str(redundant),
-        intended="0",
-        declared=context.assembly.source,
-        remedy="Nothing if the parts are aligned well; otherwise use freer joints in the loops.",
-    )
-    return decided([finding])
+    if redundant > 0:
+        yield RULE.finding(
+            (context.assembly.name,),
+            f"the assembly has {counted(redundant, 'redundant constraint')}: "
+            f"{'it is' if redundant == 1 else 'they are'} only met by exact parts",
+            found=str(redundant),
+            intended="0",
+            declared=context.assembly.source,
+            remedy="Nothing if the parts are aligned well; otherwise use freer joints in the loops.",
+        )
 
 
 RULE = Rule("KF303", "constraints-redundant", "note", __doc__, check, needs=("kinematics",))

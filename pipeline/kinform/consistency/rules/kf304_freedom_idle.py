@@ -13,18 +13,18 @@ Example: a pin that turns in both of its holes.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import quoted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Idle bodies."""
     kinematics = context.kinematics
     bodies = {body.name: body for body in kinematics.bodies}
-    return decided(
-        RULE.finding(
+    for name in sorted(kinematics.mobility.idle_bodies):
+        yield RULE.finding(
             [name],
             f"{quoted([name])} can move on its own without moving anything else; this freedom is not counted",
             found="idle freedom",
@@ -32,8 +32,6 @@ def check(context: Context) -> Outcome:
             declared=context.assembly.part(bodies[name].parts[0]).source,
             remedy="Nothing if the part may spin or slide; otherwise hold it by a flat, a key or a [[group]].",
         )
-        for name in sorted(kinematics.mobility.idle_bodies)
-    )
 
 
 RULE = Rule("KF304", "freedom-idle", "note", __doc__, check, needs=("kinematics",))

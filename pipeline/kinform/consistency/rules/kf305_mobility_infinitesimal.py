@@ -45,9 +45,9 @@ def check(context: Context) -> Outcome:
                 remedy="Free a joint of the loop if it shall move; else move a joint out of line with the others.",
             )
         )
-    if mobility.finite is None and context.function.mobility is not None:
-        return inconclusive(mobility.finite_reason, findings)
-    return decided(findings, "" if findings else mobility.finite_reason)
+    doubtful = mobility.finite is None and context.function.mobility is not None
+    reason = "" if findings else mobility.finite_reason
+    return inconclusive(mobility.finite_reason, findings) if doubtful else decided(findings, reason)
 
 
 RULE = Rule("KF305", "mobility-infinitesimal", "warning", __doc__, check, needs=("kinematics",))

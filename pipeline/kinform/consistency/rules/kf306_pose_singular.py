@@ -15,15 +15,14 @@ Example: a parallelogram of four bars that lie in one line may go on as a parall
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, listed, quoted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Blocks whose pose has more freedoms than the branches that lead out of it."""
-    findings = []
     for certificate in context.kinematics.mobility.certificates:
         if not certificate.singular:
             continue
@@ -33,19 +32,16 @@ def check(context: Context) -> Outcome:
             if len(ways) > 1
             else f"beside it {ways[0]}"
         )
-        findings.append(
-            RULE.finding(
-                certificate.joints,
-                f"{quoted(certificate.joints)} have {counted(certificate.instantaneous or 0, 'freedom')} in this pose, "
-                f"{branches}",
-                found="bifurcation" if len(ways) > 1 else "singular pose",
-                intended="a regular pose",
-                place=context.place_of(context.joint(certificate.joints[0])),
-                declared=context.assembly.source,
-                remedy="Draw the assembly in another pose; guide the device where it passes this one.",
-            )
+        yield RULE.finding(
+            certificate.joints,
+            f"{quoted(certificate.joints)} have {counted(certificate.instantaneous or 0, 'freedom')} in this pose, "
+            f"{branches}",
+            found="bifurcation" if len(ways) > 1 else "singular pose",
+            intended="a regular pose",
+            place=context.place_of(context.joint(certificate.joints[0])),
+            declared=context.assembly.source,
+            remedy="Draw the assembly in another pose; guide the device where it passes this one.",
         )
-    return decided(findings)
 
 
 RULE = Rule("KF306", "pose-singular", "warning", __doc__, check, needs=("kinematics",))

@@ -48,12 +48,12 @@ def _reason(context: Context, comparison: Comparison) -> str:
     limit = context.assembly.tolerances.contact
     within = f" within {length(limit, context.units)}" if limit is not None else ""
     if len(lonely) == 1:
-        return f"{_named(lonely[0])} touches no other body{within}"
+        return f"{_quoted_name(lonely[0])} touches no other body{within}"
     first, second = comparison.bodies
-    return f"{_named(first)} and {_named(second)} do not touch{within}"
+    return f"{_quoted_name(first)} and {_quoted_name(second)} do not touch{within}"
 
 
-def _named(body: Body) -> str:
+def _quoted_name(body: Body) -> str:
     return quoted([body.name])
 
 

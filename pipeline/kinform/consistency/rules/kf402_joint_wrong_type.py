@@ -1,8 +1,8 @@
 """Geometry gives a joint of another type than the function intends.
 
-Two sides that are one body have no motion and satisfy only `fixed`. Joints that are ambiguous, and types
-that geometry does not always show (a screw without modelled threads, universal), leave the rule inconclusive. Loose parts between the
-bodies that the function does not name, such as a pin, take part in the decision.
+Two sides that are one body have no motion and satisfy only `fixed`. Joints that are ambiguous, and types that
+geometry does not always show (a screw without modelled threads, universal), leave the rule inconclusive. Loose parts
+between the bodies that the function does not name, such as a pin, take part in the decision.
 
 Why it matters: the mechanism moves in a way that is not wanted, or does not move.
 
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Outcome, Rule, settled
 from kinform.foundation.words import counted, direction, quoted
 from kinform.model.findings import Finding
 
@@ -34,18 +34,16 @@ def check(context: Context) -> Outcome:
     present = [c for c in context.comparisons if c.state in ("found", "one body")]
     findings = [_finding(context, c) for c in present if not c.right_type]
     unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
-    if unknown:
-        return inconclusive("; ".join(unknown), findings)
-    return decided(findings, reason=f"{counted(len(present), 'joint')} compared")
+    return settled(findings, "; ".join(unknown), f"{counted(len(present), 'joint')} compared")
 
 
 def _finding(context: Context, c: Comparison) -> Finding:
     intended = c.intended
-    found = _found(c)
+    derived = _derived_type(c)
     return RULE.finding(
         [intended.name],
-        f"joint '{intended.name}' is {found}, intended is {intended.type}{_consequence(c)}",
-        found=found + (f" about {direction(c.axis)}" if c.axis is not None else ""),
+        f"joint '{intended.name}' is {derived}, intended is {intended.type}{_consequence(c)}",
+        found=derived + (f" about {direction(c.axis)}" if c.axis is not None else ""),
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,
         declared=intended,
@@ -53,7 +51,7 @@ def _finding(context: Context, c: Comparison) -> Finding:
     )
 
 
-def _found(c: Comparison) -> str:
+def _derived_type(c: Comparison) -> str:
     if c.state == "one body":
         why = f" ({c.reason})" if c.reason else ""
         return f"fixed: {quoted(c.intended.between)} are parts of one body{why}"

@@ -28,12 +28,12 @@ def check(context: Context) -> Outcome:
             continue
         count += 1
         if abs(c.pitch - wanted) > SAME_PITCH * abs(wanted):
-            found, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
+            pitch, intended = (f"{length(p, context.units)} a turn" for p in (c.pitch, wanted))
             findings.append(
                 RULE.finding(
                     [c.intended.name],
-                    f"joint '{c.intended.name}' advances {found}, intended are {intended}",
-                    found=found,
+                    f"joint '{c.intended.name}' advances {pitch}, intended are {intended}",
+                    found=pitch,
                     intended=intended,
                     place=c.point,
                     declared=c.intended,

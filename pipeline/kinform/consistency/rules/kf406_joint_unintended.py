@@ -13,9 +13,8 @@ Example: a cable duct on the arm fits around the base like a bearing.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.unintended import unintended_joints
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Outcome, Rule, settled
 from kinform.foundation.words import direction, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
@@ -25,20 +24,17 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Lower pairs, other than planar, between bodies of the function that no intended joint joins."""
-    joints = unintended_joints(context)
+    joints = context.unintended_joints
     findings = [_finding(context, joint) for joint in joints if joint.type not in ("planar", "general")]
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
-    if unknown:
-        return inconclusive(f"not intended and ambiguous: {quoted(unknown)}", findings)
-    return decided(findings)
+    return settled(findings, f"not intended and ambiguous: {quoted(unknown)}" if unknown else "")
 
 
 def _finding(context: Context, joint: Joint) -> Finding:
-    found = joint.type + (f" about {direction(joint.axis)}" if joint.axis is not None else "")
     return RULE.finding(
         [joint.name],
         f"{quoted(joint.bodies)} are joined by a {joint.type} joint that the function does not intend",
-        found=found,
+        found=joint.type + (f" about {direction(joint.axis)}" if joint.axis is not None else ""),
         intended="no joint",
         place=context.place_of(joint),
         declared=context.assembly.source,

@@ -12,9 +12,8 @@ Example: the side of a link slides along the base.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.unintended import unintended_joints
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import area, counted, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
@@ -22,11 +21,10 @@ from kinform.model.kinematics import Joint
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Planar and general contact between bodies of the function that no intended joint joins."""
-    joints = unintended_joints(context)
-    touching = [j for j in joints if j.type in ("planar", "general") and j.status != "ambiguous"]
-    return decided(_finding(context, joint) for joint in touching)
+    touching = [j for j in context.unintended_joints if j.type in ("planar", "general") and j.status != "ambiguous"]
+    return [_finding(context, joint) for joint in touching]
 
 
 def _finding(context: Context, joint: Joint) -> Finding:

@@ -12,29 +12,27 @@ Example: a cover that was added to the assembly, and not to the function.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Bodies that no intended joint names."""
     kinematics = context.kinematics
-    return decided(
-        RULE.finding(
-            [body.name],
-            f"{quoted([body.name])} is in no intended joint: its "
-            f"{counted(sum(body.name in joint.bodies for joint in kinematics.joints), 'joint')} "
-            "cannot be compared with the function",
-            found="no intended joint",
-            intended="an intended joint of every body, or a [[group]]",
-            declared=context.assembly.part(body.parts[0]).source,
-            remedy="Nothing for pins and screws; otherwise add the intended joint, or a [[group]].",
-        )
-        for body in kinematics.bodies
-        if body.name not in context.intended_bodies
-    )
+    for body in kinematics.bodies:
+        if body.name not in context.intended_bodies:
+            yield RULE.finding(
+                [body.name],
+                f"{quoted([body.name])} is in no intended joint: its "
+                f"{counted(sum(body.name in joint.bodies for joint in kinematics.joints), 'joint')} "
+                "cannot be compared with the function",
+                found="no intended joint",
+                intended="an intended joint of every body, or a [[group]]",
+                declared=context.assembly.part(body.parts[0]).source,
+                remedy="Nothing for pins and screws; otherwise add the intended joint, or a [[group]].",
+            )
 
 
 RULE = Rule("KF408", "body-without-function", "note", __doc__, check, needs=("stated joints", "kinematics"))

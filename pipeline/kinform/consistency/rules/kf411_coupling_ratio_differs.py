@@ -1,9 +1,9 @@
 """Two joints are coupled in another ratio than intended.
 
-Where teeth keep a constant ratio (`kinform show F.h5 mobility` counts them) it is that of their numbers; else the ratio
-is read out of the motions that all contacts leave, at the pose of the meshes. A finding when it differs by more than
-0.1 % where teeth are counted, 1 % where they are not, 0.1 % a screw, or its uncertainty. Couplings that nothing could be derived for are
-KF903.
+Where teeth keep a constant ratio (`kinform show F.h5 mobility` counts them) it is that of their numbers; else the
+ratio is read out of the motions that all contacts leave, at the pose of the meshes. A finding when it differs by more
+than 0.1 % where teeth are counted, 1 % where they are not, 0.1 % a screw, or its uncertainty. Couplings that nothing
+could be derived for are KF903.
 
 Why it matters: the driven side turns by another angle than is meant, or the other way.
 
@@ -27,12 +27,12 @@ def check(context: Context) -> Outcome:
     """Every coupling that can be derived."""
     findings, count = [], 0
     for coupling in context.function.couplings:
-        derived = derived_ratio(context, coupling)
+        derived = derived_ratio(context.assembly, context.kinematics, coupling)
         if isinstance(derived, str):
             continue
         count += 1
         if abs(derived.value - coupling.ratio) > derived.allowed:
-            has, wanted = (shown_ratio(context, coupling, ratio) for ratio in (derived.value, coupling.ratio))
+            has, wanted = (shown_ratio(context.assembly, coupling, ratio) for ratio in (derived.value, coupling.ratio))
             findings.append(
                 RULE.finding(
                     coupling.joints,

@@ -1,7 +1,8 @@
 """Parts stop a joint before the end of the range that the function states.
 
-A finding for each side of a stated range that is longer than what the meshes leave, from their pose and with all joints
-outside of its loops at rest, by more than 0.02° or 0.1 % of the range. A side stated as free (`inf`) must not be stopped.
+A finding for each side of a stated range that is longer than what the meshes leave, from their pose and with all
+joints outside of its loops at rest, by more than 0.02° or 0.1 % of the range. A side stated as free (`inf`) must not
+be stopped.
 
 Why it matters: the device cannot do what it is for.
 
@@ -27,11 +28,11 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Both sides of every stated range."""
-    known = [item for item in stated_ranges(context) if not item.reason]
-    if not known:
+    ranges = [item for item in stated_ranges(context) if not item.reason]
+    if not ranges:
         return skipped("no range to compare")
     findings = []
-    for item in known:
+    for item in ranges:
         lower, upper = item.intended.range or (-math.inf, math.inf)
         allowed = (
             SHORT_SLIDE * (upper - lower)
@@ -49,12 +50,12 @@ def check(context: Context) -> Outcome:
 
 def _finding(context: Context, item: StatedRange, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
     joint = item.intended
-    found, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
+    end_value, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
     by = f"{quoted(end.parts)} meet" if end.parts else end.reason
     return RULE.finding(
         [joint.name, *end.parts],
-        f"joint '{joint.name}' stops at {found} on the {side} side ({by}), intended is {intended}",
-        found=found,
+        f"joint '{joint.name}' stops at {end_value} on the {side} side ({by}), intended is {intended}",
+        found=end_value,
         intended=intended,
         place=end.place if end.place is not None else joint.point,
         declared=joint,

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from kinform.consistency.comparisons.limits import coarse
-from kinform.consistency.comparisons.ranged import matched, shown
+from kinform.consistency.comparisons.ranged import joint_as_intended, shown
 from kinform.consistency.constants import BEYOND
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
@@ -35,7 +35,7 @@ def check(context: Context) -> Outcome:
     """Both sides of every stated range beside the run."""
     stated = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     run = context.simulation
-    joints = {item.intended.name: matched(item) for item in context.comparisons}
+    joints = {item.intended.name: joint_as_intended(item) for item in context.comparisons}
     findings, unknown = [], []
     for intended in stated:
         match = joints[intended.name]
@@ -66,14 +66,14 @@ def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: J
         value = float(values[k])
         if not toward * (value - end) > allowed:
             continue
-        told = telling(lambda v, digits: shown(v, intended, context.units, digits), value, end)
+        in_words = telling(lambda v, digits: shown(v, intended, context.units, digits), value, end)
         findings.append(
             RULE.finding(
                 (intended.name,),
-                f"joint '{intended.name}' moves to {told(value)} at t = {number(float(run.time[k]))} s, beyond the "
-                f"{side} end of its stated range, {told(end)}",
-                found=told(value),
-                intended=f"{'at least' if toward < 0.0 else 'at most'} {told(end)}",
+                f"joint '{intended.name}' moves to {in_words(value)} at t = {number(float(run.time[k]))} s, beyond the "
+                f"{side} end of its stated range, {in_words(end)}",
+                found=in_words(value),
+                intended=f"{'at least' if toward < 0.0 else 'at most'} {in_words(end)}",
                 place=joint.point,
                 declared=intended,
                 remedy="Drive the joint less far, add what stops it, or state the range that is used.",

@@ -66,7 +66,7 @@ def judge(context: Context, requirement: Reach) -> Answer:
             OTHERWISE,
         )
     if len(missed):
-        return _missed(context, targets, coverage, missed, near)
+        return _not_reached(context, targets, coverage, missed, near)
     text = f"all {counted(len(targets.values), 'place')} of the region reached{_bound(context, targets)}"
     unknown = [stated_as(context, name)[0] for name in chain.undetermined(body)]
     if unknown:
@@ -121,7 +121,9 @@ def _bound(context: Context, targets: Targets) -> str:
     return f"; between them holes of up to {size} in radius can be missed"
 
 
-def _missed(context: Context, targets: Targets, coverage: Coverage, missed: NDArray[np.intp], near: float) -> Answer:
+def _not_reached(
+    context: Context, targets: Targets, coverage: Coverage, missed: NDArray[np.intp], near: float
+) -> Answer:
     """The requirement is violated; `missed` are the targets that are farther than `near` (m or rad) from all poses."""
     units, distance = context.units, coverage.distance
     worst = int(missed[np.argmax(distance[missed])])

@@ -65,22 +65,22 @@ def _deviation(simulation: Simulation, body: str, point: Array, path: Array) -> 
     return deviation(simulation.time, simulation.p_WB[:, b], simulation.q_WB[:, b], point, path)
 
 
-def _violation(context: Context, requirement: Follow, found: Deviation) -> Answer | None:
+def _violation(context: Context, requirement: Follow, greatest: Deviation) -> Answer | None:
     """What is certainly outside of the tolerances."""
     units = context.units
-    if found.distance - found.error > requirement.tolerance:
-        shown = telling(lambda value, digits: length(value, units, digits), found.distance, requirement.tolerance)
+    if greatest.distance - greatest.error > requirement.tolerance:
+        shown = telling(lambda value, digits: length(value, units, digits), greatest.distance, requirement.tolerance)
         return violated(
-            f"the point is {shown(found.distance)} from the path at t = {number(found.time)} s",
-            found=shown(found.distance), intended=f"within {shown(requirement.tolerance)}",
-            place=found.place, remedy=REMEDY,
+            f"the point is {shown(greatest.distance)} from the path at t = {number(greatest.time)} s",
+            found=shown(greatest.distance), intended=f"within {shown(requirement.tolerance)}",
+            place=greatest.place, remedy=REMEDY,
         )  # fmt: skip
     wanted = requirement.angle_tolerance
-    if wanted is not None and found.angle is not None and found.angle > wanted:
-        shown = telling(angle, found.angle, wanted)
+    if wanted is not None and greatest.angle is not None and greatest.angle > wanted:
+        shown = telling(angle, greatest.angle, wanted)
         return violated(
-            f"the body is turned {shown(found.angle)} from the path at t = {number(found.angle_time)} s",
-            found=shown(found.angle), intended=f"within {shown(wanted)}", place=found.place, remedy=REMEDY,
+            f"the body is turned {shown(greatest.angle)} from the path at t = {number(greatest.angle_time)} s",
+            found=shown(greatest.angle), intended=f"within {shown(wanted)}", place=greatest.place, remedy=REMEDY,
         )  # fmt: skip
     return None
 

@@ -35,7 +35,9 @@ from kinform.consistency.requirements import (
     stated_as,
     undecided,
     violated,
+    worst_of,
 )
+from kinform.foundation.algebra.displacements import poses
 from kinform.foundation.words import counted, length, number, quoted, telling
 from kinform.function.clearances import Apart
 from kinform.function.configurations import Chain, chain_between
@@ -61,20 +63,17 @@ def judge(context: Context, requirement: Clear) -> Answer:
     if between is not None and (shared := shared_parts(context, between)):
         return undecided(f"{quoted(shared)} would be on both sides", "Name two that share no part.")
     pairs = _pairs(context, context.kinematics, between)
-    answers = [_of_pair(context, requirement, pair, simulation) for pair in pairs]
-    known = [answer for answer in answers if answer is not None]
-    short = [one for one in known if one.state == "violated"]
-    if short:
-        more = f"; {counted(len(short) - 1, 'more pair')} of bodies too" if len(short) > 1 else ""
-        return replace(short[0], message=short[0].message + more)
-    if not known:
+    of_pairs = (_of_pair(context, requirement, pair, simulation) for pair in pairs)
+    answers = [answer for answer in of_pairs if answer is not None]
+    if not answers:
         return undecided("none of the parts have meshes", "Give the parts meshes.")
-    open_ = [one for one in known if one.state == "undecided"]
-    if open_:
-        return open_[0]
+    worst, violations = worst_of(answers), sum(answer.state == "violated" for answer in answers)
+    if worst is not None:
+        more = f"; {counted(violations - 1, 'more pair')} of bodies too" if violations > 1 else ""
+        return replace(worst, message=worst.message + more)
     if simulation is not None and simulation.status != "done":
         return undecided(f"the simulation stopped: {simulation.reason}", "See KF502.")
-    return known[0] if len(known) == 1 else met(f"{counted(len(known), 'pair')} clear; {known[0].message}")
+    return answers[0] if len(answers) == 1 else met(f"{counted(len(answers), 'pair')} clear; {answers[0].message}")
 
 
 def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | None) -> list[Pair]:
@@ -89,23 +88,23 @@ def _pairs(context: Context, kinematics: Kinematics, between: Sequence[str] | No
             {kinematics.body_of(p).name: kinematics.body_of(p) for p in parts}.values(), key=lambda b: b.name
         )
         sides.append([(body, [p for p in parts if p in body.parts]) for body in bodies])
-    return [(a, own, b, other) for a, own in sides[0] for b, other in sides[1]]
+    return [(a, parts, b, others) for a, parts in sides[0] for b, others in sides[1]]
 
 
 def _of_pair(context: Context, requirement: Clear, pair: Pair, simulation: Simulation | None) -> Answer | None:
     """The answer for one pair, over the ranges where there is no simulation; None where one of the two has no mesh."""
     from kinform.function.clearances import apart
 
-    a, own, b, other = pair
-    groups = apart(context.assembly, context.contacts, context.design.surfaces, own, other)
+    a, parts, b, others = pair
+    groups = apart(context.assembly, context.contacts, context.design.surfaces, parts, others)
     if groups is None:
         return None
-    names = quoted([*own[:2], *other[:2]])
+    names = quoted([*parts[:2], *others[:2]])
     if not any(p.tests for p in groups.pairs):
         return undecided(f"all surfaces of {names} mate: nothing else can come near", "None.")
     required = float(requirement.distance)
     if simulation is not None:
-        swept = along(groups, _displaced(simulation, a), _displaced(simulation, b), required)
+        swept = along(groups, _displacements(simulation, a), _displacements(simulation, b), required)
         return _answer(context, groups, swept, required, names, _time(simulation, swept))
     if a.name == b.name:
         still = np.eye(4)[None]
@@ -141,29 +140,25 @@ def _ranges(context: Context, chain: Chain) -> tuple[Array, Array] | Answer:
     return low, high
 
 
-def _displaced(simulation: Simulation, body: Body) -> Array:
+def _displacements(simulation: Simulation, body: Body) -> Array:
     """(T, 4, 4) displacements; bodies that the simulation does not have stay."""
-    from scipy.spatial.transform import Rotation
-
-    X = np.tile(np.eye(4), (len(simulation.time), 1, 1))
-    if body.name in simulation.body_names:
-        b = simulation.body_names.index(body.name)
-        X[:, :3, :3] = Rotation.from_quat(simulation.q_WB[:, b], scalar_first=True).as_matrix()
-        X[:, :3, 3] = simulation.p_WB[:, b]
-    return X
+    if body.name not in simulation.body_names:
+        return np.tile(np.eye(4), (len(simulation.time), 1, 1))
+    b = simulation.body_names.index(body.name)
+    return poses(simulation.p_WB[:, b], simulation.q_WB[:, b])
 
 
 def _answer(context: Context, groups: Apart, swept: Swept, required: float, names: str, where: str) -> Answer:
     """What the sweep of a pair says; `where` is the time or the joint values of its worst pose, in words."""
     units, near = context.units, swept.worst
-    told = telling(lambda value, digits: length(value, units, digits), near.distance, required)
-    shown = told(near.distance)
+    in_words = telling(lambda value, digits: length(value, units, digits), near.distance, required)
+    shown = in_words(near.distance)
     parts = quoted(near.parts) if near.parts[0] else names
     if near.distance < required or near.distance <= 0.0:
         what = f"{parts} collide" if near.distance <= 0.0 else f"{parts} come within {shown}"
         return violated(
             f"{what}{where}", found="collision" if near.distance <= 0.0 else shown,
-            intended=f"at least {told(required)}" if required > 0.0 else "no collision",
+            intended=f"at least {in_words(required)}" if required > 0.0 else "no collision",
             place=near.place, remedy=REMEDY,
         )  # fmt: skip
     if not swept.complete:

@@ -1,9 +1,10 @@
 """The reaction in a joint exceeds its limit of force or torque during the simulation.
 
 The force that the two bodies exert on each other through the joint, and the torque about the joint's point, the
-greatest of the output times; a smooth peak between them that would be above the limit makes the requirement inconclusive
-(KF902), as do output times that are too few to follow the motion, and a shorter `step` decides. Components that redundant constraints leave undetermined, a simulation without
-reactions, and one that did not run to its end make the requirement inconclusive (KF902).
+greatest of the output times; a smooth peak between them that would be above the limit makes the requirement
+inconclusive (KF902), as do output times that are too few to follow the motion, and a shorter `step` decides.
+Components that redundant constraints leave undetermined, a simulation without reactions, and one that did not run to
+its end make the requirement inconclusive (KF902).
 
 Why it matters: the bearing, the pin or the screw is overloaded.
 

@@ -13,7 +13,7 @@ Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Outcome, Rule, settled
 from kinform.foundation.words import quoted
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
@@ -28,9 +28,7 @@ def check(context: Context) -> Outcome:
     wanted = {joint.name: _wanted(context, joint) for joint in ambiguous}
     findings = [_finding(context, joint, wanted[joint.name]) for joint in ambiguous]
     intended = [want.name for want in wanted.values() if want is not None]
-    if intended:
-        return inconclusive(f"ambiguous: {quoted(intended)}", findings)
-    return decided(findings)
+    return settled(findings, f"ambiguous: {quoted(intended)}" if intended else "")
 
 
 def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:

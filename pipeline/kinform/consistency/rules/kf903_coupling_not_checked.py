@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.coupled import derived_ratio, shown_ratio
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, settled, skipped
 from kinform.foundation.words import counted, quoted
 
 __all__ = ["RULE"]
@@ -37,14 +37,14 @@ def check(context: Context) -> Outcome:
             coupling.joints,
             f"the coupling of {quoted(coupling.joints)} is not checked: {reason}",
             found="not checked",
-            intended=shown_ratio(context, coupling, coupling.ratio),
+            intended=shown_ratio(context.assembly, coupling, coupling.ratio),
             declared=coupling,
             remedy="Bring the teeth into contact at this pose, or check the ratio by other means.",
         )
         for coupling in couplings
-        if isinstance(reason := derived_ratio(context, coupling), str)
+        if isinstance(reason := derived_ratio(context.assembly, context.kinematics, coupling), str)
     ]
-    return inconclusive(f"{counted(len(findings), 'coupling')} not checked", findings) if findings else decided()
+    return settled(findings, f"{counted(len(findings), 'coupling')} not checked" if findings else "")
 
 
 RULE = Rule("KF903", "coupling-not-checked", "note", __doc__, check, needs=("stated couplings",), speaks_for=("KF411",))

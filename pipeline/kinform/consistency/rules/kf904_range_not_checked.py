@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.ranged import StatedRange, shown, stated_ranges
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.rule import Outcome, Rule, settled, skipped
 from kinform.foundation.words import counted
 
 __all__ = ["RULE"]
@@ -48,9 +48,7 @@ def check(context: Context) -> Outcome:
                     remedy="Follow the reason, or check it by other means.",
                 )
             )
-    if findings:
-        return inconclusive(f"{counted(len(findings), 'range')} not checked", findings)
-    return decided()
+    return settled(findings, f"{counted(len(findings), 'range')} not checked" if findings else "")
 
 
 def _unknown(item: StatedRange) -> str:

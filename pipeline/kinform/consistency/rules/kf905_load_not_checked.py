@@ -1,7 +1,7 @@
 """The function states a load, and no dynamic simulation has carried it.
 
-Inconclusive: a load changes nothing below the dynamic level, and nothing at any level where it acts on the ground, which
-is held.
+Inconclusive: a load changes nothing below the dynamic level, and nothing at any level where it acts on the ground,
+which is held.
 
 Why it matters: whether drives and joints bear the load is not known.
 
@@ -14,7 +14,7 @@ Example: a force of 5 N on the gripper of an arm that is simulated kinematically
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.rule import Outcome, Rule, settled
 from kinform.foundation.words import counted, quoted
 from kinform.model.function import Load
 
@@ -46,9 +46,8 @@ def check(context: Context) -> Outcome:
                 remedy=MOVE if held else 'Ask for `level = "dynamic"`, with the mass of every moving part known.',
             )
         )
-    if findings:
-        return inconclusive(f"{counted(len(findings), 'load')} not simulated", findings)
-    return decided(reason=f"{counted(len(loads), 'load')} carried by the dynamic simulation")
+    doubt = f"{counted(len(findings), 'load')} not simulated" if findings else ""
+    return settled(findings, doubt, f"{counted(len(loads), 'load')} carried by the dynamic simulation")
 
 
 def _on_ground(context: Context, load: Load) -> bool:

@@ -15,7 +15,7 @@ Example: `[fasteners] infer = true`, and two brackets with four aligned holes.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import quoted
 from kinform.model.contacts import Suggestion
 from kinform.model.kinematics import Kinematics
@@ -23,22 +23,20 @@ from kinform.model.kinematics import Kinematics
 __all__ = ["RULE"]
 
 
-def check(context: Context) -> Outcome:
+def check(context: Context) -> Findings:
     """Suggestions that were applied, and those that were not because something else is stated."""
     contacts, kinematics = context.contacts, context.kinematics
     said = ((hint, _became(hint, kinematics)) for hint in contacts.suggestions)
-    return decided(
-        RULE.finding(
-            hint.parts,
-            f"{quoted(hint.parts)} {became}: {hint.evidence} ({hint.confidence} confidence)",
-            found=hint.evidence,
-            intended="what the manifest states",
-            declared=context.assembly.source,
-            remedy="Write it as [[group]] or [[assume]] if it is true.",
-        )
-        for hint, became in said
-        if became
-    )
+    for hint, became in said:
+        if became:
+            yield RULE.finding(
+                hint.parts,
+                f"{quoted(hint.parts)} {became}: {hint.evidence} ({hint.confidence} confidence)",
+                found=hint.evidence,
+                intended="what the manifest states",
+                declared=context.assembly.source,
+                remedy="Write it as [[group]] or [[assume]] if it is true.",
+            )
 
 
 def _became(hint: Suggestion, kinematics: Kinematics) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["adjoint", "carry", "displacement", "exponentials", "inverse", "twist_of"]
+__all__ = ["adjoint", "carry", "displacement", "exponentials", "inverse", "poses", "twist_of"]
 
 
 def displacement(twist: Array) -> Array:
@@ -44,6 +44,16 @@ def twist_of(X: Array) -> Array:
     spin = cross_matrix(omega)
     _, versine, rest = _shares(float(np.linalg.norm(omega)))
     return np.concatenate([omega, np.linalg.solve(np.eye(3) + versine * spin + rest * spin @ spin, X[:3, 3])])
+
+
+def poses(positions: Array, quaternions: Array) -> Array:
+    """(n, 4, 4) poses at positions (n, 3), turned by unit quaternions (n, 4) wxyz."""
+    from scipy.spatial.transform import Rotation
+
+    out = np.tile(np.eye(4), (len(positions), 1, 1))
+    out[:, :3, :3] = Rotation.from_quat(quaternions, scalar_first=True).as_matrix()
+    out[:, :3, 3] = positions
+    return out
 
 
 def inverse(X: Array) -> Array:

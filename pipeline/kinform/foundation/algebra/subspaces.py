@@ -10,7 +10,8 @@ __all__ = ["null_space"]
 
 
 def null_space(matrix: Array, share: float) -> Array:
-    """(k, n) orthonormal rows x with matrix (m, n) · x = 0, singular values up to that share of the largest being zero."""
+    """(k, n) orthonormal rows x with matrix (m, n) · x = 0; singular values up to that share of the largest count as
+    zero."""
     _, values, right = np.linalg.svd(matrix)
     rank = int(np.count_nonzero(values > share * max(values.max(initial=0.0), 1e-300)))
     return np.asarray(right[rank:])
