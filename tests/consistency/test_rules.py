@@ -160,6 +160,22 @@ def test_stages_that_were_not_run_leave_rules_undecided(hinge):
     assert verdict(report) == 2
 
 
+STAGES = ("contacts", "kinematics", "mass", "simulation")
+
+
+@pytest.mark.parametrize("missing", [STAGES[k:] for k in range(4)] + [(stage,) for stage in STAGES], ids=" ".join)
+def test_rules_declare_all_that_they_need(hinge, missing):
+    # what a rule reads without having declared it raises LookupError
+    wanted = Requirement("weak", "torque", {"joint": "swing", "limit": 1.0}, "m.toml", 40)
+    held = Requirement("held", "retained", {"part": "shaft"}, "m.toml", 41)
+    asked = changed_function(
+        hinge, requirements=(wanted, held), couplings=(Coupling(("swing", "swing"), 2.0, "m.toml", 42),)
+    )
+    report = check(replace(asked, **dict.fromkeys(missing)))
+    assert [rule.code for rule in report.rules] == [rule.code for rule in RULES]
+    assert verdict(report) == 2
+
+
 def test_the_registry_is_sorted_unique_and_documented():
     listed = [rule.code for rule in RULES]
     assert listed == sorted(set(listed))

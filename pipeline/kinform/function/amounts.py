@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.inertias import add_inertias
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.mass import MassReport
@@ -49,9 +48,13 @@ def amount_of(report: MassReport, parts: Sequence[str]) -> Amount | str:
         if part.mass is None:
             return f"the mass of '{part.name}' is not known: {part.reason}"
     masses = [part.mass or 0.0 for part in chosen]
-    if not math.fsum(masses) > 0.0:
+    whole = math.fsum(masses)
+    if not whole > 0.0:
         return "the mass is zero"
-    centres = np.array([part.centre_of_mass for part in chosen])
-    whole, centre, inertia = add_inertias(masses, centres, [part.inertia for part in chosen])
+    centre = np.sum([m * p.centre_of_mass for m, p in zip(masses, chosen, strict=True)], axis=0) / whole
+    inertia = np.zeros((3, 3))
+    for m, part in zip(masses, chosen, strict=True):
+        d = part.centre_of_mass - centre
+        inertia += part.inertia + m * (d @ d * np.eye(3) - np.outer(d, d))
     bound = math.fsum(m * p.mass_bound for m, p in zip(masses, chosen, strict=True)) / whole
     return Amount(whole, centre, inertia, bound)

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.foundation.algebra.inertias import add_inertias
 from kinform.mass.constants import FLAT
 from kinform.mass.principal import impossible, principal
 from kinform.mass.solids import SolidIntegrals, integrate_solid, mass_bound
@@ -78,14 +77,20 @@ def _body_properties(body: Body, parts: list[MassProperties]) -> MassProperties:
     if len(parts) == 1 and parts[0].mass is not None:
         wrong = impossible(parts[0].mass, parts[0].inertia)
         return _without_mass(body.name, origin, wrong, volume) if wrong else replace(parts[0], name=body.name)
-    masses = [part.mass or 0.0 for part in parts]
+    masses = np.array([part.mass for part in parts], dtype=np.float64)
+    mass = math.fsum(masses)
     centres = np.array([part.centre_of_mass for part in parts])
-    mass, centre, inertia = add_inertias(masses, centres, [part.inertia for part in parts])
+    # Offsets from one of the centres: far from the origin the mean would lose digits.
+    offsets = centres - centres[0]
+    mean = masses @ offsets / mass
+    inertia = np.zeros((3, 3))
+    for part, share, offset in zip(parts, masses, offsets - mean, strict=True):
+        inertia += part.inertia + share * (offset @ offset * np.eye(3) - np.outer(offset, offset))
     wrong = impossible(mass, inertia)
     if wrong:
         return _without_mass(body.name, origin, wrong, volume)
-    bound = float(np.array(masses) @ [part.mass_bound for part in parts]) / mass
-    return _with_mass(body.name, mass, volume, centre, inertia, bound, origin)
+    bound = float(masses @ [part.mass_bound for part in parts]) / mass
+    return _with_mass(body.name, mass, volume, centres[0] + mean, inertia, bound, origin)
 
 
 class _SolidShape:
