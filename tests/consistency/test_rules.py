@@ -20,7 +20,7 @@ from support.places import FIXTURES
 
 from kinform.consistency import RULES, UnknownRuleError, check, explain, verdict
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, RuleOutcome
-from kinform.model.function import Function, IntendedJoint, SimulationRequest
+from kinform.model.function import Coupling, Function, IntendedJoint, Requirement, SimulationRequest
 
 HINGE = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
 

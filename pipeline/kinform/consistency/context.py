@@ -13,7 +13,7 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
-from kinform.consistency.comparisons.coupled import coupled_through
+from kinform.consistency.comparisons.couplings import coupled_through
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple

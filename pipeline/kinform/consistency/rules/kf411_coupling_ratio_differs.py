@@ -15,7 +15,7 @@ Example: `ratio = -2.5` where gears of 20 and 48 teeth give −2.4.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.coupled import derived_ratio, shown_ratio
+from kinform.consistency.comparisons.couplings import derived_ratio, shown_ratio
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
 from kinform.foundation.words import quoted

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from kinform.consistency.comparisons.ranged import StatedRange, shown, stated_ranges
+from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
 from kinform.consistency.constants import SHORT_SLIDE, SHORT_TURN
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, skipped
@@ -28,7 +28,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Both sides of every stated range."""
-    ranges = [item for item in stated_ranges(context) if not item.reason]
+    ranges = [item for item in range_comparisons(context) if not item.reason]
     if not ranges:
         return skipped("no range to compare")
     findings = []
@@ -48,7 +48,7 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-def _finding(context: Context, item: StatedRange, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
+def _finding(context: Context, item: RangeComparison, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
     joint = item.intended
     end_value, intended = shown(value, joint, context.units), shown(stated, joint, context.units)
     by = f"{quoted(end.parts)} meet" if end.parts else end.reason

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from kinform.consistency.comparisons.limits import coarse
-from kinform.consistency.comparisons.ranged import joint_as_intended, shown
+from kinform.consistency.comparisons.ranges import joint_as_intended, shown
 from kinform.consistency.constants import BEYOND
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, decided, inconclusive

@@ -14,7 +14,7 @@ Example: `ratio = -2.5` between two shafts whose gears are drawn as plain discs.
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.coupled import derived_ratio, shown_ratio
+from kinform.consistency.comparisons.couplings import derived_ratio, shown_ratio
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, settled, skipped
 from kinform.foundation.words import counted, quoted

@@ -14,7 +14,7 @@ Example: `range = [-110, 110]` for a shoulder whose motor overlaps its bracket i
 
 from __future__ import annotations
 
-from kinform.consistency.comparisons.ranged import StatedRange, shown, stated_ranges
+from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Outcome, Rule, settled, skipped
 from kinform.foundation.words import counted
@@ -24,7 +24,7 @@ __all__ = ["RULE"]
 
 def check(context: Context) -> Outcome:
     """Every intended range."""
-    items = stated_ranges(context)
+    items = range_comparisons(context)
     if not items:
         return skipped("no intended joint states a range")
     open_ = [item for item in items if not item.given]
@@ -51,7 +51,7 @@ def check(context: Context) -> Outcome:
     return settled(findings, f"{counted(len(findings), 'range')} not checked" if findings else "")
 
 
-def _unknown(item: StatedRange) -> str:
+def _unknown(item: RangeComparison) -> str:
     """Why the range is not known; empty where it is."""
     if item.reason:
         return item.reason

@@ -12,11 +12,11 @@ from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 
-__all__ = ["StatedRange", "joint_as_intended", "shown", "stated_ranges"]
+__all__ = ["RangeComparison", "joint_as_intended", "range_comparisons", "shown"]
 
 
 @dataclass(frozen=True, eq=False)
-class StatedRange:
+class RangeComparison:
     """One stated range: what was found to its sides in the designer's sense, or why nothing was."""
 
     intended: IntendedJoint
@@ -31,7 +31,7 @@ class StatedRange:
     """Neither body has a mesh, and nothing in the assembly could meet: there is nothing to compare with."""
 
 
-def stated_ranges(context: Context) -> list[StatedRange]:
+def range_comparisons(context: Context) -> list[RangeComparison]:
     """Every intended joint that states a range, sorted by name."""
     joints = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     lacking = context.lacks("comparisons")
@@ -39,12 +39,12 @@ def stated_ranges(context: Context) -> list[StatedRange]:
     other = lacking.reason if lacking else ""
     return [
         _of_sticks(context, joint)
-        or (_beside_ends(context, joint, by_name[joint.name]) if by_name else StatedRange(joint, reason=other))
+        or (_beside_ends(context, joint, by_name[joint.name]) if by_name else RangeComparison(joint, reason=other))
         for joint in joints
     ]
 
 
-def _of_sticks(context: Context, intended: IntendedJoint) -> StatedRange | None:
+def _of_sticks(context: Context, intended: IntendedJoint) -> RangeComparison | None:
     """A range of which a body has no mesh; it is given where nothing in the assembly could meet."""
     if context.lacks("kinematics"):
         return None
@@ -53,21 +53,23 @@ def _of_sticks(context: Context, intended: IntendedJoint) -> StatedRange | None:
     if not bare:
         return None
     given = bare == bodies and len(context.shaped) < 2
-    return StatedRange(intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given)
+    return RangeComparison(
+        intended, reason=f"{quoted(bare)} {'has' if len(bare) == 1 else 'have'} no mesh", given=given
+    )
 
 
-def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparison) -> StatedRange:
+def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparison) -> RangeComparison:
     run, match = context.design.simulation, joint_as_intended(comparison)
     if match is None:
-        return StatedRange(intended, reason="no joint of that type was found directly between its parts")
+        return RangeComparison(intended, reason="no joint of that type was found directly between its parts")
     joint, sign = match
     if run is None or run.ranges is None:
-        return StatedRange(intended, reason="ranges have not been computed: run `kinform simulate`")
+        return RangeComparison(intended, reason="ranges have not been computed: run `kinform simulate`")
     reach = next((item for item in run.ranges if item.joint == joint.name), None)
     if reach is None:
-        return StatedRange(intended, reason="no range was computed for it")
+        return RangeComparison(intended, reason="no range was computed for it")
     ends = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
-    return StatedRange(intended, *ends, sign=sign, left_out=reach.left_out)
+    return RangeComparison(intended, *ends, sign=sign, left_out=reach.left_out)
 
 
 def joint_as_intended(comparison: Comparison) -> tuple[Joint, float] | None:
