@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.design import Design
+from kinform.kinematics.mobility.guides import guide
 from kinform.kinematics.separation.contact_rows import is_stated
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Joint, Kinematics
+from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 
 __all__ = ["SLIDES", "Slip", "slide_of", "slips", "span_along"]
@@ -34,12 +35,9 @@ class Slip:
 
 def slips(design: Design) -> tuple[Slip, ...]:
     """First time at which each joint with a slide has left the last of the patches along which it slides."""
-    from kinform.collisions.shapes import Shapes
-    from kinform.collisions.single import guide, joint_twist
-
     run, kinematics, contacts = design.simulation, design.kinematics, design.contacts
     assert run is not None and kinematics is not None and contacts is not None
-    shapes = Shapes(design.assembly, design.surfaces, contacts, _meshed(design, kinematics))
+    parts = {body.name: body.parts for body in kinematics.bodies}
     out = []
     for joint in kinematics.joints:
         if joint.type not in SLIDES or joint.name not in run.joint_names or joint.axis is None or is_stated(joint):
@@ -47,7 +45,7 @@ def slips(design: Design) -> tuple[Slip, ...]:
         values = _coordinate(run, joint)
         # a cylindrical joint as a guide sees it
         sliding = replace(joint, type="prismatic") if joint.type == "cylindrical" else joint
-        low, high = guide(shapes, sliding, joint_twist(sliding))
+        low, high = guide(design.assembly, design.surfaces, contacts, sliding, parts[joint.bodies[1]])
         beyond = np.flatnonzero((values < low) | (values > high))
         if len(beyond):
             value = float(values[beyond[0]])
@@ -81,8 +79,3 @@ def span_along(design: Design, name: str, surface: int, axis: Array) -> tuple[fl
         return None
     heights = (corners @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]) @ axis
     return float(heights.min()), float(heights.max())
-
-
-def _meshed(design: Design, kinematics: Kinematics) -> dict[str, frozenset[str]]:
-    with_mesh = {part.name for part in design.assembly.parts if part.mesh is not None}
-    return {body.name: frozenset(part for part in body.parts if part in with_mesh) for body in kinematics.bodies}
