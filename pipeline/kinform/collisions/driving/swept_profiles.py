@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 
@@ -55,12 +56,12 @@ class Profile:
         low, high = np.zeros((len(facets), 3)), np.zeros((len(facets), 3))
         if not self._turning:
             for k in range(2):
-                low[:, k], high[:, k] = _span(self._flat[:, k], corners)
+                low[:, k], high[:, k] = facet_boxes(self._flat[:, k], corners)
             return low, high
-        high[:, 0] = _span(self._radius, corners)[1]
+        high[:, 0] = facet_boxes(self._radius, corners)[1]
         low[:, 0] = _nearest(self._flat[corners])
         if self._level:
-            low[:, 1], high[:, 1] = _span(self._heights, corners)
+            low[:, 1], high[:, 1] = facet_boxes(self._heights, corners)
         return low, high
 
     def radius(self, facets: Ints) -> float:
@@ -84,12 +85,6 @@ def meeting(
         boxes[k], facets[k] = (boxes[k][0][kept], boxes[k][1][kept]), facets[k][kept]
     near = near_boxes(*boxes[0], *boxes[1], margin)
     return facets[0][near[0]], facets[1][near[1]]
-
-
-def _span(values: Array, corners: Ints) -> tuple[Array, Array]:
-    """Least and greatest (n,) of values at three corners (n, 3)."""
-    a, b, c = values[corners[:, 0]], values[corners[:, 1]], values[corners[:, 2]]
-    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _nearest(flat: Array) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.collisions.constants import POINTS_FAR, POINTS_FINE, POINTS_PART, POINTS_SURFACE
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.index import MeshIndex, inner_weights
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
@@ -87,4 +88,4 @@ def _first_least(values: Array, starts: Ints, group: Ints) -> Ints:
 
 
 def _squares(vectors: Array) -> Array:
-    return np.asarray(np.einsum("ij,ij->i", vectors, vectors))
+    return dot(vectors, vectors)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.contacts.constants import AXES_PARALLEL, RIM_KINDS, RIM_SCATTER, ROUND_SWEEP
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.edges import edge_ends
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
@@ -70,5 +71,5 @@ def _circle(edges: Array, surface: Surface) -> float | None:
     radius = float(distance.mean())
     if radius <= 0.0 or float(np.ptp(distance)) > RIM_SCATTER * radius:
         return None
-    cosine = np.clip(np.einsum("ij,ij->i", across[:, 0], across[:, 1]) / distance.prod(axis=1), -1.0, 1.0)
+    cosine = np.clip(dot(across[:, 0], across[:, 1]) / distance.prod(axis=1), -1.0, 1.0)
     return radius if float(np.arccos(cosine).sum()) >= ROUND_SWEEP else None

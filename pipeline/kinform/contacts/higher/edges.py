@@ -22,6 +22,7 @@ from kinform.contacts.constants import (
 )
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
@@ -83,7 +84,7 @@ def _sharp_edges(part: PartView, facets: Ints, tolerances: Tolerances) -> _Edges
     edges = edges.where(edges.opposed)
     one, two = (part.normals(facets[side]) for side in edges.facets.T)
     convex = edges.convexity(part.vertices, one, two) > 0.0
-    edges = edges.where((np.einsum("ij,ij->i", one, two) < math.cos(tolerances.smooth_edge)) & convex)
+    edges = edges.where((dot(one, two) < math.cos(tolerances.smooth_edge)) & convex)
     ends, beside, along = edges.ends, facets[edges.facets], edges.along(part.vertices)
     unit = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
     bends = np.zeros(len(ends), dtype=bool)
@@ -153,7 +154,7 @@ def _rises(sharp: PartView, edges: _Edges, height: Array) -> Flags:
         reach = sharp.vertices[third] - sharp.vertices[edges.ends[:, 0]]
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
         along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-        away = np.linalg.norm(reach - np.einsum("ij,ij->i", reach, along)[:, None] * along, axis=1)
+        away = np.linalg.norm(reach - dot(reach, along)[:, None] * along, axis=1)
         out &= height[third] - base > EDGE_RISE * away
     return out
 

@@ -18,6 +18,7 @@ import numpy as np
 from kinform.contacts.constants import CURVE_BEND_LEAST, CYLINDER_EXACT, SEGMENT_LONG, STRIP_HEIGHT
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.search.pair_view import PartView
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.model.arrays import Array, Flags, Ints
@@ -128,7 +129,7 @@ class Sheet:
     def of(part: PartView, facets: Ints, flat: float, smooth: float) -> Sheet:
         """The sheet of these facets; an edge is bent above `flat` and smooth below `smooth` (rad)."""
         pairs = facets[shared_edges(part.faces[facets], len(part.vertices), by_corner=True).facets]
-        cosine = np.einsum("ij,ij->i", part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
+        cosine = dot(part.normals(pairs[:, 0]), part.normals(pairs[:, 1]))
         bent = cosine < math.cos(flat)
         return Sheet(facets, pairs[bent & (cosine > math.cos(smooth))], pairs[~bent])
 
@@ -245,13 +246,11 @@ def _cut(part: PartView, pieces: Segments, chain: Ints, near: Flags, smooth_edge
     labels, count = pieces.labels[chain], len(chain)
     closed = bool(pieces.start[chain[0]] == pieces.end[chain[-1]]) and count > 2
     steps = np.diff(corners, axis=0)
-    length = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+    length = np.sqrt(dot(steps, steps))
     unit = steps / length[:, None]
     exact = _circular(part, labels)
     before, after = np.arange(-1, count - 1), np.arange(1, count + 1) % count
-    turn = np.arctan2(
-        unit[before, 0] * unit[:, 1] - unit[before, 1] * unit[:, 0], np.einsum("ij,ij->i", unit[before], unit)
-    )
+    turn = np.arctan2(unit[before, 0] * unit[:, 1] - unit[before, 1] * unit[:, 0], dot(unit[before], unit))
     flat = length > SEGMENT_LONG * np.maximum(length[before], length[after])
     cut = (np.abs(turn) >= smooth_edge) | flat | flat[before]
     cut |= (labels != labels[before]) & (exact | exact[before])

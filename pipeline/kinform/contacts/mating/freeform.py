@@ -29,7 +29,7 @@ from kinform.contacts.mating.mate import aligned, mean_axes, mean_direction
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.contacts.search.probing import Probes, verify
-from kinform.foundation.algebra.vectors import cross, widest_gap
+from kinform.foundation.algebra.vectors import cross, dot, widest_gap
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 
@@ -129,7 +129,7 @@ def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     velocity = cross(axes.axis, patch.points - axes.point)
     speed = np.linalg.norm(velocity, axis=1)
     along = velocity / np.maximum(speed, 1e-300)[:, None]
-    normals = patch.normals - np.einsum("ij,ij->i", patch.normals, along)[:, None] * along
+    normals = patch.normals - dot(patch.normals, along)[:, None] * along
     return replace(
         patch,
         kind="torus" if surfaces.kinds == ("torus", "torus") else "revolution",

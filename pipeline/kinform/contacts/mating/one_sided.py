@@ -17,6 +17,7 @@ from kinform.contacts.constants import ANALYTIC_KINDS, FACING_OPPOSED, GIVER_ARE
 from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.search.pair_view import PairView, SurfacePair
+from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
@@ -131,7 +132,7 @@ def _resting(view: PairView, surfaces: SurfacePair, chart: Chart) -> Array:
     within = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
     facets, corners = facets[within], corners[within]
     normals = surfaces.sides[0] * chart.normals(corners.mean(axis=1))
-    corners = corners[np.einsum("ij,ij->i", normals, taker.normals(facets)) < FACING_OPPOSED]
+    corners = corners[dot(normals, taker.normals(facets)) < FACING_OPPOSED]
     if not len(corners):
         return np.zeros((0, 3, 3))
     heights = chart.heights(corners.reshape(-1, 3)).reshape(-1, 3)

@@ -28,7 +28,7 @@ from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.mating.mate import Axes, aligned, mean_axes, radial_limit
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 
@@ -157,7 +157,7 @@ def _profile(part: PartView, facets: Ints, axes: Axes, advance: float) -> _Profi
     normal = np.stack([-along[:, 1], -advance / np.maximum(middle[:, 0], 1e-300) * along[:, 0], along[:, 0]], axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     radial = np.cos(centre)[:, None] * base + np.sin(centre)[:, None] * aside
-    sense = np.sign(np.einsum("ij,ij->i", _turned(normal, radial, axes.axis), part.normals(facets)))
+    sense = np.sign(dot(_turned(normal, radial, axes.axis), part.normals(facets)))
     profile = _Profile(
         start, end, normal * sense[:, None], centre, middle[:, 1] + advance * centre,
         0.5 * np.ptp(height, axis=1), part.index.areas(facets),

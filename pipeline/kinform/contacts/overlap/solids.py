@@ -13,7 +13,7 @@ import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
 from kinform.contacts.search.pair_view import PartView
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
@@ -105,7 +105,7 @@ def _piece(solid: Manifold, middle: Array, scale: float) -> Piece:
     facet = np.asarray(mesh.face_id, dtype=np.int64)[order]
     origin = corners.reshape(-1, 3).mean(axis=0)
     a, b, c = (corners[:, k] - origin for k in range(3))
-    volumes = np.einsum("ij,ij->i", a, cross(b, c)) / 6.0
+    volumes = dot(a, cross(b, c)) / 6.0
     volume = float(volumes.sum())
     moment = volumes @ (a + b + c) / 4.0
     centroid = origin + (moment / volume if volume > 0.0 else 0.0)

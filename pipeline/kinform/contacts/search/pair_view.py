@@ -119,7 +119,7 @@ def near_facets(placed: PartView, low: Array, high: Array) -> tuple[Ints, Array,
     beside = ((vertices < low) @ _BITS[:3]) | ((vertices > high) @ _BITS[3:])
     a, b, c = faces.T
     facets = np.flatnonzero((beside[a] & beside[b] & beside[c]) == 0)
-    low_f, high_f = facet_boxes((vertices[a[facets]], vertices[b[facets]], vertices[c[facets]]))
+    low_f, high_f = facet_boxes(vertices, faces[facets])
     return facets, low_f, high_f
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinform.contacts.constants import BETWEEN_MARGIN, BETWEEN_SHARE, FACING_LEAST
 from kinform.contacts.search.pair_view import PairView, SurfacePair
+from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.probes import Hits
 from kinform.model.arrays import Array, Flags, Ints
 
@@ -91,7 +92,7 @@ def verify(pair: PairView, sets: list[Probes], facing: float = FACING_LEAST) -> 
     if holds.any():
         along = [np.where(holds, h.along[c], 0.0) for h, c in zip(all_hits, chosen, strict=True)]
         facets = [h.facet[c] for h, c in zip(all_hits, chosen, strict=True)]
-        cosine = np.einsum("ij,ij->i", pair.a.normals(facets[0]), pair.b.normals(facets[1]))
+        cosine = dot(pair.a.normals(facets[0]), pair.b.normals(facets[1]))
         holds &= cosine < pair.tolerances.opposed
         inset = BETWEEN_MARGIN * pair.tolerance + BETWEEN_SHARE * np.abs(along[1] - along[0])
         low, high = np.minimum(*along) + inset, np.maximum(*along) - inset

@@ -5,19 +5,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.constants import (
+    CHUNK,
+    GRID_FINEST,
+    GRID_LISTED,
+    GRID_LISTED_LEAST,
+    OFTEN,
+    PLACE_BITS,
+    SIZE_OCTAVES,
+)
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["FacetBoxes", "FlatBoxes", "box_corners", "facet_boxes", "together"]
-
-
-_CHUNK = 48
-"""Facets of a chunk."""
-_OFTEN = 6
-"""Questions that are cheaper to answer without chunks than the chunks are to make."""
-_FINEST = 512
-"""Cells along the side of a grid, at most."""
-_LISTED = 12
-"""Cells of a grid that a facet is listed in on average, at most."""
 
 
 def box_corners(low: Array, high: Array, X: Array) -> Array:
@@ -26,9 +25,10 @@ def box_corners(low: Array, high: Array, X: Array) -> Array:
     return np.asarray(np.where(bits, high, low) @ X[:3, :3].T + X[:3, 3])
 
 
-def facet_boxes(corners: tuple[Array, Array, Array]) -> tuple[Array, Array]:
-    """Lower and upper corners (n, d) of the boxes of triangles, given by their three corners (n, d) each."""
-    first, second, third = corners
+def facet_boxes(points: Array, faces: Ints) -> tuple[Array, Array]:
+    """Lower and upper corners (n, d) of the boxes of faces (n, 3) over points (V, d); of values (V,) least and
+    greatest."""
+    first, second, third = (points[corner] for corner in faces.T)
     return np.minimum(np.minimum(first, second), third), np.maximum(np.maximum(first, second), third)
 
 
@@ -43,21 +43,21 @@ class FacetBoxes:
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
-        if self._asked <= _OFTEN or len(self.low) <= _CHUNK:
+        if self._asked <= OFTEN or len(self.low) <= CHUNK:
             meets = np.ones(len(self.low), dtype=bool)
             for axis in range(self.low.shape[1]):
                 meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
             return np.flatnonzero(meets)
         if self._order is None:
             self._order = together(self.low, self.high)
-            self._starts = np.arange(0, len(self.low), _CHUNK)
+            self._starts = np.arange(0, len(self.low), CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
             self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
         chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
-        at = (self._starts[chunks, None] + np.arange(_CHUNK)).ravel()
-        some = np.sort(self._order[at[at < len(self._order)]])
-        meets = ((self.low[some] <= high) & (self.high[some] >= low)).all(axis=1)
-        return np.asarray(some[meets])
+        at = (self._starts[chunks, None] + np.arange(CHUNK)).ravel()
+        facets = np.sort(self._order[at[at < len(self._order)]])
+        meets = ((self.low[facets] <= high) & (self.high[facets] >= low)).all(axis=1)
+        return np.asarray(facets[meets])
 
 
 class FlatBoxes:
@@ -67,13 +67,13 @@ class FlatBoxes:
         self.low, self.high = low, high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
-        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, _FINEST))
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
             first, last = self._cells(low), self._cells(high)
             wide = last - first + 1
             count = wide.prod(axis=1)
-            if side == 1 or count.sum() <= _LISTED * len(low) + 4096:
+            if side == 1 or count.sum() <= GRID_LISTED * len(low) + GRID_LISTED_LEAST:
                 break
             side = (side + 1) // 2
         box = np.repeat(np.arange(len(low)), count)
@@ -109,10 +109,12 @@ def together(low: Array, high: Array) -> Ints:
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
     whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
-    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -20, 0).astype(np.int64)
-    cell = np.clip((0.5 * (low + high) - low.min(axis=0)) / whole * 1024.0, 0, 1023).astype(np.int64)
+    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
+    cell = np.clip((0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**PLACE_BITS, 0, 2**PLACE_BITS - 1).astype(
+        np.int64
+    )
     code = np.zeros(count, dtype=np.int64)
-    for bit in range(10):
+    for bit in range(PLACE_BITS):
         for axis in range(dimensions):
             code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
     return np.lexsort((code, -octave)).astype(np.int64)

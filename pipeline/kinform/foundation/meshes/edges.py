@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["EdgeTable", "SharedEdges", "edge_ends", "edge_table", "shared_edges"]
@@ -48,7 +48,7 @@ class SharedEdges:
     def convexity(self, vertices: Array, first: Array, second: Array) -> Array:
         """(k,) positive at convex edges, negative at concave ones, 0 at flat ones; of the outward normals of the facets
         of `first` and `second` (k, 3) each."""
-        along = np.einsum("ij,ij->i", cross(first, second), self.along(vertices))
+        along = dot(cross(first, second), self.along(vertices))
         return np.asarray(np.where(self.forward, 1.0, -1.0) * along)
 
 

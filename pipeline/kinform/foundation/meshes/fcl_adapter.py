@@ -32,8 +32,8 @@ def fcl_distance(
     first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
 ) -> float:
     """m between two such models, 0 where they touch or cross."""
-    found = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
-    return max(float(found), 0.0) / UNIT
+    distance = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
+    return max(float(distance), 0.0) / UNIT
 
 
 def partial_model(vertices: Array, faces: Ints) -> fcl.BVHModel:

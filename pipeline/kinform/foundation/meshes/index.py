@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, RAYS
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.edges import shared_edges
@@ -24,13 +25,6 @@ if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
 __all__ = ["MeshIndex", "MeshStore", "inner_weights"]
-
-
-_BALL, _PARTS = 0.012, 6
-"""Share of a mesh's diagonal that balls about its facets are as small as, and divisions of a facet's side for it at
-most."""
-_RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
-"""Directions along which no designer lays an edge."""
 
 
 class MeshIndex:
@@ -57,22 +51,19 @@ class MeshIndex:
     def areas(self, facets: Ints) -> Array:
         """(n,) m²."""
         spans = self.spans(facets)
-        return np.asarray(0.5 * np.sqrt(np.einsum("ij,ij->i", spans, spans)))
+        return np.asarray(0.5 * np.sqrt(dot(spans, spans)))
 
     def normals(self, facets: Ints) -> Array:
         """(n, 3) unit, outward, part frame; zero for facets without area."""
         spans = self.spans(facets)
-        length = np.sqrt(np.einsum("ij,ij->i", spans, spans))
+        length = np.sqrt(dot(spans, spans))
         return np.asarray(spans / np.where(length > 0.0, length, 1.0)[:, None])
 
     @property
     def boxes(self) -> FacetBoxes:
         """Boxes of the facets in the part frame."""
         if self._boxes is None:
-            vertices, faces = self.mesh.vertices, self.mesh.faces
-            self._boxes = FacetBoxes(
-                *facet_boxes((vertices[faces[:, 0]], vertices[faces[:, 1]], vertices[faces[:, 2]]))
-            )
+            self._boxes = FacetBoxes(*facet_boxes(self.mesh.vertices, self.mesh.faces))
         return self._boxes
 
     def table(self, surfaces: MeshSurfaces) -> SurfaceTable:
@@ -132,8 +123,8 @@ class MeshIndex:
         """
         chords = np.array([surface.chord for surface in surfaces.surfaces])
         rims = np.zeros(len(chords))
-        own, other = self.borders(surfaces).T
-        np.maximum.at(rims, own, chords[other])
+        surface, other = self.borders(surfaces).T
+        np.maximum.at(rims, surface, chords[other])
         return rims
 
     def away(self, points: Array) -> Array:
@@ -155,17 +146,17 @@ class MeshIndex:
         if not out.any():
             return out
         if self._rays is None:
-            self._rays = [Ray(self.mesh, ray) for ray in _RAYS]
-        some = points[out]
-        count = self._rays[0].crossings(some)
+            self._rays = [Ray(self.mesh, ray) for ray in RAYS]
+        within = points[out]
+        count = self._rays[0].crossings(within)
         # of a closed mesh, one ray that leaves through as many facets as it enters through says enough
-        asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(some))
+        asked = np.flatnonzero(count) if self.mesh.health.watertight else np.arange(len(within))
         if len(asked):
-            second = self._rays[1].crossings(some[asked])
+            second = self._rays[1].crossings(within[asked])
             # two rays that agree are the median whatever the third says
             doubtful = count[asked] != second
             if doubtful.any():
-                third = self._rays[2].crossings(some[asked[doubtful]])
+                third = self._rays[2].crossings(within[asked[doubtful]])
                 count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
         out[out] = np.abs(count) > 0.5
         return out
@@ -177,15 +168,15 @@ def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:
 
     corners = mesh.vertices[mesh.faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    parts = np.clip(np.ceil(longest / max(_BALL * mesh.diagonal, 1e-300)), 1, _PARTS).astype(np.int64)
+    parts = np.clip(np.ceil(longest / max(BALL_SHARE * mesh.diagonal, 1e-300)), 1, BALL_PARTS).astype(np.int64)
     middles, radii = [], []
     for number in np.unique(parts).tolist():
-        some = parts == number
-        middles.append((inner_weights(number) @ corners[some]).reshape(-1, 3))
-        radii.append(np.repeat(2.0 / 3.0 * longest[some] / number, number * number))
+        alike = parts == number
+        middles.append((inner_weights(number) @ corners[alike]).reshape(-1, 3))
+        radii.append(np.repeat(2.0 / 3.0 * longest[alike] / number, number * number))
     points, radius = np.concatenate(middles), np.concatenate(radii)
     size = max(mesh.diagonal, 1e-300)
-    level = np.ceil(np.log2(np.maximum(radius / size, _BALL)))
+    level = np.ceil(np.log2(np.maximum(radius / size, BALL_SHARE)))
     out = []
     for k in np.unique(level):
         # one for all that are in one cell of a grid

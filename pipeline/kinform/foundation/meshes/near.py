@@ -11,14 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import dot
+from kinform.foundation.constants import FEW_PAIRS, LINE, SHARED_PAIRS
 from kinform.model.arrays import Array, Ints
 
 __all__ = ["Near"]
-
-
-_LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
-_FEW, _SHARED = 1 << 16, 2
-"""Pairs that share a place up to which all of them are measured: in all, and a point."""
 
 
 class Near:
@@ -30,17 +27,17 @@ class Near:
     @cached_property
     def pairs(self) -> Ints:
         """(n, 2) indices i < j of all that are near each other, in their order."""
-        found = (
-            self._tree.query_pairs(self._distance, output_type="ndarray") if self._in_line is None else self._in_line
-        )
-        return np.asarray(found[np.lexsort((found[:, 1], found[:, 0]))])
+        pairs = self._in_line
+        if pairs is None:
+            pairs = self._tree.query_pairs(self._distance, output_type="ndarray")
+        return np.asarray(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))])
 
-    def about(self, some: Ints) -> Array:
+    def about(self, chosen: Ints) -> Array:
         """How many points lie near each of some of them, itself among them; had before all pairs are, which are many
         where these are."""
         if self._in_line is None:
-            return np.asarray(self._tree.query_ball_point(self._points[some], self._distance, return_length=True))
-        return np.asarray(1.0 + np.bincount(self._in_line.ravel(), minlength=len(self._points))[some])
+            return np.asarray(self._tree.query_ball_point(self._points[chosen], self._distance, return_length=True))
+        return np.asarray(1.0 + np.bincount(self._in_line.ravel(), minlength=len(self._points))[chosen])
 
     @cached_property
     def _tree(self) -> Any:
@@ -52,15 +49,15 @@ class Near:
     def _in_line(self) -> Ints | None:
         """The pairs, by their places along a line; None where too many share a place."""
         points, distance = self._points, self._distance
-        line = _LINE[: points.shape[1]]
+        line = LINE[: points.shape[1]]
         place = points @ (line / np.linalg.norm(line))
         order = np.argsort(place)
         ordered = place[order]
         counts = np.searchsorted(ordered, ordered + distance * (1 + 1e-9), side="right") - np.arange(1, len(points) + 1)
-        if counts.sum() > max(_FEW, _SHARED * len(points)):
+        if counts.sum() > max(FEW_PAIRS, SHARED_PAIRS * len(points)):
             return None
         first = np.repeat(np.arange(len(points)), counts)
         second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
         pairs = np.stack([order[first], order[second]], axis=1)
         apart = points[pairs[:, 0]] - points[pairs[:, 1]]
-        return np.sort(pairs[np.einsum("ij,ij->i", apart, apart) <= distance * distance], axis=1)
+        return np.sort(pairs[dot(apart, apart) <= distance * distance], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
@@ -16,13 +17,11 @@ class Ray:
 
     def __init__(self, mesh: Mesh, ray: Array):
         ray = ray / np.linalg.norm(ray)
-        u = np.cross(ray, np.eye(3)[np.argmin(np.abs(ray))])
-        u /= np.linalg.norm(u)
-        self._frame = np.stack([u, np.cross(ray, u), ray])
+        u = -perpendicular(ray)[0]
+        self._frame = np.stack([u, cross(ray, u), ray])
         self._vertices = mesh.vertices @ self._frame.T
         self._faces = mesh.faces
-        flat = self._vertices[:, :2]
-        self._boxes = FlatBoxes(*facet_boxes((flat[mesh.faces[:, 0]], flat[mesh.faces[:, 1]], flat[mesh.faces[:, 2]])))
+        self._boxes = FlatBoxes(*facet_boxes(self._vertices[:, :2], mesh.faces))
 
     def crossings(self, points: Array) -> Array:
         """(n,) facets that the ray from each point (n, 3) leaves through, less those that it enters through."""

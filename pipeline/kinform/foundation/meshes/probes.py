@@ -14,15 +14,13 @@ from typing import Protocol
 import fcl
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.constants import HITS_A_PROBE, SLIVER_WIDTH, STEEP_LEAST
 from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model, fcl_pose
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
 __all__ = ["Facets", "Hits", "Region"]
-
-_WIDTH = 1e-3
-"""Width of a sliver relative to its length: zero width misses most facets."""
 
 
 class Facets(Protocol):
@@ -58,7 +56,7 @@ class Region:
     facets: Ints | None
     """Facets of the BVH in the mesh; None: all of them in order."""
 
-    def cast(self, points: Array, directions: Array, reach: Array, width: float = _WIDTH) -> Hits:
+    def cast(self, points: Array, directions: Array, reach: Array, width: float = SLIVER_WIDTH) -> Hits:
         """Facets within `reach` (n,) m of `points` (n, 3) along ±`directions` (n, 3), part frame.
 
         `width` of the slivers, relative to their reach.
@@ -74,7 +72,7 @@ class Region:
         slivers = np.stack([points - reach[:, None] * directions, tip + across, tip - across], axis=1)
         probe_model = fcl_model(slivers.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
         # Contact points stay off: they cost, come several to a facet, and depend on FCL's own tolerance.
-        request = fcl.CollisionRequest(num_max_contacts=256 * count + 4096, enable_contact=False)
+        request = fcl.CollisionRequest(num_max_contacts=HITS_A_PROBE * (count + 16), enable_contact=False)
         result = fcl.CollisionResult()
         fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
         pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
@@ -83,9 +81,9 @@ class Region:
         if self.facets is not None:
             facet = self.facets[facet]
         normal = self.index.normals(facet)
-        facing = np.einsum("ij,ij->i", normal, directions[probe])
-        height = np.einsum("ij,ij->i", normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
-        steep = np.abs(facing) > 1e-3
+        facing = dot(normal, directions[probe])
+        height = dot(normal, mesh.vertices[mesh.faces[facet, 0]] - points[probe])
+        steep = np.abs(facing) > STEEP_LEAST
         along = np.where(steep, height / np.where(steep, facing, 1.0), 0.0)
         return Hits(probe, facet, np.clip(along, -reach[probe], reach[probe]), facing)
 

@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
 from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["near_boxes"]
-
-
-_CELLS = 48
-"""Most cells along the longest side of the common box; for few boxes fewer do."""
 
 
 def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:
@@ -27,7 +24,7 @@ def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin:
     low = np.maximum(low_a.min(axis=0), low_b.min(axis=0)) - margin
     high = np.minimum(high_a.max(axis=0), high_b.max(axis=0)) + margin
     size = np.maximum(high - low, 1e-300)
-    finest = min(_CELLS, 8 + int(np.sqrt(len(low_a) + len(low_b)) / 4))
+    finest = min(CELLS_MOST, CELLS_LEAST + int(np.sqrt(len(low_a) + len(low_b)) / 4))
     counts = np.maximum(np.ceil(finest * size / size.max()), 1).astype(np.int64)
     first, last = _cells(low_b - margin, high_b + margin, low, size, counts)
     keep_a = _occupied(_grid(first, last, counts), *_cells(low_a, high_a, low, size, counts))
@@ -67,9 +64,9 @@ def _grid(first: Ints, last: Ints, counts: Ints) -> Array:
 
 def _occupied(summed: Array, first: Ints, last: Ints) -> Flags:
     """Whether any cell of each box is occupied."""
-    found = np.zeros(len(first))
+    count = np.zeros(len(first))
     for corner in range(8):
         upper = [(corner >> k) & 1 for k in range(3)]
         at = tuple(last[:, k] + 1 if upper[k] else first[:, k] for k in range(3))
-        found += (-1) ** (3 - sum(upper)) * summed[at]
-    return np.asarray(found > 0.5)
+        count += (-1) ** (3 - sum(upper)) * summed[at]
+    return np.asarray(count > 0.5)

@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.constants import SAME_ANGLE
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
 from kinform.model.arrays import Array, Flags, Ints
 
 __all__ = ["shells_of"]
-
-
-_SAME_ANGLE = 1e-7
-"""rad: facets about an edge within this are coincident."""
 
 
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
@@ -66,7 +64,7 @@ def _across_material(vertices: Array, faces: Ints, edges: EdgeTable, which: Flag
     backward = ~edges.forward[half]
     order = np.lexsort((angle, owner))
     angle, owner_sorted = angle[order], owner[order]
-    step = np.concatenate([[False], (owner_sorted[1:] != owner_sorted[:-1]) | (np.diff(angle) > _SAME_ANGLE)])
+    step = np.concatenate([[False], (owner_sorted[1:] != owner_sorted[:-1]) | (np.diff(angle) > SAME_ANGLE)])
     # at one angle the backward facet comes first: it closes what came before, not what begins here
     order = order[np.lexsort((~backward[order], np.cumsum(step)))]
     return _next_backward(half[order], owner[order], backward[order])
@@ -94,11 +92,11 @@ def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: Flag
     along = vertices[high] - vertices[low]
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     out = vertices[apex] - vertices[low]
-    out -= np.einsum("ij,ij->i", out, along)[:, None] * along
+    out -= dot(out, along)[:, None] * along
     first = np.searchsorted(owner, owner)
     u = out[first] / np.linalg.norm(out[first], axis=1, keepdims=True)
-    v = np.cross(along, u)
+    v = cross(along, u)
     # a forward facet's outward normal is along × out, so its material lies at decreasing angles
-    angle: Array = np.mod(-np.arctan2(np.einsum("ij,ij->i", out, v), np.einsum("ij,ij->i", out, u)), 2 * np.pi)
-    angle[angle > 2 * np.pi - _SAME_ANGLE] = 0.0
+    angle: Array = np.mod(-np.arctan2(dot(out, v), dot(out, u)), 2 * np.pi)
+    angle[angle > 2 * np.pi - SAME_ANGLE] = 0.0
     return angle

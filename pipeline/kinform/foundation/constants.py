@@ -1,0 +1,62 @@
+"""The numbers that decide on the ground floor, by the module that uses them. Where neither a reason nor a measurement
+is named the number is a choice."""
+
+from __future__ import annotations
+
+import numpy as np
+
+# meshes/boxes
+
+CHUNK = 48
+"""Facets of a chunk."""
+OFTEN = 6
+"""Questions that are cheaper to answer without chunks than the chunks are to make."""
+GRID_FINEST = 512
+"""Cells along the side of a grid, at most."""
+GRID_LISTED = 12
+"""Cells of a grid that a facet is listed in on average, at most, ..."""
+GRID_LISTED_LEAST = 4096
+"""... and these in all, which cost nothing."""
+SIZE_OCTAVES = 20
+"""Octaves of size that facets are sorted by."""
+PLACE_BITS = 10
+"""Bits of a coordinate along the Z-curve that facets are sorted along."""
+
+# meshes/index
+
+BALL_SHARE = 0.012
+"""Share of a mesh's diagonal that balls about its facets are as small as."""
+BALL_PARTS = 6
+"""Divisions of a facet's side for it at most."""
+RAYS = np.array([[0.577, 0.523, 0.627], [-0.67, 0.31, 0.675], [0.21, -0.83, 0.517]])
+"""(3, 3) directions along which no designer lays an edge."""
+
+# meshes/shells
+
+SAME_ANGLE = 1e-7
+"""rad: facets about an edge within this are coincident."""
+
+# meshes/near
+
+LINE = np.array([0.57735, 0.51763, 0.63144, 0.44317])
+"""(4,) direction along which no designer lays an edge."""
+FEW_PAIRS = 1 << 16
+"""Pairs that share a place up to which all of them are measured: in all, ..."""
+SHARED_PAIRS = 2
+"""... and a point."""
+
+# meshes/probes
+
+SLIVER_WIDTH = 1e-3
+"""Width of a sliver relative to its length: zero width misses most facets."""
+HITS_A_PROBE = 256
+"""Facets that one probe may hit on average."""
+STEEP_LEAST = 1e-3
+"""Least cosine between a probe and a facet's normal at which the place where they meet is known."""
+
+# meshes/proximity
+
+CELLS_MOST = 48
+"""Most cells along the longest side of the common box."""
+CELLS_LEAST = 8
+"""Least; between them a quarter of the root of the number of boxes is added."""
