@@ -1,6 +1,6 @@
 """Two parts of different bodies, as far as a motion can bring them into collision.
 
-Facets of surfaces that the pair's own motion maps onto themselves are left out (`invariant`). What is left of mating
+Facets of surfaces that the pair's own motion maps onto themselves are left out (`slippage`). What is left of mating
 parts may still cross by chord errors where a border of one surface runs along a mate: such segments, all of whose
 points lie on a mating surface to within the errors of the pair, are no collision.
 """
@@ -123,9 +123,14 @@ class PairTest:
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
         """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
         X = self.pose(D)
-        corner = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][nearest[0]], 0]]
-        far = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][nearest[1]]]]
-        return float(self._normals[0][nearest[0]] @ (X[:3, :3] @ (far.sum(axis=0) / 3.0) + X[:3, 3] - corner))
+        first, second = (self._corners(side, facet) for side, facet in enumerate(nearest))
+        middle = X[:3, :3] @ (second.sum(axis=0) / 3.0) + X[:3, 3]
+        return float(self._normals[0][nearest[0]] @ (middle - first[0]))
+
+    def _corners(self, side: int, chosen: int | Ints) -> Array:
+        """(…, 3, 3) m, part frame: corners of some of the facets that count, of the first or second part (0, 1)."""
+        mesh = self._meshes[side]
+        return np.asarray(mesh.vertices[mesh.faces[self.facets[side][chosen]]])
 
     @cached_property
     def _normals(self) -> tuple[Array, Array]:
@@ -162,8 +167,7 @@ class PairTest:
             np.array([(a, b, FACET_GRID - a - b) for a in range(FACET_GRID + 1) for b in range(FACET_GRID + 1 - a)])
             / FACET_GRID
         )
-        first = grid @ self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
-        second = grid @ self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]]
+        first, second = grid @ self._corners(0, f), grid @ self._corners(1, g)
         yield self.names[1], (first - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
         yield self.names[0], second @ X[:3, :3].T + X[:3, 3], X[:3, :3] @ self._normals[1][g]
 
@@ -207,8 +211,7 @@ class PairTest:
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
         X = self.pose(D)
-        first = self._meshes[0].vertices[self._meshes[0].faces[self.facets[0][f]]]
-        second = self._meshes[1].vertices[self._meshes[1].faces[self.facets[1][g]]] @ X[:3, :3].T + X[:3, 3]
+        first, second = self._corners(0, f), self._corners(1, g) @ X[:3, :3].T + X[:3, 3]
         return np.asarray(0.5 * (first.mean(axis=0) + second.mean(axis=0)))
 
     def crossing(self, D: Array, hits: Ints | None = None) -> Crossing:
@@ -219,8 +222,8 @@ class PairTest:
             return NONE
         X = self.pose(D)
         f, g = self.facets[0][hits[:, 0]], self.facets[1][hits[:, 1]]
-        first = self._meshes[0].vertices[self._meshes[0].faces[f]]
-        second = self._meshes[1].vertices[self._meshes[1].faces[g]] @ X[:3, :3].T + X[:3, 3]
+        first = self._corners(0, hits[:, 0])
+        second = self._corners(1, hits[:, 1]) @ X[:3, :3].T + X[:3, 3]
         normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
         cross, segments = crossings(first, second, normals, CROSSING_LEAST * self.size)
         if not cross.any():

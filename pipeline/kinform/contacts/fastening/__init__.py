@@ -5,4 +5,4 @@ from kinform.contacts.fastening.suggest import fastened, suggest
 __all__ = ["CODE_VERSION", "fastened", "suggest"]
 
 CODE_VERSION: int = 2
-"""Bumped when results change."""
+"""Raised when the same input would give other suggestions."""
