@@ -141,7 +141,7 @@ def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
     _, values, right = np.linalg.svd(matrix)
     rank = int(np.count_nonzero(values > closed * max(values[0], 1e-300))) if len(values) else 0
     null: Array = right[rank:]
-    drivers = _drivers(null, prefer, len(null))
+    drivers, _ = _pivots(null, -prefer)
     # the preferred column that is well conditioned drives; all others follow from these
     reduced = np.linalg.solve(null[:, drivers], null)
     reduced[:, drivers] = np.eye(len(drivers))
@@ -150,21 +150,6 @@ def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
         columns = np.flatnonzero(np.abs(row) > RATE_ROUNDING * np.abs(row).max())
         out.append(Solution(driver, columns, row[columns]))
     return out
-
-
-def _drivers(matrix: Array, prefer: Array, count: int) -> list[int]:
-    """So many columns of the matrix that are independent, by pivoting with preference."""
-    rest = matrix.copy()
-    chosen: list[int] = []
-    for _ in range(count):
-        norms = np.linalg.norm(rest, axis=0)
-        norms[chosen] = 0.0
-        good = np.flatnonzero(norms >= PIVOT_SHARE * norms.max())
-        best = int(good[np.argmin(prefer[good])])
-        chosen.append(best)
-        unit = rest[:, best] / norms[best]
-        rest -= np.outer(unit, unit @ rest)
-    return chosen
 
 
 def _eliminate(
@@ -222,7 +207,11 @@ def _by_place(cycles: Sequence[Cycle]) -> list[Cycle]:
 
 
 def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
-    """Columns that the equations (6, n) determine, the least preferred first, and whether that is clear."""
+    """Independent columns of the matrix (m, n), at most m, and whether their number is clear.
+
+    Of the columns that are hardly shorter than the longest, each time the one with the greatest `prefer` (n,) is taken,
+    and taken out of the others (twice, for what rounding leaves).
+    """
     rest = matrix.copy()
     pivots: list[int] = []
     clear = True

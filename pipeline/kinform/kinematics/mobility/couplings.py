@@ -178,6 +178,6 @@ def convex_turns(mesh: Mesh, X_WP: Array, axis: Array, point: Array) -> float:
     edges = shared_edges(faces, len(height), by_corner=True)
     above = height[edges.ends] > 0.0
     edges = edges.where(edges.opposed & (above[:, 0] != above[:, 1]))
-    one, two = normals[edges.facets].transpose(1, 0, 2)
-    angle = np.arccos(np.clip(np.einsum("ij,ij->i", one, two), -1.0, 1.0))
-    return float(angle[edges.convexity(mesh.vertices, one, two) > 0.0].sum()) / (2.0 * np.pi)
+    first, second = normals[edges.facets].transpose(1, 0, 2)
+    angle = np.arccos(np.clip(np.einsum("ij,ij->i", first, second), -1.0, 1.0))
+    return float(angle[edges.convexity(mesh.vertices, first, second) > 0.0].sum()) / (2.0 * np.pi)

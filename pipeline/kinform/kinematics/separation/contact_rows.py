@@ -102,8 +102,8 @@ class ContactRows:
         frames = _frames(points, counts)
         rows = self._rows(normals, moments, frames, owner)
         alone = [self._two_way(k) for key in keys for k, _ in key]
-        two = np.repeat(np.array(alone, np.bool_), [len(samples[0]) for samples in patches])
-        rows, group = unit_rows_of(rows, 2 * owner + ~two)
+        both_ways = np.repeat(np.array(alone, np.bool_), [len(samples[0]) for samples in patches])
+        rows, group = unit_rows_of(rows, 2 * owner + ~both_ways)
         of_both, of_one = group % 2 == 0, group % 2 == 1
         fixed = _opposed_directions(rows[of_both], group[of_both] // 2, len(keys))
         across = np.array([np.eye(6) - basis.T @ basis for basis in fixed])
