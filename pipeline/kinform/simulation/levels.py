@@ -103,9 +103,9 @@ def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
         notes.append(
             f"the teeth of {coupling.through} are taken for their ratio: {coupling.joints[0]} = {teeth.ratio:.6g} · "
             f"{coupling.joints[1]}, from {_teeth_counted(teeth, types, coupling.joints)} (at the pose of "
-            f"the meshes their normals give {coupling.ratio:.6g} ± {coupling.uncertainty:.1g}); the meshes depart from it "
-            f"by up to {shown(teeth.deviation)} of {coupling.joints[0]} within a tooth, and have play of {shown(teeth.play)}, "
-            "which is left out"
+            f"the meshes their normals give {coupling.ratio:.6g} ± {coupling.uncertainty:.1g}); the meshes depart "
+            f"from it by up to {shown(teeth.deviation)} of {coupling.joints[0]} within a tooth, and have play of "
+            f"{shown(teeth.play)}, which is left out"
         )
     return tuple(notes)
 

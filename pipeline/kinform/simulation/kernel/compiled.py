@@ -40,8 +40,8 @@ _MODULES = (vectors, motion, masses, forces, loops, reduction, equations, crossi
 """Functions after those that they call."""
 _UNITS = (
     motion.place_links, motion.twist_links, masses.inertias, masses.mass_matrix, loops.gather, loops.eliminate,
-    reduction.reduce, reduction.settle, equations.derivative, equations.project, steps.slope, steps.try_step, explicit.sample,
-    explicit.attempt, explicit.pass_through, explicit.advance,
+    reduction.reduce, reduction.settle, equations.derivative, equations.project, steps.slope, steps.try_step,
+    explicit.sample, explicit.attempt, explicit.pass_through, explicit.advance,
 )  # fmt: skip
 
 
