@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-# --- comparisons/couplings ----------------------------------------------------------------------------------------------
+# --- comparisons/couplings --------------------------------------------------------------------------------------------
 
 UNCOUNTED_TEETH = 1e-2
 """Relative: what the ratio of teeth at one pose may be off."""
