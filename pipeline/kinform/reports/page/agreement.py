@@ -159,8 +159,8 @@ class _Table:
     def _judged(self, row: Row, about: Callable[[Finding], bool], right: bool | None, rule: str = "") -> Row:
         """The row with its findings and its mark.
 
-        `right`: what was found is what was asked for; None: there is nothing to compare, or no answer. `rule` is the code
-        of the rule that decides.
+        `right`: what was found is what was asked for; None: there is nothing to compare, or no answer. `rule` is the
+        code of the rule that decides.
         """
         findings = [k for k, finding in enumerate(self.findings) if about(finding)]
         self.used.update(findings)
