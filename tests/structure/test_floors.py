@@ -1,0 +1,107 @@
+"""The structure of the house, read from the imports of its source: floors, circles, names, and what the docs say of it."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SOURCES = {"kinform": ROOT / "pipeline", "kinform_cli": ROOT / "cli"}
+FLOORS = (
+    "version", "errors", "model", "foundation", "form", "surfaces", "contacts", "kinematics", "mass", "function",
+    "behaviour", "collisions", "simulation", "design", "statics", "consistency", "reuse", "results", "exports",
+    "reports", "changes", "catalog", "stages", "api", "method", "kinform", "kinform_cli",
+)  # fmt: skip
+"""Rooms from the ground up: what stands later may import what stands earlier, never the reverse."""
+
+
+@functools.cache
+def modules() -> dict[str, Path]:
+    """Every module by its dotted name; a package has the name of its folder."""
+    out = {}
+    for package, source in SOURCES.items():
+        for path in sorted((source / package).rglob("*.py")):
+            parts = path.relative_to(source).with_suffix("").parts
+            out[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return out
+
+
+@functools.cache
+def imports() -> dict[str, frozenset[str]]:
+    """The modules that each module imports: at its head, inside functions, and for types only."""
+    return {name: frozenset(_imported(path) & modules().keys() - {name}) for name, path in modules().items()}
+
+
+def _imported(path: Path) -> set[str]:
+    out: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            out |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import"
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                out.add(whole if whole in modules() else str(node.module))
+    return out
+
+
+def room(module: str) -> str:
+    """The folder or module at the root that a module belongs to."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "kinform" and len(parts) > 1 else parts[0]
+
+
+def test_every_room_has_its_floor():
+    assert {room(name) for name in modules()} == set(FLOORS)
+
+
+def test_no_arrow_points_upwards():
+    floor = {name: height for height, name in enumerate(FLOORS)}
+    upwards = [
+        f"{importer} → {target}"
+        for importer, targets in sorted(imports().items())
+        for target in sorted(targets)
+        if floor[room(target)] > floor[room(importer)]
+    ]
+    assert upwards == []
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    reach: dict[str, frozenset[str]] = imports()
+    left = {name: set(targets) for name, targets in reach.items()}
+    while leaves := [name for name, targets in left.items() if not targets]:
+        for name in leaves:
+            del left[name]
+        for targets in left.values():
+            targets.difference_update(leaves)
+    assert sorted(left) == [], "these lie on circles of imports, or lead into one"
+
+
+def test_no_module_hides_behind_an_underscore():
+    dunder = {"__init__", "__main__"}
+    assert [p for p in modules().values() if p.stem.startswith("_") and p.stem not in dunder] == []
+
+
+def test_every_module_says_what_it_knows():
+    silent = [name for name, path in modules().items() if not ast.get_docstring(ast.parse(path.read_text("utf-8")))]
+    assert silent == []
+
+
+@pytest.mark.parametrize("name", sorted(name for name, path in modules().items() if path.stem == "__init__"))
+def test_architecture_names_every_room(name: str):
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    folder = name.removeprefix("kinform.").replace(".", "/")
+    assert name in SOURCES or re.search(rf"`{re.escape(folder)}/?`", text), f"docs/architecture.md does not name {folder}/"
+
+
+def test_architecture_names_nothing_that_is_gone():
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    gone = []
+    for path in re.findall(r"`([\w/]+/[\w/]*(?:\.py|/))`", text):
+        places = (ROOT, *(source / package for package, source in SOURCES.items()))
+        gone += [path] if not any((place / path).exists() for place in places) else []
+    assert gone == []
