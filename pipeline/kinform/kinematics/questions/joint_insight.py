@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.design import Design
 from kinform.kinematics.bodies.classification import evidence_between
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES
@@ -19,6 +18,7 @@ from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import Evidence, Member
 from kinform.kinematics.pair.freedoms import preserved_motions
 from kinform.kinematics.pair.hypotheses import candidate_motions, motion_words
+from kinform.kinematics.questions.derived import Derived
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
@@ -81,7 +81,7 @@ class Insight:
     """What was not looked at, and why; empty where all was."""
 
 
-def insight(design: Design, name: str) -> Insight:
+def insight(design: Derived, name: str) -> Insight:
     """The evidence of the joint of this name. Raises KeyError for another name, listing those that there are."""
     kinematics = design.kinematics
     assert kinematics is not None
@@ -111,7 +111,7 @@ def insight(design: Design, name: str) -> Insight:
     )
 
 
-def patches_between(design: Design, first: str, second: str) -> list[Member]:
+def patches_between(design: Derived, first: str, second: str) -> list[Member]:
     """The patches between two bodies."""
     assert design.kinematics is not None
     of_part = {part: body.name for body in design.kinematics.bodies for part in body.parts}
@@ -120,7 +120,7 @@ def patches_between(design: Design, first: str, second: str) -> list[Member]:
     return [(k, p, sides[k][0] != first) for k, p in enumerate(patches) if set(sides[k]) == {first, second}]
 
 
-def _evidence(design: Design, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
+def _evidence(design: Derived, joint: Joint, without: frozenset[int] = frozenset()) -> Evidence | None:
     assert design.kinematics is not None
     members = [member for member in patches_between(design, *joint.bodies) if member[0] not in without]
     if not members or design.contacts is None:
@@ -129,7 +129,7 @@ def _evidence(design: Design, joint: Joint, without: frozenset[int] = frozenset(
     return evidence_between(members, bodies, design.assembly, design.contacts, Extents(design.assembly))
 
 
-def _roles(design: Design, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
+def _roles(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[PatchRole, ...]:
     assert design.kinematics is not None
     rows = np.bincount(design.kinematics.matrix.patch, minlength=1)
     blocking = {blocker.patch for blocker in joint.blockers}
@@ -142,7 +142,7 @@ def _roles(design: Design, joint: Joint, evidence: Evidence | None) -> tuple[Pat
     return tuple(out)
 
 
-def _alternatives(design: Design, joint: Joint, evidence: Evidence | None) -> tuple[tuple[Alternative, ...], int, str]:
+def _alternatives(design: Derived, joint: Joint, evidence: Evidence | None) -> tuple[tuple[Alternative, ...], int, str]:
     """The joint decided again without each patch, and without what each candidate motion breaks."""
     if evidence is None:
         return (), 0, "no contact patch decides this joint"

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.design import Design
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
+from kinform.kinematics.questions.derived import Derived
 from kinform.kinematics.questions.joint_insight import patches_between
 from kinform.kinematics.questions.motion_senses import Attempt, attempt, pair_ways
 from kinform.kinematics.wording import direction_words
@@ -57,7 +57,7 @@ class QueryAnswer:
 
 
 def query(
-    design: Design, a: str, b: str, *, turn: tuple[Array, Array] | None = None, slide: Array | None = None
+    design: Derived, a: str, b: str, *, turn: tuple[Array, Array] | None = None, slide: Array | None = None
 ) -> QueryAnswer:
     """Whether b can turn about (axis, point m) or slide along a direction, relative to a.
 
@@ -77,7 +77,7 @@ def query(
     return query_twist(design, a, b, np.concatenate([direction, cross(point, direction)]), "turn")
 
 
-def query_twist(design: Design, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
+def query_twist(design: Derived, a: str, b: str, motion: Array, what: str) -> QueryAnswer:
     """Whether b can move by the twist `motion` (ω; v at the world's origin) relative to a; `what` names it.
 
     Asked are the freedoms of the pair's joint, those of the whole assembly, what blocks the joint, and, where all this
@@ -126,7 +126,7 @@ def query_twist(design: Design, a: str, b: str, motion: Array, what: str) -> Que
     return replace(answer, text=_sentence(a, b, what, motion, answer, freed=freed) + _doubt(design, joint))
 
 
-def _body(design: Design, name: str) -> str:
+def _body(design: Derived, name: str) -> str:
     assert design.kinematics is not None
     if any(body.name == name for body in design.kinematics.bodies):
         return name
@@ -144,7 +144,7 @@ def _outside(twist: Array, space: Array, frame: Frame) -> float:
     return float(np.linalg.norm(twist - basis @ (basis.T @ twist)))
 
 
-def _in_assembly(design: Design, first: str, second: str, twist: Array, frame: Frame) -> float:
+def _in_assembly(design: Derived, first: str, second: str, twist: Array, frame: Frame) -> float:
     assert design.kinematics is not None
     freedoms = design.kinematics.mobility.freedoms
     if len(freedoms) < design.kinematics.mobility.instantaneous:
@@ -209,7 +209,7 @@ def _sense(what: str, motion: Array, *, forward: bool) -> str:
     return words if what == "slide" else f"the sense of {words}"
 
 
-def _doubt(design: Design, joint: Joint | None) -> str:
+def _doubt(design: Derived, joint: Joint | None) -> str:
     """What the answer counts on and is not certain, as an addition to the sentence."""
     assert design.kinematics is not None
     uncertain = design.kinematics.mobility.uncertain

@@ -1,0 +1,22 @@
+"""What questions are asked about: an assembly, and as much of its kinematics as has been derived."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.kinematics import Kinematics
+
+__all__ = ["Derived"]
+
+
+class Derived(Protocol):
+    """A design, as far as questions look at it; None: not computed yet."""
+
+    @property
+    def assembly(self) -> Assembly: ...
+    @property
+    def contacts(self) -> Contacts | None: ...
+    @property
+    def kinematics(self) -> Kinematics | None: ...
