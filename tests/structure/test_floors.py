@@ -1,4 +1,4 @@
-"""The structure of the house, read from the imports of its source: floors, circles, names, and what the docs say of it."""
+"""The structure of the house, read from its imports: floors, circles, names, and what the docs say of it."""
 
 from __future__ import annotations
 

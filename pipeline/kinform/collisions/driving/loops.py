@@ -1,8 +1,8 @@
 """The ranges of joints that loops tie together, where all that is left is one motion: it is followed both ways.
 
 Bodies that only spin on themselves, as loose pins do, are held; how far they spin by themselves is another question.
-The motion (`loop_motion`) ends where parts meet, where the linkage comes back to its pose, where a second motion branches off,
-or, where it goes on evenly, where a slide or screw leaves its guide.
+The motion (`loop_motion`) ends where parts meet, where the linkage comes back to its pose, where a second motion
+branches off, or, where it goes on evenly, where a slide or screw leaves its guide.
 """
 
 from __future__ import annotations

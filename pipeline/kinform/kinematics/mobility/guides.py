@@ -1,4 +1,4 @@
-"""Guides of slides and screws: which patches a joint runs along, and at which of its values the last of them is left."""
+"""Guides of slides and screws: which patches a joint runs along, and at which of its values the last of them ends."""
 
 from __future__ import annotations
 

@@ -124,7 +124,8 @@ def meshing(sides: tuple[Side, Side], axis: Array, place: Array, normal: Array, 
         return "the teeth let go of each other before the next ones meet"
     error = float(max(np.ptp(ahead), np.ptp(behind)))
     if error > EVEN_TEETH * second_row.pitch:
-        return f"while one tooth passes the motion departs by {error / second_row.pitch:.2g} of a pitch from a constant ratio"
+        share = error / second_row.pitch
+        return f"while one tooth passes the motion departs by {share:.2g} of a pitch from a constant ratio"
     lower, upper = _reach(first, first_row, touch)
     other = [abs(mean) * value for value in _reach(second, second_row, touch)]
     if mean < 0.0:
