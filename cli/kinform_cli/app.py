@@ -17,8 +17,6 @@ import typer
 from kinform_cli import console
 from kinform_cli.options import Command, Debug, Group, examples
 
-__all__ = ["COMMANDS", "app"]
-
 PANELS = {
     "The whole way": ("run",),
     "Stage by stage": ("import", "contacts", "joints", "mass", "simulate", "check"),

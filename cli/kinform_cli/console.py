@@ -18,22 +18,6 @@ if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.text import Text
 
-__all__ = [
-    "Settings",
-    "decorated",
-    "emit",
-    "flush",
-    "give_up",
-    "harmless",
-    "out",
-    "say",
-    "settings",
-    "stderr",
-    "tell",
-    "tolerate_any_character",
-    "warn",
-]
-
 
 @dataclass
 class Settings:

@@ -14,7 +14,6 @@ from kinform_cli import console
 if TYPE_CHECKING:
     from kinform.errors import Problem
 
-__all__ = ["FINDINGS", "NOT_VERIFIED", "OK", "from_typer", "refuse", "report"]
 
 OK = 0
 FINDINGS = 1

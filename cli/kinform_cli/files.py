@@ -18,19 +18,6 @@ from kinform_cli.progress import Working
 if TYPE_CHECKING:
     from kinform.design import Design
 
-__all__ = [
-    "MESHES",
-    "advance",
-    "check_output",
-    "check_text_output",
-    "is_manifest",
-    "make_rule",
-    "needing",
-    "read",
-    "read_by",
-    "write_bytes",
-    "write_text",
-]
 
 MESHES = (".stl", ".obj")
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from kinform.design import Design
     from kinform.model.findings import Finding
 
-__all__ = ["Gate"]
-
 
 @dataclass(frozen=True)
 class Gate:

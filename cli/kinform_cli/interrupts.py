@@ -10,8 +10,6 @@ from __future__ import annotations
 import signal
 from types import FrameType
 
-__all__ = ["listen", "raise_unheard"]
-
 _asked = False
 
 

@@ -13,8 +13,6 @@ import traceback
 from collections.abc import Sequence
 from typing import NoReturn
 
-__all__ = ["entry", "main"]
-
 _FAILED = 2
 
 

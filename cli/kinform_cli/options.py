@@ -13,28 +13,6 @@ from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
 
-__all__ = [
-    "AllowOutside",
-    "Command",
-    "Debug",
-    "Depfile",
-    "FailOn",
-    "FindingsFormat",
-    "Group",
-    "Jobs",
-    "ManifestFolder",
-    "Output",
-    "Ranges",
-    "Results",
-    "Severity",
-    "Sources",
-    "TableFormat",
-    "Tolerances",
-    "Units",
-    "cores",
-    "examples",
-]
-
 
 class _WithExamples:
     """Help at whose end examples stand, line by line as they are written."""

@@ -18,7 +18,6 @@ from kinform_cli.constants import DELAY, PERIOD
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
 
-__all__ = ["Working"]
 
 _drawing = threading.RLock()
 if hasattr(os, "register_at_fork"):

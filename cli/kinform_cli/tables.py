@@ -15,8 +15,6 @@ from rich.text import Text
 
 from kinform_cli.constants import GAP, INDENT
 
-__all__ = ["Rows", "stacked"]
-
 
 class Rows:
     """A table for people. Nothing is ever cut, and no name broken while there is room for it.

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from kinform.design import Design
     from kinform.model.assembly import Assembly
 
-__all__ = ["NONE", "Lengths", "degrees", "dumps", "ground_note", "number", "vector"]
 
 NONE = "–"
 """What stands where there is no value."""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
 
-__all__ = ["Named", "Outcome", "Results", "open_results"]
-
 
 class _HasName(Protocol):
     @property

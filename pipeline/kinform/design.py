@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from kinform.model.simulation import Simulation
     from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Design"]
-
 
 @dataclass(frozen=True, eq=False)
 class Design:

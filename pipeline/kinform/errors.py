@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-__all__ = ["InputError", "KinformError", "Problem", "ResultsError", "StageError"]
-
 
 class KinformError(Exception):
     """Base of everything kinform raises on purpose."""

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 from kinform.api import Outcome
 from kinform.design import Design
 from kinform.errors import InputError, Problem
+from kinform.foundation.progress import Progress as StageProgress
 
 if TYPE_CHECKING:
-    from kinform import stages
     from kinform.reuse.ledger import Ledger
 
 if TYPE_CHECKING:
     from kinform.results import Earlier
 
-__all__ = ["Progress", "run"]
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the stage, its steps done, and its steps in all."""
@@ -93,6 +92,6 @@ def _earlier(output: str | Path | None) -> Earlier | None:
     return results.earlier(output)
 
 
-def _steps(progress: Progress | None, stage: str) -> stages.Progress | None:
+def _steps(progress: Progress | None, stage: str) -> StageProgress | None:
     """The progress of one stage, as the stage reports it."""
     return None if progress is None else lambda done, total: progress(stage, done, total)

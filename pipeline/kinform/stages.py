@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
     from kinform.model.simulation import Simulation
 
-__all__ = ["Progress", "check", "contacts", "import_", "import_meshes", "joints", "mass", "simulate"]
 
 Computed = TypeVar("Computed")
 

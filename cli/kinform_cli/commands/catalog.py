@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from kinform.catalog import Catalog, Refused
 
-__all__ = ["add", "app", "find", "rebuild"]
 
 app = typer.Typer(
     name="catalog",

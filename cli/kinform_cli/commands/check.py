@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from kinform.design import Design
     from kinform.model.findings import CheckReport
 
-__all__ = ["EXAMPLES", "check"]
 
 EXAMPLES = examples(
     "kinform check e.h5",

@@ -12,7 +12,6 @@ from kinform_cli.progress import Working
 if TYPE_CHECKING:
     from kinform.design import Design
 
-__all__ = ["EXAMPLES", "contacts"]
 
 EXAMPLES = examples(
     "kinform contacts a.h5 -o b.h5", "kinform contacts arm.h5 -o arm.h5 --jobs 4", "kinform show b.h5 contacts"

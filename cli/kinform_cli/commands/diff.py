@@ -14,7 +14,6 @@ from kinform_cli.options import Tolerances, examples
 if TYPE_CHECKING:
     from kinform.changes import Tolerance
 
-__all__ = ["EXAMPLES", "DiffFormat", "diff", "tolerance"]
 
 EXAMPLES = examples(
     "kinform diff before.h5 after.h5",

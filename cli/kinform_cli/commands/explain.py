@@ -9,8 +9,6 @@ import typer
 from kinform_cli import console
 from kinform_cli.options import examples
 
-__all__ = ["EXAMPLES", "explain"]
-
 EXAMPLES = examples("kinform explain", "kinform explain KF203")
 
 

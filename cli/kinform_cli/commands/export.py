@@ -13,8 +13,6 @@ from kinform_cli import console, files
 from kinform_cli.errors import refuse
 from kinform_cli.options import Results, examples
 
-__all__ = ["EXAMPLES", "Target", "export"]
-
 EXAMPLES = examples(
     "kinform export arm.h5 --to urdf -o arm_urdf",
     "kinform export arm.h5 --to mjcf -o arm_mjcf --strict",

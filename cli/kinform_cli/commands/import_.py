@@ -7,8 +7,6 @@ from kinform_cli import console, files
 from kinform_cli.options import AllowOutside, Depfile, Output, Sources, Units, examples
 from kinform_cli.progress import Working
 
-__all__ = ["EXAMPLES", "import_"]
-
 EXAMPLES = examples(
     "kinform import arm.toml -o a.h5",
     "kinform import housing.stl shaft.stl --units mm -o a.h5",

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
     from kinform.model.names import PartName
 
-__all__ = ["EXAMPLES", "init"]
 
 EXAMPLES = examples(
     "kinform init parts/*.stl --units mm -o arm.toml", "kinform init scene.obj --units m            # print it"

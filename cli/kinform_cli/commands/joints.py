@@ -7,8 +7,6 @@ from kinform_cli import console, files
 from kinform_cli.options import Output, Results, examples
 from kinform_cli.text import ground_note
 
-__all__ = ["EXAMPLES", "joints"]
-
 EXAMPLES = examples("kinform joints b.h5 -o c.h5", "kinform show c.h5 joints", "kinform show c.h5 joints --format json")
 
 

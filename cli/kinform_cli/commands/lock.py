@@ -13,8 +13,6 @@ from kinform_cli.commands.diff import tolerance
 from kinform_cli.errors import refuse
 from kinform_cli.options import Results, Tolerances, examples
 
-__all__ = ["EXAMPLES", "lock"]
-
 EXAMPLES = examples(
     "kinform lock arm.h5 -o behaviour.lock.json",
     "kinform lock arm.h5 -o behaviour.lock.json --tolerance 0.05mm --tolerance 1%",

@@ -6,8 +6,6 @@ from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.options import Output, Results, examples
 
-__all__ = ["EXAMPLES", "mass"]
-
 EXAMPLES = examples("kinform mass c.h5 -o d.h5", "kinform show d.h5 mass")
 
 

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from kinform.kinematics import IntendedAnswer, IntendedMotion, QueryAnswer, QueryBlocker
     from kinform_cli.text import Lengths
 
-__all__ = ["EXAMPLES", "query"]
 
 EXAMPLES = examples(
     "kinform query arm.h5 base shoulder --turn z@0,-45.2,16.5",

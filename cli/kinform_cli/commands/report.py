@@ -13,8 +13,6 @@ from kinform_cli.errors import refuse
 from kinform_cli.options import Results, examples
 from kinform_cli.progress import Working
 
-__all__ = ["EXAMPLES", "report"]
-
 EXAMPLES = examples(
     "kinform report arm.h5 -o arm.html", "kinform report arm.h5 -o arm.html --png out   # also PNG and summary.md"
 )

@@ -26,8 +26,6 @@ from kinform_cli.options import (
 )
 from kinform_cli.progress import Working
 
-__all__ = ["EXAMPLES", "run"]
-
 EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5",
     "kinform run arm.toml -o arm.h5 --format concise --fail-on warning",

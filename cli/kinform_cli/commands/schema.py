@@ -7,8 +7,6 @@ import json
 from kinform_cli import console
 from kinform_cli.options import examples
 
-__all__ = ["EXAMPLES", "schema"]
-
 EXAMPLES = examples(
     "kinform schema > kinform.schema.json", "#:schema ./kinform.schema.json   # first line of a manifest, for editors"
 )

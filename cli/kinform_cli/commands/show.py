@@ -15,7 +15,6 @@ from kinform_cli.options import Results, TableFormat, examples
 if TYPE_CHECKING:
     from kinform.design import Design
 
-__all__ = ["EXAMPLES", "Topic", "show"]
 
 EXAMPLES = examples(
     "kinform show arm.h5",

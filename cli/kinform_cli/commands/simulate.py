@@ -10,8 +10,6 @@ import typer
 from kinform_cli import console, files
 from kinform_cli.options import Output, Ranges, Results, examples
 
-__all__ = ["EXAMPLES", "Level", "simulate"]
-
 EXAMPLES = examples(
     "kinform simulate d.h5 -o e.h5",
     "kinform simulate d.h5 -o e.h5 --level kinematic",

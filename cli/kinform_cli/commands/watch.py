@@ -13,8 +13,6 @@ from kinform_cli.gate import Gate
 from kinform_cli.options import AllowOutside, FailOn, FindingsFormat, Jobs, Severity, cores, examples
 from kinform_cli.progress import Working
 
-__all__ = ["EXAMPLES", "watch"]
-
 EXAMPLES = examples(
     "kinform watch arm.toml -o arm.h5",
     "kinform watch arm.toml -o arm.h5 --fail-on warning",

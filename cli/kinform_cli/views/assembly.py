@@ -13,8 +13,6 @@ from kinform.model.assembly import Assembly, Part, Subassembly
 from kinform_cli.tables import stacked
 from kinform_cli.text import number
 
-__all__ = ["render"]
-
 
 def render(design: Design) -> RenderableType:
     """The tree, then groups and notes."""

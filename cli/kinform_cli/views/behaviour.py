@@ -38,8 +38,6 @@ from kinform.foundation.words import counted
 from kinform_cli.tables import Rows
 from kinform_cli.text import NONE, Lengths, number, vector
 
-__all__ = ["render"]
-
 
 def render(design: Design) -> RenderableType:
     """One sentence, the levels where there are any, one row a component, then what could not be made part of it."""

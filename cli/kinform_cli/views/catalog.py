@@ -16,7 +16,6 @@ from kinform_cli.text import NONE, dumps, number
 if TYPE_CHECKING:
     from kinform.catalog import CatalogJoint, CatalogRequirement, Entry
 
-__all__ = ["as_json", "render"]
 
 _NUMBERS = ("mobility", "loops", "mass kg")
 

@@ -9,8 +9,6 @@ from kinform.foundation.words import counted
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths
 
-__all__ = ["render"]
-
 
 def render(design: Design) -> RenderableType:
     """One row a patch, then one row an overlap, then one row a suggestion."""

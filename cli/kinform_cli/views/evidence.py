@@ -14,8 +14,6 @@ from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, number, vector
 from kinform_cli.views.joints import blockers, sentence
 
-__all__ = ["render"]
-
 
 def render(design: Design, name: str) -> RenderableType:
     """The joint of this name; raises KeyError where there is none."""

@@ -8,8 +8,6 @@ from rich.text import Text
 from kinform import reports
 from kinform.design import Design
 
-__all__ = ["render"]
-
 _STYLES = {"error": "bold red", "warning": "bold yellow", "note": "bold cyan", "not decided": "bold magenta"}
 
 

@@ -15,8 +15,6 @@ from kinform_cli.constants import MOST_WAYS
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, ground_note, number, vector
 
-__all__ = ["blockers", "leaves", "render", "sentence"]
-
 
 def render(design: Design) -> RenderableType:
     """One row a joint, then why a joint is not plainly determined, then the bodies of several parts."""

@@ -12,8 +12,6 @@ from kinform.model.mass import MassProperties
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number
 
-__all__ = ["bodies", "render"]
-
 
 def bodies(design: Design) -> RenderableType:
     """One row a body."""

@@ -16,8 +16,6 @@ from kinform_cli.constants import MOST_NAMES, NO_ANGLE
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
-__all__ = ["render"]
-
 _MEANINGS = (
     ("effective", "without idle freedoms: what `mobility` is compared with"),
     ("instantaneous", "velocities that the bilateral constraints leave"),

@@ -19,8 +19,6 @@ from kinform_cli.constants import REST, SAME_PEAK, SPARK_WIDTH
 from kinform_cli.tables import Rows
 from kinform_cli.text import Lengths, degrees, number
 
-__all__ = ["BLOCKS", "PLAIN", "render", "spark"]
-
 BLOCKS = "▁▂▃▄▅▆▇█"
 PLAIN = "_.:-=+*#"
 

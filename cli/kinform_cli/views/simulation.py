@@ -16,8 +16,6 @@ from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, number
 from kinform_cli.views import series
 
-__all__ = ["headline", "render"]
-
 _NUMBERS = ("start", "end", "lowest", "highest", "fastest")
 _COMPONENTS = ("τx", "τy", "τz", "Fx", "Fy", "Fz")
 

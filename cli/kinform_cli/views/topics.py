@@ -18,8 +18,6 @@ from kinform.model.findings import SEVERITIES
 from kinform_cli.tables import stacked
 from kinform_cli.views import assembly, behaviour, contacts, evidence, findings, joints, mass, mobility, simulation
 
-__all__ = ["TOPICS", "Topic", "render", "render_joint"]
-
 
 @dataclass(frozen=True)
 class Topic:

@@ -18,8 +18,6 @@ from kinform.model.kinematics import Coupling as Found
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 
-__all__ = ["make_drive", "make_gear", "make_load", "mesh_gear", "one_freedom"]
-
 Joints = Mapping[str, JointComponent]
 
 

@@ -25,18 +25,6 @@ from kinform.behaviour.shafts import (
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
-__all__ = [
-    "COMPONENTS",
-    "Gear",
-    "Ground",
-    "JointComponent",
-    "LoadComponent",
-    "RigidBody",
-    "SpringDamper",
-    "System",
-    "kind_of",
-]
-
 
 @dataclass(frozen=True)
 class Ground(Component):

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from kinform.behaviour.components import System
 
-__all__ = ["Count", "count", "counts"]
-
 
 @dataclass(frozen=True)
 class Count:

@@ -15,8 +15,6 @@ from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, VoltageController, VoltageSource
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 
-__all__ = ["faults"]
-
 _SIGNALS = (Constant, Ramp, Sine, Table)
 _UNBOUNDED = ("lower", "upper", "limit")
 """Values that may be infinite."""

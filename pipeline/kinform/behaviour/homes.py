@@ -10,8 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from kinform.behaviour.components import System
 
-__all__ = ["homes"]
-
 
 def homes(system: System, parts: Mapping[str, Sequence[str]]) -> dict[str, str]:
     """Path of the sub-assembly of each component of a flat system, by its name; "" where it is in none.

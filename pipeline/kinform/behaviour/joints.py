@@ -18,8 +18,6 @@ from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 from kinform.model.quantities import Direction, Metres, Place
 
-__all__ = ["KINDS", "JointGeometry", "JointKind"]
-
 
 @dataclass(frozen=True, eq=False)
 class JointGeometry:

@@ -38,8 +38,6 @@ from kinform.behaviour.signals import Signal
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
 
-__all__ = ["Model"]
-
 Where = str | tuple[str, str]
 """A component by name, or one of its ports: (component, port)."""
 

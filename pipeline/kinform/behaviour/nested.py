@@ -18,8 +18,6 @@ from kinform.behaviour.ports import Component, Node
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
 
-__all__ = ["arranged", "flat", "nest", "placed"]
-
 Leaf = tuple[str, str]
 
 

@@ -18,8 +18,6 @@ from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.quantities import Reason
 
-__all__ = ["Behaviour", "build"]
-
 
 @dataclass(frozen=True, eq=False)
 class Behaviour:

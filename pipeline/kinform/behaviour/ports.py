@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["FRAME", "Component", "Node", "Port"]
-
 FRAME = 6
 """Across: a twist (ω; v). Through: a wrench (τ; f)."""
 

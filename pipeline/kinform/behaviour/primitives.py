@@ -18,8 +18,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["Ball", "OneFreedom", "Primitive"]
-
 
 @dataclass(frozen=True, eq=False)
 class OneFreedom:

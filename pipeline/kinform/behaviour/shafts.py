@@ -10,20 +10,6 @@ from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
 from kinform.model.quantities import JointValue
 
-__all__ = [
-    "Actor",
-    "Controller",
-    "Damper",
-    "DcMotor",
-    "EffortDrive",
-    "EndStop",
-    "MotionDrive",
-    "Servo",
-    "Spring",
-    "VoltageController",
-    "VoltageSource",
-]
-
 
 @dataclass(frozen=True)
 class OnShaft(Component):

@@ -12,8 +12,6 @@ import numpy as np
 from kinform.behaviour.constants import OVERSHOOT, SPLINE_SAMPLES
 from kinform.model.function import Law
 
-__all__ = ["Constant", "Ramp", "Signal", "Sine", "Spline", "Table", "signal", "smooth"]
-
 
 class Signal(Protocol):
     """A function of time (s)."""

@@ -13,8 +13,6 @@ from kinform.catalog.entry import Entry, entry_of
 from kinform.catalog.store import Catalog
 from kinform.errors import InputError, Problem, ResultsError, StageError
 
-__all__ = ["Refused", "add", "digest_of", "rebuild"]
-
 _ENDINGS = (".h5", ".hdf5")
 
 

@@ -16,8 +16,6 @@ from kinform.model.findings import CheckReport
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["CatalogJoint", "CatalogRequirement", "Entry", "entry_of"]
-
 Triple = tuple[float, float, float]
 
 _UNDECIDED = "KF902"

@@ -11,8 +11,6 @@ from kinform.catalog.build import digest_of
 from kinform.catalog.entry import Entry
 from kinform.catalog.store import entry_from, open_catalog
 
-__all__ = ["JOINT_TYPES", "Wanted", "find", "joint_count", "source_state"]
-
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal", "general",
 )  # fmt: skip

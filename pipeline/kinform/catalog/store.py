@@ -17,8 +17,6 @@ from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Tripl
 from kinform.errors import InputError, Problem
 from kinform.results import replace_file
 
-__all__ = ["SCHEMA", "Catalog", "entry_from", "open_catalog", "read", "write"]
-
 SCHEMA = "kinform/catalog/1"
 
 _TABLES = """

@@ -16,8 +16,6 @@ from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint
 from kinform.model.mass import MassProperties
 
-__all__ = ["Axis", "BodyMass", "JointState", "Snapshot", "snapshot"]
-
 Vector = tuple[float, float, float]
 
 

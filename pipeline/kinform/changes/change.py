@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from kinform.changes.behaviours import Axis, Vector
 from kinform.foundation.words import counted, direction, length, place
 
-__all__ = ["Change", "Lengths", "freedoms_changed", "quoted", "signed"]
-
 
 @dataclass(frozen=True)
 class Change:

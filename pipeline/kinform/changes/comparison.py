@@ -17,8 +17,6 @@ from kinform.changes.masses import mass_changes
 from kinform.changes.matching import holder, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
 
-__all__ = ["Comparison", "compare"]
-
 PARTS = ("bodies", "joints", "ranges", "mobility", "masses", "interferences", "simulation", "findings")
 """What is compared, where both know it."""
 

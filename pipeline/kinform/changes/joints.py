@@ -13,8 +13,6 @@ from kinform.changes.matching import holder
 from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import angle, direction
 
-__all__ = ["joint_changes"]
-
 
 def joint_changes(
     before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Lengths, ranged: bool

@@ -26,7 +26,6 @@ from kinform.model.findings import CheckReport, Finding
 if TYPE_CHECKING:
     from kinform.consistency import Outcome
 
-__all__ = ["ACCEPTED", "CODE", "NAME", "SCHEMA", "Lock", "read_lock", "with_lock", "write_lock"]
 
 SCHEMA = "kinform/behaviour-lock/1"
 CODE, NAME = "KF450", "behaviour-differs-from-lock"

@@ -11,8 +11,6 @@ from kinform.changes.change import Change, Lengths, signed
 from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import number
 
-__all__ = ["mass_changes"]
-
 
 def mass_changes(
     before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Lengths

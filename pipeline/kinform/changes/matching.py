@@ -12,8 +12,6 @@ from dataclasses import replace
 
 from kinform.changes.behaviours import Snapshot
 
-__all__ = ["holder", "new_names", "same_bodies", "with_names"]
-
 
 def new_names(before: Snapshot, after: Snapshot) -> dict[str, str]:
     """By part that is gone: the new part that alone has its mesh, where no other part that is gone has that mesh."""

@@ -11,8 +11,6 @@ from kinform.changes.comparison import Comparison
 from kinform.foundation.words import counted, one_line
 from kinform.reports.markdown import cell_code, code, escaped, table
 
-__all__ = ["FORMATS", "render"]
-
 SCHEMA = "kinform/diff/1"
 
 

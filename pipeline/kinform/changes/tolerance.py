@@ -7,8 +7,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-__all__ = ["UNITS", "Tolerance"]
-
 UNITS: dict[str, tuple[str, float]] = {
     "m": ("length", 1.0), "cm": ("length", 1e-2), "mm": ("length", 1e-3), "um": ("length", 1e-6),
     "µm": ("length", 1e-6), "in": ("length", 0.0254), "rad": ("angle", 1.0),

@@ -20,9 +20,6 @@ from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["ONE_FREEDOM", "ranges", "shapes_of", "unknown"]
-
-
 ONE_FREEDOM = ("revolute", "prismatic", "screw")
 
 

@@ -8,16 +8,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    CONTACT_TIME,
-    DEPTH_SOON,
-    DEPTH_TIMES,
-    OUTPUT_SLIDE,
-    OUTPUT_TURN,
-    OUTPUTS_MOST,
-    OVERLAP_SAME,
-    RUN_ASKED,
-)
+from kinform.collisions import constants
 from kinform.collisions.joint_ranges import shapes_of
 from kinform.collisions.pair.advancement import first_crossing
 from kinform.collisions.pair.course import Course
@@ -32,8 +23,6 @@ from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 from kinform.model.simulation import Simulation
 from kinform.model.surfaces import MeshSurfaces
-
-__all__ = ["along"]
 
 
 def along(
@@ -67,7 +56,7 @@ def along(
         if progress is not None:
             progress(done, len(pairs))
         test = item.test
-        crossing = first_crossing(test, item.course, end, CONTACT_TIME * step, start=item.free)
+        crossing = first_crossing(test, item.course, end, constants.CONTACT_TIME * step, start=item.free)
         first, second = test.part_names
         if crossing.overlaps:
             untested.append((first, second, "they overlap from the start"))
@@ -80,7 +69,7 @@ def along(
                 continue
             place = (nodes.between(crossing.hit)[item.first] @ np.append(crossing.place, 1.0))[:3]
             depth = _depth(test, item.course, simulation.time, crossing.hit)
-            if crossing.before > 0.0 and depth <= OVERLAP_SAME * crossing.before + test.scrape:
+            if crossing.before > 0.0 and depth <= constants.OVERLAP_SAME * crossing.before + test.scrape:
                 untested.append((first, second, "they overlap from the start, and again later"))
                 continue
             out.append(Collision(test.part_names, crossing.hit, place, depth))
@@ -97,8 +86,8 @@ def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simula
     if finer is None:
         return simulation, ""
     times, wanted = 1, _parts_of_a_step(simulation, size)
-    for _ in range(RUN_ASKED):
-        if wanted == 1 or 2 * wanted * len(simulation.time) > OUTPUTS_MOST:
+    for _ in range(constants.RUN_ASKED):
+        if wanted == 1 or 2 * wanted * len(simulation.time) > constants.OUTPUTS_MOST:
             break
         times *= 2 * wanted
         again = finer(times)
@@ -132,7 +121,7 @@ def _parts_of_a_step(simulation: Simulation, size: float) -> int:
     step = float(np.diff(simulation.time).max())
     turns = {joint: kind != "prismatic" for joint, kind in enumerate(simulation.joint_types)}
     owner = np.repeat(np.arange(len(simulation.joint_types)), np.diff(simulation.joint_offset))
-    reach = np.array([OUTPUT_TURN if turns[int(joint)] else OUTPUT_SLIDE * size for joint in owner])
+    reach = np.array([constants.OUTPUT_TURN if turns[int(joint)] else constants.OUTPUT_SLIDE * size for joint in owner])
     if not len(reach):
         return 1
     rate, acceleration = (
@@ -182,7 +171,7 @@ def _nodes(simulation: Simulation) -> Nodes:
 def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
     """m: how deep two parts are in each other at the worst of some times from the first contact on: soon after it,
     between outputs too, at outputs spread over the run, and about the worst of these."""
-    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), DEPTH_SOON)
+    soon = np.linspace(hit, min(hit + float(np.diff(time).max()), float(time[-1])), constants.DEPTH_SOON)
     after = np.unique(np.concatenate([soon, time[time >= hit]]))
     last = len(after) - 1
     depths: dict[int, float] = {}
@@ -192,10 +181,10 @@ def _depth(test: PairTest, course: Course, time: Array, hit: float) -> float:
             depths[n] = test.deepest(course.displacement(float(after[n])))
         return depths[n]
 
-    tried = {int(n) for n in np.linspace(0, last, DEPTH_TIMES)} | {
-        2**k - 1 for k in range(DEPTH_TIMES) if 2**k - 1 <= last
+    tried = {int(n) for n in np.linspace(0, last, constants.DEPTH_TIMES)} | {
+        2**k - 1 for k in range(constants.DEPTH_TIMES) if 2**k - 1 <= last
     }
-    worst, step = max(sorted(tried), key=deep), max(last // DEPTH_TIMES, 1)
+    worst, step = max(sorted(tried), key=deep), max(last // constants.DEPTH_TIMES, 1)
     while step:
         better = max((n for n in (worst, worst - step, worst + step) if 0 <= n <= last), key=deep)
         worst, step = better, step if better != worst else step // 2

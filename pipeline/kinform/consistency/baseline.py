@@ -18,8 +18,6 @@ from kinform.consistency.control import outcome_without
 from kinform.errors import InputError, Problem
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored
 
-__all__ = ["SCHEMA", "Baseline", "adopt", "read_baseline", "with_baseline"]
-
 SCHEMA = "kinform/baseline/1"
 
 Key = tuple[str, tuple[str, ...]]

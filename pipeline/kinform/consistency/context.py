@@ -26,8 +26,6 @@ from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 
-__all__ = ["Context", "MeshUse", "Need", "Unused"]
-
 Stage = TypeVar("Stage")
 Need = Literal[
     "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from kinform.consistency.context import Unused
-from kinform.consistency.rule import Outcome, Rule
+from kinform.consistency.outcome import Outcome
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.findings import Finding, Ignored, RuleOutcome
-
-__all__ = ["Applied", "apply", "idle_ignore", "is_selected", "means", "outcome_without", "unused_entries"]
 
 DOUBT = "KF9"
 """Rules that have one finding for each thing that could not be decided."""

@@ -10,8 +10,6 @@ from kinform.consistency.rule import Rule
 from kinform.consistency.rules import RULES
 from kinform.errors import KinformError
 
-__all__ = ["UnknownRuleError", "explain", "rules_markdown"]
-
 FAMILIES = (
     ("KF1", "Mesh, units, mass"),
     ("KF2", "Contact and joints"),

@@ -6,17 +6,16 @@ from dataclasses import replace
 
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
+from kinform.consistency.outcome import Outcome, decided, skipped
 from kinform.consistency.places import with_place
 from kinform.consistency.requirements import RequirementRule
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.consistency.rules import RULES
 from kinform.consistency.rules.kf440_setting_without_effect import RULE as CONTROL
 from kinform.consistency.rules.kf450_behaviour_differs_from_lock import RULE as LOCKED
 from kinform.design import Design
 from kinform.model.checks import CheckSettings
-from kinform.model.findings import CheckReport, Finding, RuleOutcome, verdict
-
-__all__ = ["amended", "check", "verdict"]
+from kinform.model.findings import CheckReport, Finding, RuleOutcome
 
 
 def check(design: Design) -> CheckReport:

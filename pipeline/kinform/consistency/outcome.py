@@ -7,19 +7,6 @@ from dataclasses import dataclass
 
 from kinform.model.findings import Finding
 
-__all__ = [
-    "Answer",
-    "Outcome",
-    "decided",
-    "inconclusive",
-    "met",
-    "settled",
-    "skipped",
-    "triple",
-    "undecided",
-    "violated",
-]
-
 
 @dataclass(frozen=True)
 class Outcome:

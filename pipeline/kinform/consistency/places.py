@@ -15,8 +15,6 @@ from kinform.model.assembly import Part
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
 
-__all__ = ["with_place"]
-
 
 def with_place(context: Context, finding: Finding) -> Finding:
     """The finding with a place, where its subject is a part, body or joint, and with file and line of the manifest."""

@@ -12,19 +12,14 @@ from typing import TypeVar
 
 from kinform.consistency.constants import NO_EFFORT
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Answer, met, undecided, violated
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Answer, Outcome, decided, skipped, undecided
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, counted, length, number
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Kind
 from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
-
-__all__ = [
-    "JOINTS", "MASSES", "SINGLE", "Answer", "RequirementRule", "effort", "kind_of_value", "met", "requirement_rule",
-    "shared_parts", "shown_value", "simulated", "single_joint", "stated_as", "undecided", "violated", "worst_of",
-]  # fmt: skip
 
 SIMULATE = "Ask for a simulation that runs to its end: [simulation], and a [[function.drive]] that moves the joints."
 DYNAMIC = 'Ask for `level = "dynamic"`, with the mass of every moving part known.'

@@ -8,10 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from kinform.consistency.context import Context, Need
-from kinform.consistency.outcome import Outcome, decided, inconclusive, settled, skipped, triple
+from kinform.consistency.outcome import Outcome, decided, triple
 from kinform.model.findings import SEVERITIES, Finding
-
-__all__ = ["Declared", "Findings", "Outcome", "Rule", "decided", "inconclusive", "settled", "skipped"]
 
 Findings = Iterable[Finding]
 """What is wrong; a check that gives no more than this has decided."""

@@ -18,8 +18,6 @@ from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["find"]
-
 
 class _Work:
     """What a worker needs for any pair; meshes are indexed when first met."""

@@ -26,8 +26,6 @@ from kinform.model.contacts import Interference, Patch
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["PairContacts", "pair_contacts"]
-
 
 @dataclass(frozen=True, eq=False)
 class PairContacts:

@@ -14,8 +14,6 @@ from kinform.exports.names import free_name
 from kinform.exports.robot import Driver, Robot, RobotLink
 from kinform.model.arrays import Array
 
-__all__ = ["Hinge", "chain", "tree_losses"]
-
 _DRIVES: dict[type[Driver], str] = {
     MotionDrive: "its motion follows a law",
     EffortDrive: "its effort follows a law",

@@ -24,8 +24,6 @@ from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.closure import rank_of
 
-__all__ = ["Closure", "Equations", "equations_of", "inertia_of", "law_numbers", "polynomials"]
-
 
 @dataclass(frozen=True, eq=False)
 class Closure:

@@ -9,8 +9,6 @@ from pathlib import Path
 
 from kinform.errors import KinformError
 
-__all__ = ["ExportError", "Exported", "LostError", "write"]
-
 
 @dataclass(frozen=True)
 class Exported:

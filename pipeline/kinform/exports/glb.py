@@ -22,9 +22,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.version import __version__
 
-__all__ = ["export"]
-
-
 FLOAT, UNSIGNED = 5126, 5125
 VERTICES, INDICES = 34962, 34963
 LINES = 1

@@ -12,8 +12,6 @@ from kinform.exports.names import FILES, identifiers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 
-__all__ = ["Shape", "shapes_of", "stl"]
-
 Colour = tuple[float, float, float, float]
 
 _COLOURS: dict[str, tuple[float, float, float]] = {

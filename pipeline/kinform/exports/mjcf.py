@@ -27,9 +27,6 @@ from kinform.exports.tree import Closing, Link, Motion
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["export"]
-
-
 CLOSABLE = ("spherical", "revolute", "fixed")
 
 

@@ -15,8 +15,6 @@ from kinform.exports.constants import BANDWIDTH
 from kinform.exports.names import XML, identifiers
 from kinform.exports.robot import Robot, RobotLink
 
-__all__ = ["actuators", "gears", "load"]
-
 
 def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     """Couplings with the names of both joints; those that MJCF cannot have are added to `lost`."""

@@ -27,8 +27,6 @@ from kinform.model.simulation import Simulation
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 
-__all__ = ["BodyStart", "ExportModel", "export_model"]
-
 
 @dataclass(frozen=True, eq=False)
 class BodyStart:

@@ -37,9 +37,6 @@ from kinform.exports.tree import Link
 from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["export"]
-
-
 LIBRARY = (
     "Frame Shaft Ground Body Revolute Prismatic Screw Spherical Fixed Free Cylindrical Planar PlanarReversed Universal "
     "Motion Effort Spring Damper Gear Load System Place Turn turned back product Pin Servo Voltage VoltageController "

@@ -12,10 +12,6 @@ import unicodedata
 from collections.abc import Container, Iterable
 from dataclasses import dataclass
 
-__all__ = [
-    "FILES", "MJCF", "MODELICA", "SDF", "VHDL", "XML", "Language", "comment", "free_name", "identifiers", "single_line",
-]  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Language:

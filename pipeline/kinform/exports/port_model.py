@@ -30,8 +30,6 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.model.arrays import Array
 
-__all__ = ["SCHEMA", "export", "network", "read", "schema", "write"]
-
 SCHEMA = "kinform/port-model/1"
 
 LAWS: dict[str, type[Signal]] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}

@@ -10,8 +10,6 @@ from kinform.design import Design
 from kinform.exports.exported import Exported, LostError
 from kinform.exports.model import ExportModel, export_model
 
-__all__ = ["FORMATS", "Format", "export"]
-
 
 @dataclass(frozen=True)
 class Format:

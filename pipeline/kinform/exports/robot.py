@@ -27,8 +27,6 @@ from kinform.exports.names import FILES, XML, Language, identifiers
 from kinform.exports.tree import Closing, Link, Tree, coordinate_names, grow
 from kinform.model.arrays import Array
 
-__all__ = ["Driver", "Robot", "RobotLink", "Visual", "robot_of"]
-
 Driver = MotionDrive | EffortDrive | Servo | DcMotor
 """What drives a joint."""
 

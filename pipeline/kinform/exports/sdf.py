@@ -21,8 +21,6 @@ from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
 from kinform.model.arrays import Array
 
-__all__ = ["export"]
-
 
 @dataclass(frozen=True, eq=False)
 class _Axis:

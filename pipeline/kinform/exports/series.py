@@ -14,8 +14,6 @@ from kinform.exports.model import ExportModel
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 
-__all__ = ["export"]
-
 
 def export(model: ExportModel) -> Exported:
     """`bodies.csv`: time, then NAME.x … NAME.qz. `joints.csv`: time, then NAME.position, .velocity, .effort.

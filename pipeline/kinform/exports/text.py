@@ -12,8 +12,6 @@ import jinja2
 
 from kinform.exports.names import comment, single_line
 
-__all__ = ["number", "render", "vector"]
-
 
 def number(value: float) -> str:
     """The shortest decimal that reads back as the same double, with a point, as all languages want it."""

@@ -18,8 +18,6 @@ from kinform.foundation.graphs.graph import UnionFind, neighbours
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.topology import arrange
 
-__all__ = ["Closing", "Link", "Motion", "Tree", "coordinate_names", "grow"]
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:

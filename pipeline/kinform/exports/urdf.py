@@ -18,8 +18,6 @@ from kinform.exports.names import XML
 from kinform.exports.robot import Robot, RobotLink, robot_of
 from kinform.exports.text import render
 
-__all__ = ["export"]
-
 
 @dataclass(frozen=True, eq=False)
 class _Joint:

@@ -24,8 +24,6 @@ from kinform.foundation.algebra.spatial import to_matrix
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array
 
-__all__ = ["export"]
-
 
 def export(model: ExportModel) -> Exported:
     """1_mechanics.vhd, 2_components.vhd, 3_NAME.vhd and 4_NAME_bench.vhd, in the order of their dependence."""

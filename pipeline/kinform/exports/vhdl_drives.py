@@ -16,8 +16,6 @@ from kinform.exports.equations import law_numbers, polynomials
 from kinform.exports.text import number
 from kinform.exports.vhdl_structure import Part, Scope, Writer
 
-__all__ = ["drives"]
-
 Values = dict[str, str]
 """Generics by name, as text."""
 

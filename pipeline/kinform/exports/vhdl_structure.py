@@ -15,8 +15,6 @@ from kinform.exports.model import ExportModel
 from kinform.exports.names import VHDL, identifiers
 from kinform.exports.text import vector
 
-__all__ = ["AXES", "COUNT", "Generic", "Part", "Scope", "Scopes", "Structure", "Writer"]
-
 COUNT = {
     "ground": 16, "rigid_body": 34, "massless_frame": 22, "fixed_joint": 36, "revolute_joint": 47,
     "prismatic_joint": 41, "screw_joint": 47, "cylindrical_joint": 49, "planar_joint": 57, "universal_joint": 52,

@@ -15,8 +15,6 @@ from kinform.form.problems import Problems, did_you_mean
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
 
-__all__ = ["DesignFiles", "MeshUse", "earlier_meshes", "is_mesh", "mesh_use", "read_raw"]
-
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files."""
 

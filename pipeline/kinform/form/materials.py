@@ -5,8 +5,6 @@ A `[materials.NAME]` of the manifest always wins over an entry of this table.
 
 from __future__ import annotations
 
-__all__ = ["BUILT_IN", "density_of"]
-
 BUILT_IN: dict[str, float] = {
     "abs": 1040.0,
     "acrylic": 1180.0,

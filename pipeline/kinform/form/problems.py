@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from kinform.errors import InputError, Problem
 from kinform.form.constants import CLOSE_NAMES, LISTED_NAMES, MEANT_NAMES
 
-__all__ = ["Problems", "did_you_mean", "first_names", "in_quotes"]
-
 
 def in_quotes(name: object) -> str:
     """A name as messages show it: in double quotes, control characters escaped."""

@@ -14,8 +14,6 @@ from kinform.form.files import DesignFiles, earlier_meshes, is_mesh, mesh_use
 from kinform.form.problems import Problems
 from kinform.model.assembly import Assembly, Part
 
-__all__ = ["reload_meshes"]
-
 
 def reload_meshes(
     path: Path, earlier: Assembly, contents: Mapping[str, str], *, allow_outside: bool = False

@@ -22,8 +22,6 @@ from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["doubts", "init_manifest", "load_meshes"]
-
 
 def load_meshes(
     paths: Sequence[str | Path], *, units: str, name: str | None = None, density: float | None = None

@@ -8,8 +8,6 @@ from typing import Any, TypeVar
 
 from kinform.foundation.progress import Progress
 
-__all__ = ["map_in_processes"]
-
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 

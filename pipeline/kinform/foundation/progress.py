@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["Progress", "Say"]
-
 Progress = Callable[[int, int], None]
 """Called with the steps done and the steps in all."""
 Say = Callable[[str], None]

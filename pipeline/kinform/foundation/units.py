@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["METRES_PER_UNIT", "UNITS", "metres_per"]
-
 METRES_PER_UNIT: dict[str, float] = {
     "m": 1.0,
     "cm": 1e-2,

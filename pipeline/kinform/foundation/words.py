@@ -6,23 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-__all__ = [
-    "angle",
-    "area",
-    "counted",
-    "direction",
-    "length",
-    "listed",
-    "mass",
-    "number",
-    "one_line",
-    "place",
-    "quoted",
-    "rate",
-    "telling",
-    "volume",
-]
-
 IN_METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 

@@ -12,8 +12,6 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.mass import MassReport
 
-__all__ = ["Amount", "amount_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Amount:

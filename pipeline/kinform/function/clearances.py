@@ -24,8 +24,6 @@ from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Apart", "Nearest", "apart"]
-
 _GRID = np.array([[i, j, GRID - i - j] for i in range(GRID + 1) for j in range(GRID + 1 - i)]) / GRID
 
 

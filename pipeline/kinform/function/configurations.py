@@ -17,23 +17,12 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.graphs.graph import blocks
-from kinform.function.constants import (
-    BODY_MOVES,
-    CLOSING_STEP,
-    CLOSING_STEPS,
-    DEPENDENT,
-    LEAST_SIZE,
-    LOOPS_CLOSED,
-    RATE_MOVES,
-    SOLVED,
-)
+from kinform.function import constants
 from kinform.function.joint_names import stated_ranges
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
-
-__all__ = ["Chain", "Coordinate", "chain_between", "close", "mechanism_of"]
 
 
 @dataclass(frozen=True)
@@ -69,7 +58,7 @@ class Chain:
     @property
     def freedoms(self) -> int:
         """Freedoms of first order in the pose of the meshes."""
-        return len(null_space(self._rows, DEPENDENT))
+        return len(null_space(self._rows, constants.DEPENDENT))
 
     @property
     def _rows(self) -> Array:
@@ -97,9 +86,9 @@ class Chain:
         held = np.eye(len(self.coordinates))[[c.known for c in self.coordinates]]
         tip = self.system.reach[self.index(body)]
         moved = [
-            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > RATE_MOVES]
-            for loose in null_space(np.concatenate([self._rows, held]), DEPENDENT)
-            if np.abs((tip * loose) @ self.system.screws).max() > BODY_MOVES
+            [c.joint for c, rate in zip(self.coordinates, loose, strict=True) if abs(rate) > constants.RATE_MOVES]
+            for loose in null_space(np.concatenate([self._rows, held]), constants.DEPENDENT)
+            if np.abs((tip * loose) @ self.system.screws).max() > constants.BODY_MOVES
         ]
         return tuple(dict.fromkeys(name for names in moved for name in names))
 
@@ -182,7 +171,7 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
 
 
 def _size(assembly: Assembly) -> float:
-    return max([LEAST_SIZE, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
+    return max([constants.LEAST_SIZE, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
 
 
 def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> list[Coordinate]:
@@ -219,12 +208,12 @@ def close(chain: Chain, q: Array, held: Flags) -> Array | None:
     steps of least size find none."""
     q = q.copy()
     free = ~held
-    for _ in range(CLOSING_STEPS):
+    for _ in range(constants.CLOSING_STEPS):
         state = chain.system.close(q[None])
         residual = state.residual[0]
-        if float(np.abs(residual).max(initial=0.0)) < LOOPS_CLOSED:
+        if float(np.abs(residual).max(initial=0.0)) < constants.LOOPS_CLOSED:
             return q
-        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=SOLVED)[0]
+        step = np.linalg.lstsq(state.jacobian[0][:, free], -residual, rcond=constants.SOLVED)[0]
         size = float(np.abs(step).max(initial=0.0))
-        q[free] += step * min(1.0, CLOSING_STEP / max(size, 1e-300))
+        q[free] += step * min(1.0, constants.CLOSING_STEP / max(size, 1e-300))
     return None

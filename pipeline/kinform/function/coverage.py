@@ -15,33 +15,9 @@ from numpy.typing import NDArray
 
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.algebra.vectors import cross
+from kinform.function import constants
 from kinform.function.configurations import Chain, close
-from kinform.function.constants import (
-    AGAIN,
-    APPROACH_STEP,
-    AT_BOUND,
-    DAMPING,
-    DAMPING_BETTER,
-    DAMPING_RANGE,
-    DAMPING_STUCK,
-    DAMPING_WORSE,
-    DEPENDENT,
-    FAR,
-    RANGE_ROUNDING,
-    SAMPLES,
-    STARTS,
-    STARTS_AGAIN,
-    STIFF,
-    TARGET_CLOSED,
-    TOGETHER,
-    TURNS,
-    WALK,
-    WALK_STEP,
-    WALK_TRIES,
-)
 from kinform.model.arrays import Array, Flags
-
-__all__ = ["Coverage", "cover"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,13 +48,13 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
     best, where = gaps[first, np.arange(len(aims))], images[first]
 
     def attempt(which: NDArray[np.intp], starts: int) -> None:
-        size = max(1, TOGETHER // starts)
+        size = max(1, constants.TOGETHER // starts)
         for chunk in (which[k : k + size] for k in range(0, len(which), size)):
             seeds = _seeds(aims[chunk], images, starts)
             repeated = np.repeat(aims[chunk], seeds.shape[1], axis=0)
             solved, image, valid = _approach(chain, tip, image_of, q[seeds.ravel()], repeated, directions)
             if chain.looped:
-                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < FAR
+                valid &= np.abs(solved - q[seeds.ravel()]).max(axis=1) < constants.FAR
             miss = np.where(valid, _distance(image, repeated, directions), np.inf).reshape(seeds.shape)
             pick = miss.argmin(axis=1)
             nearest = miss[np.arange(len(chunk)), pick]
@@ -86,9 +62,9 @@ def cover(chain: Chain, body: str, carried: Array, targets: Array, *, directions
             best[chunk[better]] = nearest[better]
             where[chunk[better]] = image.reshape(*seeds.shape, 3)[np.arange(len(chunk)), pick][better]
 
-    attempt(np.arange(len(aims)), STARTS)
+    attempt(np.arange(len(aims)), constants.STARTS)
     missed = np.flatnonzero(best > enough)
-    attempt(missed[np.argsort(-best[missed], kind="stable")][:AGAIN], STARTS_AGAIN)
+    attempt(missed[np.argsort(-best[missed], kind="stable")][: constants.AGAIN], constants.STARTS_AGAIN)
     if not directions:
         best, where = best * chain.frame.length, where * chain.frame.length + chain.frame.centre
     return Coverage(best, where, len(q))
@@ -100,18 +76,22 @@ def _sampled(chain: Chain) -> Array:
     low, high = _box(chain)
     start = np.zeros(len(low))
     if not chain.looped:
-        return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (SAMPLES, len(low)))])
+        return np.vstack([np.clip(start, low, high), rng.uniform(low, high, (constants.SAMPLES, len(low)))])
     free = np.zeros(len(low), dtype=np.bool_)
     closed, tries = [start], 0
-    while len(closed) < WALK and tries < WALK_TRIES * WALK:
+    while len(closed) < constants.WALK and tries < constants.WALK_TRIES * constants.WALK:
         base = closed[int(rng.integers(len(closed)))]
         tries += 1
-        loose = null_space(chain.system.close(base[None]).jacobian[0], DEPENDENT)
+        loose = null_space(chain.system.close(base[None]).jacobian[0], constants.DEPENDENT)
         if not len(loose):
             break
         way = rng.normal(size=len(loose)) @ loose
-        stepped = close(chain, base + WALK_STEP * way / np.abs(way).max(), free)
-        if stepped is not None and (stepped >= low - RANGE_ROUNDING).all() and (stepped <= high + RANGE_ROUNDING).all():
+        stepped = close(chain, base + constants.WALK_STEP * way / np.abs(way).max(), free)
+        if (
+            stepped is not None
+            and (stepped >= low - constants.RANGE_ROUNDING).all()
+            and (stepped <= high + constants.RANGE_ROUNDING).all()
+        ):
             closed.append(stepped)
     return np.array(closed)
 
@@ -150,17 +130,19 @@ def _approach(
     """Configurations (d, n), their images (d, 3), and which of them are closed."""
     system = chain.system
     low, high = _box(chain)
-    damping = np.full(len(q), DAMPING)
+    damping = np.full(len(q), constants.DAMPING)
     image, miss, rows, residual = _linear(chain, tip, image_of, q, aims, directions)
-    for _ in range(TURNS):
+    for _ in range(constants.TURNS):
         gradient = (np.swapaxes(rows, 1, 2) @ residual[..., None])[..., 0]
-        stuck = ((q <= low + AT_BOUND) & (gradient > 0.0)) | ((q >= high - AT_BOUND) & (gradient < 0.0))
+        stuck = ((q <= low + constants.AT_BOUND) & (gradient > 0.0)) | (
+            (q >= high - constants.AT_BOUND) & (gradient < 0.0)
+        )
         active = np.where(stuck[:, None, :], 0.0, rows)
         normal = np.swapaxes(active, 1, 2) @ active
         normal += damping[:, None, None] * np.eye(system.coordinates)
         step = -np.linalg.solve(normal, (np.swapaxes(active, 1, 2) @ residual[..., None]))[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, APPROACH_STEP / np.maximum(longest, 1e-300))
+        step *= np.minimum(1.0, constants.APPROACH_STEP / np.maximum(longest, 1e-300))
         trial = np.clip(q + step, low, high)
         new_image, new_miss, new_rows, new_residual = _linear(chain, tip, image_of, trial, aims, directions)
         better = new_miss < miss
@@ -169,11 +151,13 @@ def _approach(
         rows = np.where(better[:, None, None], new_rows, rows)
         residual = np.where(better[:, None], new_residual, residual)
         miss = np.where(better, new_miss, miss)
-        damping = np.clip(np.where(better, DAMPING_BETTER, DAMPING_WORSE) * damping, *DAMPING_RANGE)
-        if not better.any() and damping.min() > DAMPING_STUCK:
+        damping = np.clip(
+            np.where(better, constants.DAMPING_BETTER, constants.DAMPING_WORSE) * damping, *constants.DAMPING_RANGE
+        )
+        if not better.any() and damping.min() > constants.DAMPING_STUCK:
             break
-    opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / STIFF
-    return q, image, opened < TARGET_CLOSED
+    opened = np.abs(residual[:, 3:]).max(axis=1, initial=0.0) / constants.STIFF
+    return q, image, opened < constants.TARGET_CLOSED
 
 
 def _linear(
@@ -186,6 +170,6 @@ def _linear(
     columns = state.columns * system.reach[tip][None, :, None]
     turn = cross(columns[..., :3], image[:, None, :])
     moves = turn if directions else turn + columns[..., 3:]
-    rows = np.concatenate([np.swapaxes(moves, 1, 2), STIFF * state.jacobian], axis=1)
-    residual = np.concatenate([image - aims, STIFF * state.residual], axis=1)
+    rows = np.concatenate([np.swapaxes(moves, 1, 2), constants.STIFF * state.jacobian], axis=1)
+    residual = np.concatenate([image - aims, constants.STIFF * state.residual], axis=1)
     return image, np.einsum("di,di->d", residual, residual), rows, residual

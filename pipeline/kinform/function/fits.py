@@ -13,8 +13,6 @@ from kinform.function.constants import OPPOSED
 from kinform.model.arrays import Array
 from kinform.model.contacts import Contacts, Patch
 
-__all__ = ["Clearance", "clearances"]
-
 ROUND = ("cylinder", "sphere", "cone")
 
 

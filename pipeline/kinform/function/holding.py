@@ -17,9 +17,6 @@ from kinform.function.configurations import Chain, close
 from kinform.function.constants import DEPENDENT, LEAST_WORK, MOVES, NO_WORK, POSE_STEPS, SOLVED, STILL
 from kinform.model.arrays import Array
 
-__all__ = ["Force", "configuration_at", "holding_effort"]
-
-
 Force = Callable[[str, Array], tuple[Array, Array] | None]
 """Force (3,) N and torque (3,) N·m about the world's origin on a body that is displaced by (4, 4); None: unknown."""
 

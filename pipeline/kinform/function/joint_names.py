@@ -15,8 +15,6 @@ from kinform.model.assembly import Assembly
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["Resolution", "resolve_joint", "stated_ranges"]
-
 
 @dataclass(frozen=True, eq=False)
 class Resolution:

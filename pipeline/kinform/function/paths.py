@@ -13,8 +13,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["Deviation", "deviation"]
-
 
 @dataclass(frozen=True, eq=False)
 class Deviation:

@@ -12,8 +12,6 @@ from kinform.function.constants import ALONG, INSIDE, RIM
 from kinform.function.requirement_kinds import Box, Cone, Region
 from kinform.model.arrays import Array
 
-__all__ = ["Targets", "targets_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Targets:

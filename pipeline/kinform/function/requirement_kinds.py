@@ -15,12 +15,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = [
-    "Balance", "Box", "CentreOfMass", "Clear", "Cone", "Fit", "Follow", "Hold", "Inertia", "JointLimit", "Kind", "Mass",
-    "Poses", "Reach", "Reaction", "Region", "Retained", "Speed", "Torque",
-]  # fmt: skip
-
-
 VECTORS = ("X_WF", "axis", "direction", "directions", "lower", "point", "points", "rows", "upper")
 """Keys whose values are arrays."""
 

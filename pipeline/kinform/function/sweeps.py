@@ -23,8 +23,6 @@ from kinform.function.configurations import Chain
 from kinform.function.constants import BUDGET, FIRST, FLOOR, FLOOR_TOGETHER
 from kinform.model.arrays import Array
 
-__all__ = ["Swept", "along", "over"]
-
 
 @dataclass(frozen=True, eq=False)
 class Swept:

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-__all__ = ["Answers", "ask"]
-
 Result = TypeVar("Result")
 
 Answers = Callable[[str, Sequence[Any], Callable[[], Any]], Any]

@@ -38,8 +38,6 @@ from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Ki
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["derive", "functional", "mobility_within"]
-
 
 @dataclass(frozen=True, eq=False)
 class _Mechanism:

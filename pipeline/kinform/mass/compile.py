@@ -18,8 +18,6 @@ from kinform.model.mass import MassProperties, MassReport
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["compile_mass"]
-
 
 def compile_mass(
     assembly: Assembly,

@@ -8,8 +8,6 @@ from kinform.foundation.algebra.vectors import canonical, cross
 from kinform.mass.constants import EQUAL_MOMENTS, NEAREST, ROUNDED_MOMENTS
 from kinform.model.arrays import Array
 
-__all__ = ["impossible", "principal"]
-
 
 def principal(inertia: Array) -> tuple[Array, Array]:
     """Moments (3,) ascending and axes (3, 3) as columns, right-handed, each with the canonical sign

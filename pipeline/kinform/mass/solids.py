@@ -23,8 +23,6 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["SolidIntegrals", "integrate_solid", "mass_bound"]
-
 
 @dataclass(frozen=True, eq=False)
 class SolidIntegrals:

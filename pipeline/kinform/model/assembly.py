@@ -18,18 +18,6 @@ from kinform.model.names import PartName
 from kinform.model.quantities import Direction, Inertia, Metres, Place, columns
 from kinform.model.tolerances import Tolerances
 
-__all__ = [
-    "Assembly",
-    "Assumption",
-    "Group",
-    "MassOverride",
-    "Mesh",
-    "MeshHealth",
-    "Part",
-    "Source",
-    "Subassembly",
-]
-
 
 @dataclass(frozen=True)
 class Source:

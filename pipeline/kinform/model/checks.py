@@ -7,8 +7,6 @@ from typing import Annotated
 
 from kinform.model.quantities import columns
 
-__all__ = ["CheckSettings", "Ignore"]
-
 
 @dataclass(frozen=True)
 class Ignore:

@@ -8,9 +8,6 @@ from typing import Annotated
 from kinform.model.names import JointName, PartName
 from kinform.model.quantities import JointValue, Metres, PartPair, Place
 
-__all__ = ["RANGE_STATUSES", "Collision", "JointRange", "RangeEnd"]
-
-
 RANGE_STATUSES = ("found", "unbounded", "unknown")
 
 

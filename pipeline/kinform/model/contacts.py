@@ -9,8 +9,6 @@ from kinform.model.arrays import Array
 from kinform.model.names import PartName
 from kinform.model.quantities import Direction, Lead, Metres, PartPair, Place, Radians, SquareMetres, columns
 
-__all__ = ["Contacts", "Interference", "Patch", "Suggestion"]
-
 
 @dataclass(frozen=True, eq=False)
 class Patch:

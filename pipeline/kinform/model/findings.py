@@ -7,8 +7,6 @@ from typing import Annotated
 
 from kinform.model.quantities import columns
 
-__all__ = ["SEVERITIES", "CheckReport", "Finding", "Ignored", "RuleOutcome", "verdict"]
-
 SEVERITIES = ("note", "warning", "error")
 
 

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 
 from kinform.model.names import PartName
 
-__all__ = ["Fingerprints"]
-
 
 @dataclass(frozen=True)
 class Fingerprints:

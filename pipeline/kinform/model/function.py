@@ -11,19 +11,6 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, columns
 
-__all__ = [
-    "Coupling",
-    "Drive",
-    "Function",
-    "InitialValue",
-    "IntendedJoint",
-    "Law",
-    "Load",
-    "Requirement",
-    "SimulationRequest",
-]
-
-
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
 StatedRate = Annotated[float, "unit of the manifest a second"]

@@ -25,27 +25,6 @@ from kinform.model.quantities import (
     columns,
 )
 
-__all__ = [
-    "JOINT_TYPES",
-    "STATUSES",
-    "Blocker",
-    "Body",
-    "ConstraintMatrix",
-    "Coupling",
-    "FiniteCertificate",
-    "Freedom",
-    "Joint",
-    "Kinematics",
-    "Meshing",
-    "Misfit",
-    "Mobility",
-    "Redundancy",
-    "Release",
-    "Separation",
-    "only_bodies",
-]
-
-
 JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal",
     "general",

@@ -8,8 +8,6 @@ from typing import Annotated
 from kinform.model.arrays import Array
 from kinform.model.quantities import MATRIX, Inertia, Place, Ratio, columns
 
-__all__ = ["MassProperties", "MassReport"]
-
 
 @dataclass(frozen=True, eq=False)
 class MassProperties:

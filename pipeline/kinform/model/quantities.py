@@ -15,24 +15,6 @@ from typing import Annotated
 from kinform.model.arrays import Array
 from kinform.model.names import PartName
 
-__all__ = [
-    "MATRIX",
-    "XYZ",
-    "Columns",
-    "Direction",
-    "Inertia",
-    "JointValue",
-    "Lead",
-    "Metres",
-    "PartPair",
-    "Place",
-    "Radians",
-    "Ratio",
-    "Reason",
-    "SquareMetres",
-    "columns",
-]
-
 
 @dataclass(frozen=True)
 class Columns:

@@ -11,9 +11,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.collisions import Collision, JointRange
 from kinform.model.quantities import Reason, columns
 
-__all__ = ["DriveUse", "Simulation"]
-
-
 Effort = Annotated[float, "N·m or N"]
 
 

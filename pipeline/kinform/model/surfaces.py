@@ -8,9 +8,6 @@ from typing import Annotated
 from kinform.model.arrays import Ints
 from kinform.model.quantities import Direction, Metres, Place, Radians, SquareMetres, columns
 
-__all__ = ["KINDS", "MeshSurfaces", "Surface"]
-
-
 KINDS = (
     "plane", "cylinder", "cone", "sphere", "torus", "helicoid", "revolution", "extrusion", "freeform",
 )  # fmt: skip

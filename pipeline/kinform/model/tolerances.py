@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from kinform.model.quantities import Metres, Radians, Ratio
 
-__all__ = ["Tolerances"]
-
 DEGREE = math.pi / 180.0
 
 

@@ -11,8 +11,6 @@ from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport
 from kinform.reports.phrases import verdict_line
 
-__all__ = ["SCHEMA", "document", "render"]
-
 SCHEMA = "kinform/findings/1"
 
 

@@ -7,8 +7,6 @@ from kinform.foundation.words import one_line
 from kinform.model.findings import CheckReport
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
-__all__ = ["render"]
-
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings by code, then rules that could not decide, then one line of summary."""

@@ -10,8 +10,6 @@ from kinform.kinematics.wording import axis_word
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint
 
-__all__ = ["follower_rates", "freedom_text", "metres"]
-
 
 def metres(point: Array) -> str:
     """A place as "(0.1, 0, 0) m"."""

@@ -10,8 +10,6 @@ from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
 from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_line, where
 
-__all__ = ["render"]
-
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Findings, the most severe first, then what could not be decided, what is ignored or skipped and why, then the

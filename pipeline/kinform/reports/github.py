@@ -10,8 +10,6 @@ from kinform.foundation.words import one_line
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.phrases import details, rule_counts, severity_counts, verdict_line
 
-__all__ = ["render"]
-
 _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 

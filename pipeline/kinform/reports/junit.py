@@ -16,8 +16,6 @@ from kinform.design import Design
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored, RuleOutcome
 from kinform.reports.phrases import details, verdict_line
 
-__all__ = ["render"]
-
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 

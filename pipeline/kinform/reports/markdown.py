@@ -14,8 +14,6 @@ from kinform.foundation.words import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_line, where
 
-__all__ = ["cell_code", "code", "escaped", "render", "table"]
-
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is

@@ -8,10 +8,6 @@ from kinform.foundation import words
 from kinform.foundation.words import counted, one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 
-__all__ = [
-    "accepted", "details", "place", "rule_counts", "severity_counts", "skipped", "verdict_line", "where",
-]  # fmt: skip
-
 
 def where(finding: Finding) -> str:
     """ "m.toml:12", or "" when the finding has no place in a file."""

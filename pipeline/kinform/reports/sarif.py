@@ -23,7 +23,6 @@ from kinform.version import __version__
 if TYPE_CHECKING:
     from kinform.consistency import Rule
 
-__all__ = ["SCHEMA", "render"]
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 

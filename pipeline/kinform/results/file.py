@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from kinform.model.simulation import Simulation
     from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["SCHEMA", "Earlier", "check_output", "earlier", "files_of", "read", "read_if_current", "to_bytes", "write"]
 
 SCHEMA = "kinform/results/2"
 _FAMILY = "kinform/results/"

@@ -45,8 +45,6 @@ from kinform.results.table import (
     write_texts,
 )
 
-__all__ = ["Layout", "Numbers", "Ragged", "Row", "Subgroup", "Table", "Texts", "WholeColumns"]
-
 Rows = list[dict[str, Any]]
 """Fields of records as they are read, by name."""
 

@@ -19,8 +19,6 @@ import numpy as np
 from kinform.model.quantities import Columns
 from kinform.results.table import Column, flag, inline, integer, numbers, real, text, texts, values
 
-__all__ = ["Hint", "columns_of", "defaults", "hint", "hints", "record_maker", "record_values"]
-
 
 @dataclass(frozen=True)
 class Hint:

@@ -19,8 +19,6 @@ except ImportError:  # Windows: files that are left behind stay
 
 from kinform.errors import Problem, ResultsError
 
-__all__ = ["check_target", "refuse", "replace_file"]
-
 _PREFIX, _SUFFIX = ".kinform-", ".tmp"
 
 

@@ -26,31 +26,6 @@ from numpy.typing import NDArray
 from kinform.errors import ResultsError
 from kinform.model.arrays import freeze
 
-__all__ = [
-    "FACETS",
-    "TEXT",
-    "Column",
-    "flag",
-    "inline",
-    "integer",
-    "numbers",
-    "read_array",
-    "read_columns",
-    "read_ragged",
-    "read_rows",
-    "read_texts",
-    "real",
-    "stored_text",
-    "text",
-    "texts",
-    "values",
-    "write_array",
-    "write_columns",
-    "write_ragged",
-    "write_rows",
-    "write_texts",
-]
-
 TEXT = h5py.string_dtype()
 FACETS = "<i4"
 """Numbers of facets, vertices and surfaces of one mesh: most of a file, and fewer than two thousand millions."""

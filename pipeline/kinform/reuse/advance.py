@@ -13,8 +13,6 @@ from kinform.reuse import fingerprints, lineage
 from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.ledger import Ledger
 
-__all__ = ["Result", "advance", "descend", "without"]
-
 
 @dataclass(frozen=True)
 class Result:

@@ -26,8 +26,6 @@ from kinform.reuse.fingerprints import Inputs, few, mark
 from kinform.reuse.ledger import Ledger
 from kinform.surfaces.copies import Copy
 
-__all__ = ["contacts", "surfaces"]
-
 Pair = tuple[PartName, PartName]
 
 

@@ -18,8 +18,6 @@ from kinform.reuse.ledger import Ledger
 from kinform.reuse.packing import pack, seal, unpack
 from kinform.version import __version__
 
-__all__ = ["Decisions"]
-
 CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, Joint, Release)}
 
 

@@ -13,8 +13,6 @@ from kinform.design import Design
 from kinform.model.assembly import Assembly
 from kinform.reuse import views
 
-__all__ = ["CODE", "CONTACTS", "FINDINGS", "JOINTS", "MASS", "SIMULATION", "STAGES", "Stage"]
-
 MOTION = ("simulation", "behaviour", "function", "kinematics", "collisions", "surfaces", "contacts", "foundation")
 """Rooms whose code decides what a simulation comes out as."""
 RESULTS: dict[str, Callable[[Design], Any]] = {

@@ -21,8 +21,6 @@ from kinform.reuse.dependence import CODE, Stage
 from kinform.reuse.digest import digest
 from kinform.version import __version__
 
-__all__ = ["Inputs", "changes", "few", "mark", "of_assembly", "of_stage", "versions_of"]
-
 Inputs = Mapping[str, str]
 """Hash of each input, by its name in words."""
 

@@ -13,8 +13,6 @@ from kinform.model.mass import MassReport
 from kinform.model.surfaces import MeshSurfaces
 from kinform.reuse.fingerprints import few
 
-__all__ = ["EarlierResults", "Ledger"]
-
 
 class EarlierResults(Protocol):
     """A design, whole or read as it is asked for (`kinform.results.Earlier`); further fields as of Design."""

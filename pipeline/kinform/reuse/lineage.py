@@ -17,8 +17,6 @@ from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.digest import digest
 from kinform.version import __version__
 
-__all__ = ["before", "current", "following", "of_files"]
-
 
 def of_files(manifest: str, files: Mapping[str, str]) -> str:
     """The lineage of the assembly that a manifest describes; "" where not every file is known."""

@@ -10,8 +10,6 @@ from kinform.reuse.dependence import MASS
 from kinform.reuse.digest import digest
 from kinform.reuse.ledger import Ledger
 
-__all__ = ["earlier_masses"]
-
 
 def earlier_masses(design: Design, view: Assembly, ledger: Ledger) -> dict[str, MassProperties]:
     """Of earlier results of the present code, the mass properties of unchanged parts, by name; `view`: the assembly as

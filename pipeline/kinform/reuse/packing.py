@@ -16,8 +16,6 @@ import numpy as np
 
 from kinform.model.arrays import freeze
 
-__all__ = ["pack", "seal", "unpack"]
-
 _ARRAY, _RECORD = "#", "@"
 _KINDS = ("<f8", "<i8")
 

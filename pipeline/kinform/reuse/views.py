@@ -13,8 +13,6 @@ from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
 
-__all__ = ["everything", "for_contacts", "for_joints", "for_mass", "for_motion"]
-
 NOWHERE = Source("")
 
 

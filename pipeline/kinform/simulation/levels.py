@@ -14,8 +14,6 @@ from kinform.model.kinematics import Kinematics, Meshing
 from kinform.simulation.constants import WHOLE_TURN
 from kinform.simulation.mechanism.mechanism import Mechanism
 
-__all__ = ["Choice", "choose", "notes_of_drives", "notes_of_joints", "notes_of_level", "notes_of_teeth"]
-
 
 @dataclass(frozen=True)
 class Choice:

@@ -21,8 +21,6 @@ from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.start import Stated
 from kinform.simulation.subject import Failures, are_gears_ideal, refuse, simulated_joints
 
-__all__ = ["simulate_assembly"]
-
 
 def simulate_assembly(
     assembly: Assembly,

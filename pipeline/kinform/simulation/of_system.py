@@ -26,8 +26,6 @@ from kinform.simulation.solver.start import Stated, begin, loop_rank, torn_at_st
 from kinform.simulation.solver.stops import beyond
 from kinform.simulation.subject import Failures, refuse
 
-__all__ = ["Course", "run_course", "simulate_system"]
-
 
 @dataclass(frozen=True, eq=False)
 class Course:

@@ -16,8 +16,6 @@ from kinform.model.simulation import Simulation
 from kinform.simulation.settings import Conduct, SolverSettings
 from kinform.simulation.subject import asked_level, nothing
 
-__all__ = ["LEVELS", "simulate"]
-
 LEVELS = ("functional", "kinematic", "dynamic")
 
 

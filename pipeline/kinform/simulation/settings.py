@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 
 from kinform.foundation.progress import Progress, Say
 
-__all__ = ["Conduct", "SolverSettings"]
-
 
 @dataclass(frozen=True)
 class SolverSettings:

@@ -10,8 +10,6 @@ from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
 
-__all__ = ["Failures", "are_gears_ideal", "asked_level", "nothing", "port_model", "refuse", "simulated_joints"]
-
 Failures = tuple[tuple[str, str], ...]
 """(subject, why)."""
 

@@ -13,8 +13,6 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.statics.constants import BOTH_WAYS
 
-__all__ = ["pushes_at", "uncarried"]
-
 
 def pushes_at(points: Array, normals: Array, centre: Array, length: float) -> Array:
     """(n, 6) unit pushes along normals at points (n, 3), about the centre, torques over the length."""

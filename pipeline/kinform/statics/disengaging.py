@@ -14,9 +14,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 
-__all__ = ["SLIDES", "Slip", "slide_of", "slips", "span_along"]
-
-
 SLIDES = {"prismatic": 0, "cylindrical": 1, "screw": 0}
 """Column of the coordinate that slides, by type of joint."""
 

@@ -26,8 +26,6 @@ from kinform.statics.constants import APART, CLOSE, LOOKS, NO_WRENCH
 from kinform.statics.disengaging import SLIDES, slide_of, span_along
 from kinform.statics.sharing import axes_of, decidable, self_stresses
 
-__all__ = ["Lift", "Sharing", "lifts"]
-
 
 @dataclass(frozen=True, eq=False)
 class Lift:

@@ -20,8 +20,6 @@ from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 from kinform.statics.constants import DEPENDENT, MOST_JOINTS
 
-__all__ = ["axes_of", "decidable", "self_stresses"]
-
 
 def axes_of(joint: Joint, R: Array, X: Array) -> tuple[list[Array], list[Array], list[Array]]:
     """Turns, slides and screws (h u; u, as 6 numbers about the joint's point) of a joint in the world, where its first

@@ -20,9 +20,6 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.surfaces.constants import COPY_ROUNDINGS, COPY_SIZE_ROUNDINGS, COVERAGE, EPS32, MIRRORED
 
-__all__ = ["Copy", "rigid_copies", "surfaces_of_copy"]
-
-
 TURNS = ("cylinder", "torus", "revolution", "extrusion", "helicoid")
 """Kinds whose axis has no sense of its own."""
 

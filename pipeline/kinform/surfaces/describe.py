@@ -12,15 +12,7 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.model.arrays import Array, Ints
-from kinform.surfaces.constants import (
-    APEX,
-    COVERAGE,
-    FULL_TURN,
-    LEAST_SPREAD,
-    ROUNDED_SCATTER,
-    ROUNDED_SCATTER_OF_PLANES,
-    SINGULAR,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.groups import group_range, group_sum, members, normal_equations
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.kind import Batch, Kind, Params, widths
@@ -29,8 +21,6 @@ from kinform.surfaces.polygons.coplanar import fit_planes
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
-
-__all__ = ["Description", "curved", "flat", "freeform"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +66,12 @@ def flat(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     normal, centre, variances = fit_planes(region, points, outward)
     distance = dot(points - centre[region], normal[region])
     squares, samples, deepest = _deviations(region, distance, count)
-    scatter = np.maximum(np.sqrt(squares / np.maximum(samples - 3, 1)), ROUNDED_SCATTER_OF_PLANES * scale.rounding)
-    spread = np.maximum(np.sqrt(variances[:, 1] * samples), LEAST_SPREAD)
-    angular = np.minimum(COVERAGE * scatter / spread, np.pi / 2)
-    linear = np.maximum(COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
+    scatter = np.maximum(
+        np.sqrt(squares / np.maximum(samples - 3, 1)), constants.ROUNDED_SCATTER_OF_PLANES * scale.rounding
+    )
+    spread = np.maximum(np.sqrt(variances[:, 1] * samples), constants.LEAST_SPREAD)
+    angular = np.minimum(constants.COVERAGE * scatter / spread, np.pi / 2)
+    linear = np.maximum(constants.COVERAGE * scatter / np.sqrt(np.maximum(samples, 1)), scale.rounding)
     return [
         Description(
             "plane", planes[k], normal[k], centre[k], residual=float(deepest[k]),
@@ -122,7 +114,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description
     squares, samples, deepest = _deviations(region, distance, count)
     columns, group = kind.jacobian(placed[region], points), region
     if kind.name == "cone":
-        tips = np.flatnonzero(cylindrical(params[region], points).rho < APEX * params[region, 6])
+        tips = np.flatnonzero(cylindrical(params[region], points).rho < constants.APEX * params[region, 6])
         group, columns, _ = with_apices(placed[region], points, region, columns, distance, tips)
     has_axis = kind.name != "sphere"
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
@@ -181,19 +173,19 @@ def _uncertainties(
     """(rad, unit lengths) of each region, from the least squares at the surface's point."""
     count, free = len(samples), columns.shape[1]
     freedom = np.maximum(samples - free, 1)
-    scatter = np.maximum(np.sqrt(squares / freedom), ROUNDED_SCATTER * scale.rounding)
+    scatter = np.maximum(np.sqrt(squares / freedom), constants.ROUNDED_SCATTER * scale.rounding)
     matrix, _ = normal_equations(region, columns, np.zeros(len(columns)), count)
     size = np.sqrt(np.maximum(np.einsum("rii->ri", matrix), 1e-300))
     outer = size[:, :, None] * size[:, None, :]
-    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=SINGULAR) / outer
+    inverse = np.linalg.pinv(matrix / outer, hermitian=True, rcond=constants.SINGULAR) / outer
     vague = samples <= free
     offset = _largest(inverse[:, :2, :2] if has_axis else inverse[:, :3, :3])
-    linear = np.where(vague, 1.0, COVERAGE * scatter * offset)
+    linear = np.where(vague, 1.0, constants.COVERAGE * scatter * offset)
     if not has_axis:
         return np.where(vague, np.pi / 2, 0.0), linear
     tilt = _largest(inverse[:, 2:4, 2:4])
-    angular = np.where(vague, np.pi / 2, np.minimum(COVERAGE * scatter * tilt, np.pi / 2))
-    return angular, np.maximum(linear, ROUNDED_SCATTER * scale.rounding)
+    angular = np.where(vague, np.pi / 2, np.minimum(constants.COVERAGE * scatter * tilt, np.pi / 2))
+    return angular, np.maximum(linear, constants.ROUNDED_SCATTER * scale.rounding)
 
 
 def _largest(covariance: Array) -> Array:
@@ -230,4 +222,4 @@ def _sweeps(params: Params, batch: Batch, width: Array) -> Array:
     reach = np.where(first, wrapped[region], np.r_[0.0, before[:-1]] - apart)
     reach = np.maximum(reach, wrapped[region])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
-    return np.where(covered > turn - FULL_TURN, turn, covered)
+    return np.where(covered > turn - constants.FULL_TURN, turn, covered)

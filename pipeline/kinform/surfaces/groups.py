@@ -9,22 +9,6 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 
-__all__ = [
-    "Ragged",
-    "distinct",
-    "group_mean",
-    "group_range",
-    "group_sum",
-    "members",
-    "normal_equations",
-    "occurrences",
-    "ordered_quantile",
-    "quantile",
-    "solve_normal",
-    "spheres_through",
-    "starts_of",
-]
-
 
 class Ragged:
     """Rows of different length: the items of row i are items[starts[i]:starts[i + 1]]."""

@@ -27,9 +27,6 @@ from kinform.surfaces.regions.partition import CURVED, Partition, Region, partit
 from kinform.surfaces.swept.sliding import sliding
 from kinform.surfaces.swept.threads import threads
 
-__all__ = ["recover"]
-
-
 LENGTHS = ("radius", "minor_radius", "pitch", "residual", "point_uncertainty", "chord")
 NUMBERS = ("kind", "half_angle", "side", "sweep", "axis_uncertainty")
 """Fields of a description that are scaled with the mesh, and that are not."""

@@ -18,8 +18,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.surfaces.groups import group_mean
 from kinform.surfaces.polygons.patchwork import Patchwork
 
-__all__ = ["Slippage", "slippage"]
-
 
 @dataclass(frozen=True, eq=False)
 class Slippage:

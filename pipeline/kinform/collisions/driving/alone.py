@@ -23,8 +23,6 @@ from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
-__all__ = ["drive_alone"]
-
 Pair = tuple[PartName, PartName]
 
 

@@ -13,34 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    CLOSED,
-    CLOSED_EXACTLY,
-    CLOSING_STEPS,
-    EVEN_STEPS,
-    EVEN_TRIED,
-    JACOBIAN_SAME,
-    LONG_STEP,
-    LOOP_RANK,
-    NARROW,
-    NODES_THROUGH,
-    PATH_STEPS,
-    RATE_SAME,
-    RETURN_MISS,
-    SINGULAR,
-    SMOOTH,
-    STEP,
-    STEP_KEPT,
-    STEPS_AWAY,
-)
+from kinform.collisions import constants
 from kinform.foundation.algebra.displacements import exponentials, inverse
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.graphs.graph import forest
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Freedom, Kinematics
-
-__all__ = ["RETURNED", "Between", "Linkage", "Path", "follow"]
 
 Edge = tuple[int, int]
 
@@ -64,7 +43,7 @@ class Linkage:
         centre, length = np.zeros(3), size
         if placed:
             low, high = np.min(placed, axis=0), np.max(placed, axis=0)
-            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), NARROW * size)
+            centre, length = 0.5 * (low + high), max(0.5 * float(np.linalg.norm(high - low)), constants.NARROW * size)
         self.system: LoopSystem = loop_system(
             [edges[k] for k in block], [j.twists for j in joints], Frame(centre, length)
         )
@@ -96,7 +75,7 @@ class Linkage:
                     rates[columns[coordinate]] = abs(rate)
             if rates.any():
                 # rates that are the same but for rounding go by their order
-                held.append(int(np.flatnonzero(rates > RATE_SAME * rates.max())[0]))
+                held.append(int(np.flatnonzero(rates > constants.RATE_SAME * rates.max())[0]))
         return held
 
     def poses(self, q: Array) -> Array:
@@ -118,16 +97,16 @@ class Linkage:
     def closed(self, q: Array) -> Array | None:
         """The nearest coordinates at which the loops close."""
         left = math.inf
-        for _ in range(CLOSING_STEPS):
+        for _ in range(constants.CLOSING_STEPS):
             loops = self.system.close(q[None])
             residual = loops.residual[0]
             before, left = left, float(np.abs(residual).max())
-            if left < CLOSED_EXACTLY or (left < CLOSED and left > 0.5 * before):
+            if left < constants.CLOSED_EXACTLY or (left < constants.CLOSED and left > 0.5 * before):
                 return q
             rows = np.vstack([loops.jacobian[0], self.held])
             wanted = np.concatenate([residual, self.held @ q])
-            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * LOOP_RANK)[0], float)
-        return q if np.abs(self.system.close(q[None]).residual).max() < CLOSED else None
+            q = np.asarray(q - np.linalg.lstsq(rows, wanted, rcond=3.0 * constants.LOOP_RANK)[0], float)
+        return q if np.abs(self.system.close(q[None]).residual).max() < constants.CLOSED else None
 
     def jacobian(self, q: Array) -> Array:
         """(m, n) of the loops at q."""
@@ -138,10 +117,10 @@ class Linkage:
         jacobian = np.vstack([self.system.close(q[None]).jacobian[0], self.held])
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(max(len(rows) - len(values), 0))])[: len(rows)]
-        count = int((values < LOOP_RANK).sum())
+        count = int((values < constants.LOOP_RANK).sum())
         if count == 0:
             return None
-        return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > SINGULAR)
+        return rows[-1], count == 1 and bool(len(values) < 2 or values[-2] > constants.SINGULAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +142,7 @@ def follow(linkage: Linkage, sign: float) -> Path:
     q = np.zeros(linkage.system.coordinates)
     tangent = linkage.tangent(q)
     assert tangent is not None
-    along, step = sign * tangent[0], STEP
+    along, step = sign * tangent[0], constants.STEP
     even: Array | None = linkage.jacobian(q)
     path, s = [q], [0.0]
     turns = np.array(linkage.turns)
@@ -171,28 +150,28 @@ def follow(linkage: Linkage, sign: float) -> Path:
     def ended(why: str) -> Path:
         return Path(np.array(path), np.array(s), why, len(path) > 2 and even is not None)
 
-    while len(path) <= PATH_STEPS:
-        if even is not None and len(path) > EVEN_TRIED:
-            rest = np.arange(1.0, EVEN_STEPS)[:, None] * step * along
-            if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < CLOSED:
+    while len(path) <= constants.PATH_STEPS:
+        if even is not None and len(path) > constants.EVEN_TRIED:
+            rest = np.arange(1.0, constants.EVEN_STEPS)[:, None] * step * along
+            if np.abs(linkage.system.close(q + rest[-1:]).residual).max() < constants.CLOSED:
                 path.extend(q + rest)
-                s.extend(s[-1] + np.arange(1.0, EVEN_STEPS) * step / STEP)
+                s.extend(s[-1] + np.arange(1.0, constants.EVEN_STEPS) * step / constants.STEP)
                 break
         following = linkage.closed(q + step * along)
-        if following is None or float(np.linalg.norm(following - q)) < STEP_KEPT * step:
+        if following is None or float(np.linalg.norm(following - q)) < constants.STEP_KEPT * step:
             return ended("the loops cannot be closed further")
         tangent = linkage.tangent(following)
         if tangent is None or not tangent[1]:
             return ended("a singular pose, from which motions branch")
-        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > JACOBIAN_SAME:
+        if even is not None and np.abs(linkage.jacobian(following) - even).max(initial=0.0) > constants.JACOBIAN_SAME:
             even = None
         q = following
         path.append(q)
-        s.append(s[-1] + step / STEP)
-        step = STEP if even is None else min(2.0 * step, LONG_STEP)
+        s.append(s[-1] + step / constants.STEP)
+        step = constants.STEP if even is None else min(2.0 * step, constants.LONG_STEP)
         along = tangent[0] if float(tangent[0] @ along) >= 0.0 else -tangent[0]
         if (
-            len(path) > STEPS_AWAY
+            len(path) > constants.STEPS_AWAY
             and float(np.linalg.norm(_around(q, turns))) < step
             and _meets_start(linkage, q, turns)
         ):
@@ -213,7 +192,7 @@ def _meets_start(linkage: Linkage, q: Array, turns: Flags) -> bool:
         if back is None:
             return False
         q = back
-    return float(np.linalg.norm(_around(q, turns))) < RETURN_MISS
+    return float(np.linalg.norm(_around(q, turns))) < constants.RETURN_MISS
 
 
 class Between:
@@ -230,7 +209,7 @@ class Between:
         if n not in self._smooth:
             # what closes the loops in the middle of a step does so all along it
             middle = self._through(n, 0.5 * float(self._s[n] + self._s[n + 1]))
-            self._smooth[n] = bool(np.abs(self._linkage.system.close(middle[None]).residual).max() < SMOOTH)
+            self._smooth[n] = bool(np.abs(self._linkage.system.close(middle[None]).residual).max() < constants.SMOOTH)
         guess = self._through(n, x)
         if self._smooth[n]:
             return guess
@@ -239,8 +218,8 @@ class Between:
 
     def _through(self, n: int, x: float) -> Array:
         """The polynomial through the nodes about step n (Lagrange), at x."""
-        first = min(max(n - NODES_THROUGH // 2 + 1, 0), max(len(self._s) - NODES_THROUGH, 0))
-        s, q = self._s[first : first + NODES_THROUGH], self._q[first : first + NODES_THROUGH]
+        first = min(max(n - constants.NODES_THROUGH // 2 + 1, 0), max(len(self._s) - constants.NODES_THROUGH, 0))
+        s, q = self._s[first : first + constants.NODES_THROUGH], self._q[first : first + constants.NODES_THROUGH]
         apart = s[:, None] - s
         np.fill_diagonal(apart, 1.0)
         away = np.broadcast_to(x - s, apart.shape).copy()

@@ -25,8 +25,6 @@ from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.kinematics import Freedom, Joint, Kinematics
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["drive_loops"]
-
 Edge = tuple[int, int]
 
 LEAVES = "leaves its guide"

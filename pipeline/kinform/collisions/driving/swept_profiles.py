@@ -13,8 +13,6 @@ from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["Profile", "meeting"]
-
 
 class Profile:
     """What vertices (n, 3) and facets (m, 3) of a part, in the world, keep along a unit twist (6,) (ω; v at the

@@ -13,25 +13,12 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from kinform.collisions.constants import (
-    AHEAD,
-    BEHIND_DEPTH,
-    BEHIND_FACE,
-    BEHIND_LEAST,
-    CROSSING_LEAST,
-    OVERLAPPING,
-    RESOLUTION,
-    RISE,
-    TOGETHER,
-    WORK,
-)
+from kinform.collisions import constants
 from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.deep_points import Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
 from kinform.collisions.pair.pair_test import NONE, Crossing, PairTest
 from kinform.model.arrays import Array
-
-__all__ = ["First", "first_crossing"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,22 +45,27 @@ def first_crossing(test: PairTest, course: Course, end: float, fine: float, *, s
     """The first crossing of a pair while s goes from `start` up to `end`, to within `fine`."""
     if test.empty:
         return First(None, None, None)
-    resolution = max(RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / WORK * 2.0)
+    resolution = max(
+        constants.RESOLUTION * test.size, (course.travel(end) - course.travel(start)) / constants.WORK * 2.0
+    )
     search = _Search(test, course)
     search.begin(start)
     left, stack = start, [end]
     while stack:
         right = stack[-1]
         way = course.travel(right) - course.travel(left)
-        if search.state(left).distance + search.state(right).distance > (1.0 + 1e-6) * way + CROSSING_LEAST * test.size:
+        if (
+            search.state(left).distance + search.state(right).distance
+            > (1.0 + 1e-6) * way + constants.CROSSING_LEAST * test.size
+        ):
             # nothing comes to be inside where no facets that count meet: the end is asked all the same
             entered = search.entered(left, right, end, fine, resolution) if right >= end else None
             if entered is not None:
                 return entered
             left = search.pass_(left, stack.pop())
             continue
-        if way > (OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
-            if search.tried > WORK:
+        if way > (constants.OVERLAPPING if search.overlaps else 1.0) * resolution and right - left > fine:
+            if search.tried > constants.WORK:
                 return First(None, None, None, search.overlaps, left)
             stack.append(course.middle(left, right))
             continue
@@ -155,7 +147,7 @@ class _Search:
         before, after = self.state(left), self.state(right)
         if before.crossing or after.crossing or (before.distance <= 0.0 and after.distance <= 0.0):
             return False
-        least = CROSSING_LEAST * self.test.size
+        least = constants.CROSSING_LEAST * self.test.size
         if before.distance > least:
             low, high = self._heights(left, right, before.nearest)
             return low > least >= high
@@ -172,13 +164,17 @@ class _Search:
         sooner."""
         nearest = self.state(s).nearest
         begun = self.course.travel(s)
-        for share in BEHIND_FACE:
+        for share in constants.BEHIND_FACE:
             further = self.course.when(begun + share * step, s, end)
             way = self.course.travel(further) - begun
-            if further - s < BEHIND_LEAST * fine:
+            if further - s < constants.BEHIND_LEAST * fine:
                 return False
             D = self.course.displacement(further)
-            if self.test.faces(D, *nearest) if share < 1.0 else self.test.inside(D, *nearest, BEHIND_DEPTH * way):
+            if (
+                self.test.faces(D, *nearest)
+                if share < 1.0
+                else self.test.inside(D, *nearest, constants.BEHIND_DEPTH * way)
+            ):
                 return True
         return False
 
@@ -188,7 +184,7 @@ class _Search:
         point = self._entered(right, end, fine, every=right >= end)
         if point is None or not self.state(right).crossing:
             return point
-        for more in AHEAD:
+        for more in constants.AHEAD:
             further = self.course.when(self.course.travel(right) + more * self.test.loose, right, end)
             if self.too_deep(further):
                 crossed = self.located(left, further, fine, resolution)
@@ -243,7 +239,7 @@ class _Search:
             self.since.setdefault(pair, (left, right))
         since = {pair: self.since[pair] for pair in crossing.shared}
         began = sorted({step for step in since.values() if step is not None}, reverse=True)
-        near = TOGETHER * crossing.slack + 2.0 * resolution
+        near = constants.TOGETHER * crossing.slack + 2.0 * resolution
         for earliest, before in zip(began, [*began[1:], None], strict=True):
             if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
                 continue
@@ -261,7 +257,7 @@ class _Search:
             if depth >= least:
                 break
             low, least = before, depth
-        least += RISE * self.state(right).crossing.slack
+        least += constants.RISE * self.state(right).crossing.slack
         return self._narrow(low, right, fine, lambda s: self._depth(s) > least)
 
     def _depth(self, s: float) -> float:

@@ -9,8 +9,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["Course"]
-
 
 @dataclass(frozen=True, eq=False)
 class Course:

@@ -12,8 +12,6 @@ from kinform.collisions.pair.course import Course
 from kinform.collisions.pair.pair_test import PairTest
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["Inside"]
-
 
 class Inside:
     """The `probes` of a pair along a course, from `s` on: those that are deep inside there do not count until they are

@@ -7,9 +7,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
 
-__all__ = ["crossings"]
-
-
 _CORNERS, _NEXT = np.array([0, 1, 2]), np.array([1, 2, 0])
 
 

@@ -11,8 +11,6 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-__all__ = ["Mates"]
-
 SurfacePair = tuple[int, int]
 
 _SHAPELESS = ("freeform", "other", "extrusion", "revolution", "torus", "helicoid")

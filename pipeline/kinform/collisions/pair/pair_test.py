@@ -14,16 +14,7 @@ from functools import cached_property
 import fcl
 import numpy as np
 
-from kinform.collisions.constants import (
-    CROSSING_LEAST,
-    CROSSINGS_MOST,
-    DEPTH_ENDS,
-    DEPTH_FINER,
-    DEPTH_INSIDE,
-    DEPTH_MIDDLES,
-    DIRECTIONS_ROUND,
-    FACET_GRID,
-)
+from kinform.collisions import constants
 from kinform.collisions.pair.facet_crossings import crossings
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.pair.surface_points import Probes, probes
@@ -33,8 +24,6 @@ from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 from kinform.model.names import PartName
-
-__all__ = ["Crossing", "PairTest"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +142,7 @@ class PairTest:
         for name, points, normal in self._on(D, f, g):
             index = self._shapes.index(name)
             within = points[index.contains(points)]
-            for e in DIRECTIONS_ROUND @ np.stack(perpendicular(normal)):
+            for e in constants.DIRECTIONS_ROUND @ np.stack(perpendicular(normal)):
                 within = within[index.contains(within + self.loose * e)] if len(within) else within
             if len(within):
                 return True
@@ -164,8 +153,14 @@ class PairTest:
         normal."""
         X = self.pose(D)
         grid = (
-            np.array([(a, b, FACET_GRID - a - b) for a in range(FACET_GRID + 1) for b in range(FACET_GRID + 1 - a)])
-            / FACET_GRID
+            np.array(
+                [
+                    (a, b, constants.FACET_GRID - a - b)
+                    for a in range(constants.FACET_GRID + 1)
+                    for b in range(constants.FACET_GRID + 1 - a)
+                ]
+            )
+            / constants.FACET_GRID
         )
         first, second = grid @ self._corners(0, f), grid @ self._corners(1, g)
         yield self.names[1], (first - X[:3, 3]) @ X[:3, :3], self._normals[0][f] @ X[:3, :3]
@@ -206,7 +201,7 @@ class PairTest:
         places = self.places(D)
         inside = self.heights(D, np.arange(len(places))) > self.loose
         places_deep = [points for points in (self.crossing(D).segments(), places[inside]) if len(points)]
-        return max((self.depth(D, points, finer=DEPTH_FINER) for points in places_deep), default=0.0)
+        return max((self.depth(D, points, finer=constants.DEPTH_FINER) for points in places_deep), default=0.0)
 
     def middle(self, D: Array, f: int, g: int) -> Array:
         """(3,) m, first part's frame: between two facets that count."""
@@ -225,7 +220,7 @@ class PairTest:
         first = self._corners(0, hits[:, 0])
         second = self._corners(1, hits[:, 1]) @ X[:3, :3].T + X[:3, 3]
         normals = self._normals[0][hits[:, 0]], self._normals[1][hits[:, 1]] @ X[:3, :3].T
-        cross, segments = crossings(first, second, normals, CROSSING_LEAST * self.size)
+        cross, segments = crossings(first, second, normals, constants.CROSSING_LEAST * self.size)
         if not cross.any():
             return NONE
         first_labels, second_labels = self._surfaces[0].labels[f[cross]], self._surfaces[1].labels[g[cross]]
@@ -244,12 +239,14 @@ class PairTest:
         """m: how deep the parts go into each other between `segments` (n, 2, 3) where they cross, or points (n, 3)
         inside either; 0 where it is not above `least`. Asked at `finer` times as many places."""
         points = segments.reshape(-1, 3)
-        points = points[np.unique(np.linspace(0, len(points) - 1, finer * DEPTH_ENDS).astype(int))]
+        points = points[np.unique(np.linspace(0, len(points) - 1, finer * constants.DEPTH_ENDS).astype(int))]
         a, b = np.triu_indices(len(points), 1)
         order = np.argsort(np.linalg.norm(points[a] - points[b], axis=1), kind="stable")
         # of near ones and far ones: parts may be thin, or deep in each other
         order = (
-            order[np.unique(np.linspace(0, len(order) - 1, finer * DEPTH_MIDDLES).astype(int))] if len(order) else order
+            order[np.unique(np.linspace(0, len(order) - 1, finer * constants.DEPTH_MIDDLES).astype(int))]
+            if len(order)
+            else order
         )
         a, b = a[order], b[order]
         middles = 0.5 * (points[a] + points[b])
@@ -259,7 +256,7 @@ class PairTest:
         inside = np.flatnonzero(first.contains(middles))
         inside = inside[second.contains(other[inside])]
         inside = (
-            inside[np.unique(np.linspace(0, len(inside) - 1, finer * DEPTH_INSIDE).astype(int))]
+            inside[np.unique(np.linspace(0, len(inside) - 1, finer * constants.DEPTH_INSIDE).astype(int))]
             if len(inside)
             else inside
         )
@@ -271,6 +268,8 @@ class PairTest:
 def _hits(first: fcl.CollisionObject, second: fcl.CollisionObject) -> Ints:
     """(n, 2) facets of two models that FCL finds to touch, each pair once, in order."""
     result = fcl.CollisionResult()
-    fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=CROSSINGS_MOST, enable_contact=False), result)
+    fcl.collide(
+        first, second, fcl.CollisionRequest(num_max_contacts=constants.CROSSINGS_MOST, enable_contact=False), result
+    )
     key = np.unique(np.array([(c.b1 << 32) + c.b2 for c in result.contacts], dtype=np.int64))
     return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1)

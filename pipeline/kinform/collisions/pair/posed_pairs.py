@@ -21,8 +21,6 @@ from kinform.kinematics.mobility.guides import preserved
 from kinform.model.arrays import Array, Ints
 from kinform.model.kinematics import Joint
 
-__all__ = ["Moving", "Nodes", "moving_pairs"]
-
 
 @dataclass(frozen=True, eq=False)
 class Nodes:

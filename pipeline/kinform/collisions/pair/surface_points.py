@@ -17,8 +17,6 @@ from kinform.foundation.meshes.index import MeshIndex, inner_weights
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-__all__ = ["Probes", "probes"]
-
 
 @dataclass(frozen=True, eq=False)
 class Probes:

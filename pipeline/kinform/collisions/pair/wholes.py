@@ -19,8 +19,6 @@ from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
 
-__all__ = ["Wholes"]
-
 
 class Wholes:
     """Two parts with all their facets."""

@@ -19,8 +19,6 @@ from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Shapes"]
-
 
 @dataclass
 class Shapes:

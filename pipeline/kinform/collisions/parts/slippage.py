@@ -21,8 +21,6 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-__all__ = ["Allowed", "OwnMotions", "Slippage"]
-
 
 @dataclass(frozen=True)
 class Allowed:

@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Declared, Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Declared, Rule
 from kinform.foundation.words import counted, quoted
 from kinform.function import resolve_joint
-
-__all__ = ["loose_carriers", "without_freedom"]
 
 DRIVEN = ("revolute", "prismatic", "screw")
 """Joints with one freedom, on which a single value acts."""

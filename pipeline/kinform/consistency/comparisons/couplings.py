@@ -8,20 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.consistency.constants import (
-    COUNTED_TEETH,
-    DEVIATIONS,
-    SCREW_PITCH,
-    UNCERTAIN_RATIO,
-    UNCOUNTED_TEETH,
-)
+from kinform.consistency import constants
 from kinform.foundation.words import rate
 from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling as Stated
 from kinform.model.kinematics import Coupling, Kinematics
-
-__all__ = ["Ratio", "coupled_through", "derived_ratio", "shown_ratio"]
 
 
 @dataclass(frozen=True)
@@ -53,12 +45,15 @@ def derived_ratio(assembly: Assembly, kinematics: Kinematics, stated: Stated) ->
             return f"'{coupling.through}' is a cam: its ratio is another in every pose"
         if coupling.meshing is not None:
             ratio *= coupling.meshing.ratio if forward else 1.0 / coupling.meshing.ratio
-            relative += COUNTED_TEETH
+            relative += constants.COUNTED_TEETH
             continue
         ratio *= coupling.ratio if forward else 1.0 / coupling.ratio
         spread = coupling.uncertainty / abs(coupling.ratio) if math.isfinite(coupling.uncertainty) else 0.0
-        relative += max(DEVIATIONS * spread, SCREW_PITCH if coupling.kind == "screw" else UNCOUNTED_TEETH)
-    if relative > UNCERTAIN_RATIO * len(chain):
+        relative += max(
+            constants.DEVIATIONS * spread,
+            constants.SCREW_PITCH if coupling.kind == "screw" else constants.UNCOUNTED_TEETH,
+        )
+    if relative > constants.UNCERTAIN_RATIO * len(chain):
         return f"the {shown_ratio(assembly, stated, ratio)} is uncertain by {100 * relative:.2g} %"
     return Ratio(ratio, abs(ratio) * relative, tuple(str(coupling.through) for coupling, _ in chain))
 
@@ -121,6 +116,6 @@ def _leads(kinematics: Kinematics) -> list[Coupling]:
             if coupling.through in moved or slides[0] in moved:
                 rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
         ratios = [slide / screw for slide, screw in rates if screw]
-        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= SCREW_PITCH * abs(ratios[0]):
+        if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= constants.SCREW_PITCH * abs(ratios[0]):
             out.append(replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0]))
     return out

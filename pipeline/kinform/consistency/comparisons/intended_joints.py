@@ -15,9 +15,6 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint, Kinematics
 
-__all__ = ["Comparison", "bodies_of", "compare_joint"]
-
-
 STATES = ("stated", "one body", "absent", "undecided", "found")
 
 WITH_LINE = ("revolute", "cylindrical", "screw")

@@ -23,8 +23,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
 
-__all__ = ["Quantity", "amount", "beside_bounds", "coarse", "peak_beside_limit", "run_of_joint", "whose"]
-
 WEIGH = "Give every part of it a density, a material or a mass, and a closed mesh."
 FINER = "Ask for a shorter `step` of the output."
 SINGLE = ("revolute", "prismatic", "screw")

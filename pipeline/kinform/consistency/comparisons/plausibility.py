@@ -24,8 +24,6 @@ from kinform.foundation.words import length, quoted, volume
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
 
-__all__ = ["Doubt", "doubts", "extent"]
-
 
 @dataclass(frozen=True)
 class Doubt:

@@ -12,8 +12,6 @@ from kinform.model.collisions import RangeEnd
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 
-__all__ = ["RangeComparison", "joint_as_intended", "range_comparisons", "shown"]
-
 
 @dataclass(frozen=True, eq=False)
 class RangeComparison:

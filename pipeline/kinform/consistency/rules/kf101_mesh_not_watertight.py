@@ -15,8 +15,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, listed
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Solid parts with edges that are not shared by exactly two facets."""

@@ -15,8 +15,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import volume
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Closed meshes of negative volume."""

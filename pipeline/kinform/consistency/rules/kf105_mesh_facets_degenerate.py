@@ -13,8 +13,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, length
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Meshes with facets that collapsed when vertices were welded."""

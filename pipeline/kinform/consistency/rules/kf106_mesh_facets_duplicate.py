@@ -14,8 +14,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Meshes with duplicate facets."""

@@ -13,8 +13,6 @@ from __future__ import annotations
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Meshes of more than one shell."""

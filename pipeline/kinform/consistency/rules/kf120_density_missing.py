@@ -16,11 +16,10 @@ Example: an arm with `level = "dynamic"` whose gripper has no material.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.assembly import Assembly, Part
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -18,12 +18,11 @@ import numpy as np
 
 from kinform.consistency.constants import TRIANGLE_ROUNDING
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import mass, number, quoted
 from kinform.model.assembly import Part
 from kinform.model.mass import MassProperties
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -14,8 +14,6 @@ from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import mass, quoted
 from kinform.model.assembly import Part
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Meshed parts with stated mass, beside the mass of their geometry where that is known."""

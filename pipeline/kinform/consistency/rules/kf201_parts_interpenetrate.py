@@ -19,8 +19,6 @@ from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Overlaps that are not mated fits."""

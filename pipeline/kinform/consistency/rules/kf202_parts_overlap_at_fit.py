@@ -13,8 +13,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import length, quoted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Overlaps that lie at mating surfaces."""

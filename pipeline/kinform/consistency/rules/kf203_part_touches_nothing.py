@@ -25,8 +25,6 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Clusters of parts that are not connected with the ground."""

@@ -20,8 +20,6 @@ from kinform.foundation.words import area, counted, length, number, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Joints whose status is blocked."""

@@ -14,8 +14,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import listed, quoted
 
-__all__ = ["RULE"]
-
 STATED = frozenset({"assumption", "function"})
 """Evidence that somebody stated: reported by KF207, or the function itself."""
 

@@ -16,8 +16,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import angle, length, listed, quoted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Joints whose axes were mated beyond what the clearance allows."""

@@ -17,12 +17,11 @@ Example: a gimbal that shall turn about two axes has three freedoms, because the
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.assembly import Source
 from kinform.model.kinematics import Kinematics
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

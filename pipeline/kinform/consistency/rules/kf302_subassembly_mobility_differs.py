@@ -11,11 +11,10 @@ Example: a motor with `mobility = 1` whose rotor is fused to its stator by a wro
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics import mobility_within
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -16,8 +16,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import quoted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Idle bodies."""

@@ -18,10 +18,9 @@ Example: a strut of two hinged bars in line, with a hinge at each end, gives sid
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -18,8 +18,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, listed, quoted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Blocks whose pose has more freedoms than the branches that lead out of it."""

@@ -14,11 +14,10 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.outcome import Outcome, decided
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, quoted
 from kinform.model.kinematics import Body
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -17,11 +17,10 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, direction, quoted
 from kinform.model.findings import Finding
-
-__all__ = ["RULE"]
 
 FREEDOMS = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,

@@ -16,11 +16,10 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, place
 from kinform.model.findings import Finding
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -13,10 +13,9 @@ from __future__ import annotations
 
 from kinform.consistency.constants import SAME_PITCH
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import length
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

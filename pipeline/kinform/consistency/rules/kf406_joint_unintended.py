@@ -14,12 +14,11 @@ Example: a cable duct on the arm fits around the base like a bearing.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import direction, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -18,8 +18,6 @@ from kinform.foundation.words import area, counted, quoted
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Planar and general contact between bodies of the function that no intended joint joins."""

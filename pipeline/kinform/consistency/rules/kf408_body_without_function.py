@@ -15,8 +15,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import counted, quoted
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Bodies that no intended joint names."""

@@ -13,9 +13,8 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.actuated import without_freedom
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule
-
-__all__ = ["RULE"]
+from kinform.consistency.outcome import Outcome
+from kinform.consistency.rule import Rule
 
 
 def check(context: Context) -> Outcome:

@@ -18,12 +18,11 @@ import math
 from kinform.consistency.comparisons.ranges import RangeComparison, range_comparisons, shown
 from kinform.consistency.constants import SHORT_SLIDE, SHORT_TURN
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Finding
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

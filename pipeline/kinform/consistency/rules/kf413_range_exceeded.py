@@ -21,14 +21,13 @@ from kinform.consistency.comparisons.limits import coarse
 from kinform.consistency.comparisons.ranges import joint_as_intended, shown
 from kinform.consistency.constants import BEYOND
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import number, quoted, telling
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.simulation import Simulation
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -25,15 +25,14 @@ from numpy.typing import NDArray
 from kinform.consistency.comparisons.plausibility import extent
 from kinform.consistency.constants import REACHED_ANGLE, REACHED_SHARE, SAMPLED_FREEDOMS
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, stated_as, undecided, violated
+from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.requirements import JOINTS, requirement_rule, stated_as
 from kinform.foundation.words import angle, counted, direction, length, place, quoted
 from kinform.function import resolve_joint
 from kinform.function.configurations import Chain, chain_between
 from kinform.function.coverage import Coverage, cover
 from kinform.function.regions import Targets, targets_of
 from kinform.function.requirement_kinds import Reach
-
-__all__ = ["RULE"]
 
 OTHERWISE = "Check it by other means, or require `follow` of a simulated motion."
 REMEDY = "Widen a range, lengthen a link, or move the base."

@@ -15,14 +15,13 @@ from __future__ import annotations
 
 from kinform.consistency.constants import SAME_TIME
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import Answer, met, requirement_rule, simulated, undecided, violated
+from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.requirements import requirement_rule, simulated
 from kinform.foundation.words import angle, length, number, telling
 from kinform.function.paths import Deviation, deviation
 from kinform.function.requirement_kinds import Follow
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
-
-__all__ = ["RULE"]
 
 REMEDY = "Correct the drives or the geometry, or the path."
 

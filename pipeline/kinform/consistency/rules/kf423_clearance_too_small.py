@@ -24,17 +24,14 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.consistency.context import Context, Need
+from kinform.consistency.outcome import Answer, met, undecided, violated
 from kinform.consistency.requirements import (
     JOINTS,
-    Answer,
-    met,
     requirement_rule,
     shared_parts,
     shown_value,
     simulated,
     stated_as,
-    undecided,
-    violated,
     worst_of,
 )
 from kinform.foundation.algebra.displacements import poses
@@ -46,9 +43,6 @@ from kinform.function.sweeps import Swept, along, over
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint, Kinematics
 from kinform.model.simulation import Simulation
-
-__all__ = ["RULE"]
-
 
 REMEDY = "Cut material away, or narrow the motion or the range."
 Pair = tuple[Body, Sequence[str], Body, Sequence[str]]

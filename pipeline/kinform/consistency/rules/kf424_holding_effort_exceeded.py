@@ -20,18 +20,8 @@ import numpy as np
 
 from kinform.consistency.constants import AT_END
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import (
-    SINGLE,
-    Answer,
-    effort,
-    met,
-    requirement_rule,
-    shown_value,
-    single_joint,
-    stated_as,
-    undecided,
-    violated,
-)
+from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.requirements import SINGLE, effort, requirement_rule, shown_value, single_joint, stated_as
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted, telling
 from kinform.function import resolve_joint
@@ -41,9 +31,6 @@ from kinform.function.requirement_kinds import Hold
 from kinform.model.arrays import Array
 from kinform.model.function import SimulationRequest
 from kinform.model.kinematics import Joint
-
-__all__ = ["RULE"]
-
 
 REMEDY = "Balance the joint, lighten what it carries, or take a stronger drive."
 STATE = "State masses, drives and joints so that the load is determined."

@@ -18,11 +18,10 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import SINGLE, Answer, effort, requirement_rule, undecided
+from kinform.consistency.outcome import Answer, undecided
+from kinform.consistency.requirements import SINGLE, effort, requirement_rule
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Torque
-
-__all__ = ["RULE"]
 
 REMEDY = "Slow the motion, balance what moves, or take a stronger drive."
 

@@ -18,10 +18,9 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit, run_of_joint
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import SINGLE, Answer, requirement_rule, shown_value
+from kinform.consistency.outcome import Answer
+from kinform.consistency.requirements import SINGLE, requirement_rule, shown_value
 from kinform.function.requirement_kinds import Speed
-
-__all__ = ["RULE"]
 
 
 def judge(context: Context, requirement: Speed) -> Answer:

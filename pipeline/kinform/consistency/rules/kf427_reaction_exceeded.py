@@ -21,12 +21,11 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import Quantity, peak_beside_limit
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, simulated, undecided, worst_of
+from kinform.consistency.outcome import Answer, met, undecided
+from kinform.consistency.requirements import JOINTS, requirement_rule, simulated, worst_of
 from kinform.foundation.words import number
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Reaction
-
-__all__ = ["RULE"]
 
 REMEDY = "Lighten or slow what moves, support it better, or take a larger bearing."
 COMPUTE = "Run the simulation with a version of kinform that computes reactions."

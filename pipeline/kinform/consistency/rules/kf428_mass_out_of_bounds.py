@@ -14,11 +14,10 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import MASSES, Answer, requirement_rule
+from kinform.consistency.outcome import Answer
+from kinform.consistency.requirements import MASSES, requirement_rule
 from kinform.foundation.words import mass
 from kinform.function.requirement_kinds import Mass
-
-__all__ = ["RULE"]
 
 REMEDY = "Change the shape, the material or the bound."
 

@@ -13,11 +13,10 @@ import numpy as np
 
 from kinform.consistency.comparisons.limits import amount, whose
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import MASSES, Answer, met, requirement_rule, violated
+from kinform.consistency.outcome import Answer, met, violated
+from kinform.consistency.requirements import MASSES, requirement_rule
 from kinform.foundation.words import length, place, telling
 from kinform.function.requirement_kinds import CentreOfMass
-
-__all__ = ["RULE"]
 
 
 def judge(context: Context, requirement: CentreOfMass) -> Answer:

@@ -15,11 +15,10 @@ from __future__ import annotations
 from kinform.consistency.comparisons.limits import Quantity, amount, beside_bounds, whose
 from kinform.consistency.constants import INERTIA_SPREAD
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import MASSES, Answer, requirement_rule
+from kinform.consistency.outcome import Answer
+from kinform.consistency.requirements import MASSES, requirement_rule
 from kinform.foundation.words import direction, number
 from kinform.function.requirement_kinds import Inertia
-
-__all__ = ["RULE"]
 
 REMEDY = "Move material, or change the bound."
 

@@ -13,13 +13,12 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.limits import amount
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import JOINTS, MASSES, Answer, met, requirement_rule, undecided, violated
+from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.requirements import JOINTS, MASSES, requirement_rule
 from kinform.foundation.words import length, mass, number, quoted, telling
 from kinform.function import resolve_joint
 from kinform.function.requirement_kinds import Balance
 from kinform.model.arrays import Array
-
-__all__ = ["RULE"]
 
 
 def judge(context: Context, requirement: Balance) -> Answer:

@@ -18,14 +18,13 @@ import numpy as np
 
 from kinform.consistency.constants import NO_TURN, SAME_DIRECTION
 from kinform.consistency.context import Context
-from kinform.consistency.requirements import JOINTS, Answer, met, requirement_rule, undecided, violated
+from kinform.consistency.outcome import Answer, met, undecided, violated
+from kinform.consistency.requirements import JOINTS, requirement_rule
 from kinform.foundation.algebra.subspaces import null_space
 from kinform.foundation.words import direction, quoted
 from kinform.function.requirement_kinds import Retained
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint, Kinematics, Release, Separation
-
-__all__ = ["RULE"]
 
 REMEDY = "Add a shoulder, a clip, a lid or a screw; or list the direction."
 

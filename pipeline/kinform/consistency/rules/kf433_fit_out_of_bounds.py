@@ -18,12 +18,11 @@ from collections.abc import Mapping
 
 from kinform.consistency.comparisons.limits import Quantity, beside_bounds
 from kinform.consistency.context import Context, Need
-from kinform.consistency.requirements import Answer, met, requirement_rule, shared_parts, undecided, worst_of
+from kinform.consistency.outcome import Answer, met, undecided
+from kinform.consistency.requirements import requirement_rule, shared_parts, worst_of
 from kinform.foundation.words import counted, length, quoted
 from kinform.function.fits import clearances
 from kinform.function.requirement_kinds import Fit
-
-__all__ = ["RULE"]
 
 KINDS = {"radial": "radial clearance", "both sides": "clearance between planes", "gap": "gap between planes"}
 REMEDY = "Change one of the two sizes."

@@ -13,11 +13,10 @@ Example: `[[check.ignore]]` with `code = "KF303"` after the redundant hinge has 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted
 from kinform.model.assembly import Source
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -15,9 +15,8 @@ Example: a bore was moved by 0.3 mm, and so was the axis of the shoulder.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, skipped
-
-__all__ = ["RULE"]
+from kinform.consistency.outcome import Outcome, skipped
+from kinform.consistency.rule import Rule
 
 
 def check(context: Context) -> Outcome:

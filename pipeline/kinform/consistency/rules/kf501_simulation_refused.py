@@ -17,12 +17,11 @@ from collections.abc import Sequence
 
 from kinform.consistency.comparisons.actuated import loose_carriers
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Declared, Outcome, Rule, decided, inconclusive
+from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.rule import Declared, Rule
 from kinform.foundation.words import quoted
 from kinform.function import resolve_joint
 from kinform.model.findings import Finding
-
-__all__ = ["RULE"]
 
 SPEAKS_FOR = ("KF413", "KF502", "KF503", "KF504", "KF505", "KF506", "KF507")
 GROUP = "Fasten what is loose, such as a pin, to one of the two parts with a [[group]]."

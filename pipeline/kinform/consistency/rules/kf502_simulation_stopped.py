@@ -11,10 +11,9 @@ Example: a slider-crank whose rod is shorter than its crank jams at t = 0.31 s.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided
+from kinform.consistency.outcome import Outcome, decided
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

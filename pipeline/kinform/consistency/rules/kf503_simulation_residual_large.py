@@ -16,10 +16,9 @@ import numpy as np
 from kinform.consistency.comparisons.plausibility import extent
 from kinform.consistency.constants import LOOP_RESIDUAL
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

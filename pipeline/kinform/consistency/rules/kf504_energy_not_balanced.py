@@ -16,10 +16,9 @@ import numpy as np
 
 from kinform.consistency.constants import ENERGY_DRIFT, ENERGY_SOLVED, NO_ENERGY
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import number
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -13,10 +13,9 @@ Example: a camera scans by ±45°, and its gimbal hits the housing at 39°.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive
+from kinform.consistency.outcome import Outcome, decided, inconclusive
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, number, place, quoted
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

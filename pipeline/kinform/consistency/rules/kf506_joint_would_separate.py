@@ -22,12 +22,11 @@ Example: a cam throws its follower, which only its weight keeps on the cam, off 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import number, quoted
 from kinform.model.findings import Finding
 from kinform.statics.separating import Lift, Sharing, lifts
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -14,12 +14,11 @@ Example: a carriage of 40 mm leaves its rail of 200 mm at a stroke of 125 mm.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import angle, length, number
 from kinform.model.findings import Finding
 from kinform.statics.disengaging import SLIDES, Slip, slips
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

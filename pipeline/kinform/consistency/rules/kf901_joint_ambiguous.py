@@ -13,13 +13,12 @@ Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import quoted
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

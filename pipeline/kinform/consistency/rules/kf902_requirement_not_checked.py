@@ -13,10 +13,9 @@ Example: `[[function.require]]` with `kind = "torque"` where nothing drives the 
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, decided, inconclusive, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted
-
-__all__ = ["RULE"]
 
 SPEAKS_FOR = tuple(f"KF{number}" for number in range(421, 434))
 """The rules of the kinds of requirements."""

@@ -16,10 +16,9 @@ from __future__ import annotations
 
 from kinform.consistency.comparisons.couplings import derived_ratio, shown_ratio
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled, skipped
+from kinform.consistency.outcome import Outcome, settled, skipped
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
-
-__all__ = ["RULE"]
 
 
 def check(context: Context) -> Outcome:

@@ -14,11 +14,10 @@ Example: a force of 5 N on the gripper of an arm that is simulated kinematically
 from __future__ import annotations
 
 from kinform.consistency.context import Context
-from kinform.consistency.rule import Outcome, Rule, settled
+from kinform.consistency.outcome import Outcome, settled
+from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.function import Load
-
-__all__ = ["RULE"]
 
 MOVE = "Put it on a part that moves, or make what the ground stands on a part of the design."
 

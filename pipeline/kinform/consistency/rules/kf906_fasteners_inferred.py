@@ -20,8 +20,6 @@ from kinform.foundation.words import quoted
 from kinform.model.contacts import Suggestion
 from kinform.model.kinematics import Kinematics
 
-__all__ = ["RULE"]
-
 
 def check(context: Context) -> Findings:
     """Suggestions that were applied, and those that were not because something else is stated."""

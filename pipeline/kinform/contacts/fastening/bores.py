@@ -14,8 +14,6 @@ from kinform.model.assembly import Part
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["Cylinders", "Holes", "aligned_holes", "all_cylinders", "aside", "cylinders_of", "occupied"]
-
 
 @dataclass(frozen=True, eq=False)
 class Cylinders:

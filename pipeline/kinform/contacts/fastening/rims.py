@@ -17,8 +17,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, Part
 from kinform.model.surfaces import MeshSurfaces, Surface
 
-__all__ = ["rims_of"]
-
 
 def rims_of(part: Part, surfaces: MeshSurfaces, plane: int) -> list[tuple[Array, float]]:
     """(centre on the plane (3,), radius) of the rims of one plane surface, by the index of the other surface."""

@@ -11,15 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    EDGE_RISE,
-    EDGES_MOST,
-    GIVER_AREA,
-    LINE_SAMPLES,
-    PROBE_SPARE,
-    TOUCH,
-    ZONE,
-)
+from kinform.contacts import constants
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, PartView, near_facets
 from kinform.foundation.algebra.vectors import dot
@@ -28,8 +20,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
-
-__all__ = ["edge_contacts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +57,7 @@ def edge_contacts(pair: PairView, met: frozenset[tuple[int, int]] = frozenset())
     for view, first in ((pair, True), (pair.swapped, False)):
         planes = view.near[1]
         edges = _sharp_edges(view.a, near_facets(view.a, *box)[0], pair.tolerances)
-        large = planes.areas >= GIVER_AREA * pair.tolerance**2
+        large = planes.areas >= constants.GIVER_AREA * pair.tolerance**2
         for row in np.flatnonzero((planes.kinds == KINDS.index("plane")) & large):
             touches = _standing(view, edges, int(row))
             out += [
@@ -103,7 +93,7 @@ def _sharp_edges(part: PartView, facets: Ints, tolerances: Tolerances) -> _Edges
 
 def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     """Edges and corners of the first part that stand on one plane of the second."""
-    (sharp, flat), planes, limit = view.parts, view.near[1], TOUCH * view.tolerance
+    (sharp, flat), planes, limit = view.parts, view.near[1], constants.TOUCH * view.tolerance
     normal, origin = planes.axes[row], planes.points[row]
     if not len(edges.ends) or float(planes.point_uncertainty[row]) > limit:
         return []
@@ -118,12 +108,12 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
     lines = np.flatnonzero(inside.all(axis=1) & level & _rises(sharp, edges, height))
     corners = np.setdiff1d(edges.ends[inside], edges.ends[inside.all(axis=1) & level])
     corners = corners[_lowest(sharp, corners, height, slope)]
-    if not 0 < len(lines) + len(corners) <= EDGES_MOST:
+    if not 0 < len(lines) + len(corners) <= constants.EDGES_MOST:
         return []
     spots: list[tuple[Ints, Array, Array | None]] = [
         (
             edges.facets[k, 0],
-            _between(sharp, edges.ends[k], 1 if edges.bends[k] else LINE_SAMPLES),
+            _between(sharp, edges.ends[k], 1 if edges.bends[k] else constants.LINE_SAMPLES),
             vectors[k] / length[k],
         )
         for k in lines
@@ -136,9 +126,9 @@ def _standing(view: PairView, edges: _Edges, row: int) -> list[_Touch]:
         gaps = (points - origin) @ normal
         holds = _over(flat, points - gaps[:, None] * normal, normal, ids[1], view.tolerance)
         if holds.any():
-            area = math.pi * (ZONE * view.tolerance) ** 2
+            area = math.pi * (constants.ZONE * view.tolerance) ** 2
             if len(points) > 1:
-                area = 2.0 * ZONE * view.tolerance * float(np.linalg.norm(points[1] - points[0]))
+                area = 2.0 * constants.ZONE * view.tolerance * float(np.linalg.norm(points[1] - points[0]))
             line = axis if len(points) > 1 else None
             out.append(_Touch(ids, row, points[holds], gaps[holds], line, area))
     return out
@@ -155,7 +145,7 @@ def _rises(sharp: PartView, edges: _Edges, height: Array) -> Flags:
         along = sharp.vertices[edges.ends[:, 1]] - sharp.vertices[edges.ends[:, 0]]
         along = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
         away = np.linalg.norm(reach - dot(reach, along)[:, None] * along, axis=1)
-        out &= height[third] - base > EDGE_RISE * away
+        out &= height[third] - base > constants.EDGE_RISE * away
     return out
 
 
@@ -178,7 +168,7 @@ def _between(sharp: PartView, ends: Ints, count: int) -> Array:
 
 def _over(flat: PartView, points: Array, normal: Array, surface: int, tolerance: float) -> Flags:
     """Whether points on a plane are on the facets of that surface."""
-    reach = np.full(len(points), PROBE_SPARE * tolerance + flat.surfaces.surfaces[surface].chord)
+    reach = np.full(len(points), constants.PROBE_SPARE * tolerance + flat.surfaces.surfaces[surface].chord)
     directions = np.tile(normal, (len(points), 1))
     hits = flat.region.cast(flat.to_part(points), flat.turn_to_part(directions), reach)
     out = np.zeros(len(points), dtype=bool)

@@ -26,8 +26,6 @@ from kinform.model.arrays import Array, Flags, Ints
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-__all__ = ["Curve", "Segments", "Sheet", "curves", "segments"]
-
 
 @dataclass(frozen=True, eq=False)
 class Curve:

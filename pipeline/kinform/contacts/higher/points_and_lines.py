@@ -13,14 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    ACROSS_SINE,
-    CAPTIVE,
-    OPPOSITE_COSINE,
-    PROBE_SPARE,
-    TOUCH,
-    ZONE,
-)
+from kinform.contacts import constants
 from kinform.contacts.higher.rounds import Meeting, meeting
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.search.pair_view import PairView, SurfacePair
@@ -29,8 +22,6 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
-
-__all__ = ["higher_pairs", "pins_in_slots"]
 
 _ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus")]
 
@@ -90,12 +81,12 @@ def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
     met = meeting(surfaces, view.tolerances.alignment + sum(surfaces.turns))
     if met is None:
         return None
-    close = np.abs(met.gaps) <= CAPTIVE * view.tolerance
-    if sum(surfaces.shifts) > TOUCH * view.tolerance or not close.any():
+    close = np.abs(met.gaps) <= constants.CAPTIVE * view.tolerance
+    if sum(surfaces.shifts) > constants.TOUCH * view.tolerance or not close.any():
         return None
     # a roller on a plane lies along it, however little of it is close
     line = met.line and (surfaces.kinds[1] == "plane" or bool(close.sum() > 1))
-    tube = met.clearance is not None and met.clearance <= CAPTIVE * view.tolerance
+    tube = met.clearance is not None and met.clearance <= constants.CAPTIVE * view.tolerance
     return _Touch(surfaces, first, line, met.chosen(close), tube)
 
 
@@ -104,7 +95,7 @@ def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
     out = []
     for touch in touches:
         captive = touch.tube or any(_opposes(touch, other) for other in touches)
-        close = np.abs(touch.meeting.gaps) <= TOUCH * tolerance
+        close = np.abs(touch.meeting.gaps) <= constants.TOUCH * tolerance
         if captive or close.all():
             out.append(touch)
         elif close.any():
@@ -115,7 +106,7 @@ def _held(touches: list[_Touch], tolerance: float) -> list[_Touch]:
 def _opposes(touch: _Touch, other: _Touch) -> bool:
     """Whether the other surface holds the same ball or pin from the opposite side."""
     same = touch.first == other.first and touch.surfaces.row == other.surfaces.row
-    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < OPPOSITE_COSINE
+    return same and float((touch.meeting.normals @ other.meeting.normals.T).min()) < constants.OPPOSITE_COSINE
 
 
 def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -124,7 +115,7 @@ def pins_in_slots(pair: PairView, patches: list[Patch]) -> list[Patch]:
     axis = patches[0].axis if patches else np.zeros(3)
 
     def parallel(patch: Patch) -> bool:
-        return float(np.linalg.norm(cross(patch.axis, axis))) < ACROSS_SINE
+        return float(np.linalg.norm(cross(patch.axis, axis))) < constants.ACROSS_SINE
 
     if not patches or not all(patch.kind == "plane" and parallel(patch) for patch in patches):
         return []
@@ -136,20 +127,20 @@ def _faces(patch: Patch, other: Patch) -> bool:
     """Whether another line holds the same pin from the opposite side."""
     side = 0 if patch.radii[0] > 0.0 else 1
     same = other.radii[side] > 0.0 and patch.surfaces[side] == other.surfaces[side]
-    return same and float((patch.normals @ other.normals.T).min()) < OPPOSITE_COSINE
+    return same and float((patch.normals @ other.normals.T).min()) < constants.OPPOSITE_COSINE
 
 
 def _probes(touch: _Touch, tolerance: float) -> Probes:
     """One at each point."""
     met, surfaces = touch.meeting, touch.surfaces if touch.first else touch.surfaces.swapped
-    reach = 0.5 * np.abs(met.gaps) + surfaces.slack + PROBE_SPARE * tolerance
+    reach = 0.5 * np.abs(met.gaps) + surfaces.slack + constants.PROBE_SPARE * tolerance
     return Probes.of(met.points, touch.normals(), met.gaps, reach, surfaces)
 
 
 def _patch(pair: PairView, touch: _Touch, holds: Flags) -> Patch:
     """The patch of the points that hold."""
     met, surfaces = touch.meeting, touch.surfaces
-    radius, zone = surfaces.radii[0], ZONE * pair.tolerance
+    radius, zone = surfaces.radii[0], constants.ZONE * pair.tolerance
     area = 2.0 * math.pi * radius * zone
     if touch.line:
         area = 2.0 * math.sqrt(2.0 * radius * zone) * met.spacing

@@ -13,29 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    CAPTIVE,
-    CURVE_END_SPARE,
-    CURVE_SAMPLES,
-    CURVES_OPPOSED,
-    DIRECTION_SINE,
-    DIRECTIONS_TRIED,
-    DISTINCT_COSINE,
-    DISTINCT_DISTANCE,
-    EXACT_GAP,
-    GAP_ROUNDING,
-    GRAIN,
-    LENGTH_SHARED,
-    LINE_SAMPLES,
-    MATING_REACH,
-    NEWTON_STEPS,
-    ROUNDER,
-    SHEET_RINGS,
-    SIGMAS,
-    SLIP_LEAST,
-    TOUCH,
-    ZONE,
-)
+from kinform.contacts import constants
 from kinform.contacts.higher.outlines import Curve, Sheet, curves, segments
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
 from kinform.contacts.mating.charts import plane_basis
@@ -46,8 +24,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 from kinform.model.tolerances import Tolerances
-
-__all__ = ["profile_contacts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,18 +77,18 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
     axes.sort(key=lambda item: (-item[0], *item[1].tolist()))
     out: list[Array] = []
     for _, axis in axes:
-        if all(float(np.linalg.norm(cross(axis, other))) > DIRECTION_SINE for other in out):
+        if all(float(np.linalg.norm(cross(axis, other))) > constants.DIRECTION_SINE for other in out):
             out.append(axis)
-        if len(out) == DIRECTIONS_TRIED:
+        if len(out) == constants.DIRECTIONS_TRIED:
             break
     return out
 
 
 def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
-    tolerance, tolerances, limit = pair.tolerance, pair.tolerances, MATING_REACH * pair.tolerance
+    tolerance, tolerances, limit = pair.tolerance, pair.tolerances, constants.MATING_REACH * pair.tolerance
     cut = [
-        segments(part, sheet, direction, tolerances.alignment, GRAIN * tolerance)
+        segments(part, sheet, direction, tolerances.alignment, constants.GRAIN * tolerance)
         for part, sheet in zip(pair.parts, sheets, strict=True)
     ]
     if cut[0] is None or cut[1] is None:
@@ -136,7 +112,7 @@ def _sheet(part: PartView, low: Array, high: Array, tolerances: Tolerances) -> S
     chosen = np.zeros(len(part.faces), dtype=bool)
     chosen[near_facets(part, low, high)[0]] = True
     inside = np.zeros(len(part.vertices), dtype=bool)
-    for _ in range(SHEET_RINGS):
+    for _ in range(constants.SHEET_RINGS):
         inside[part.faces[chosen]] = True
         chosen |= inside[part.faces].any(axis=1)
     return Sheet.of(part, np.flatnonzero(chosen), tolerances.coplanar, tolerances.smooth_edge)
@@ -149,7 +125,7 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
     t = _sampled(second)
     q, other, _ = second.at(t)
     apart = p[:, None] - q[None]
-    facing = np.einsum("ik,jk->ij", tangent, other) < CURVES_OPPOSED
+    facing = np.einsum("ik,jk->ij", tangent, other) < constants.CURVES_OPPOSED
     distance = np.where(facing, np.einsum("ijk,ijk->ij", apart, apart), np.inf)
     nearest = distance.argmin(axis=1)
     away = np.sqrt(distance[np.arange(len(s)), nearest])
@@ -157,10 +133,10 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
     gap = np.where(np.isfinite(away), np.einsum("ik,ik->i", p - q[nearest], outward), np.inf)
     padded = np.concatenate([[np.inf], gap, [np.inf]])
     lowest = np.flatnonzero((padded[1:-1] <= padded[:-2]) & (padded[1:-1] < padded[2:]) & np.isfinite(gap))
-    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / CURVE_SAMPLES
+    step = max(float(np.diff(first.knots).max()), float(np.diff(second.knots).max())) / constants.CURVE_SAMPLES
     out = []
     for k in lowest:
-        if away[k] > MATING_REACH * tolerance + 2.0 * step:
+        if away[k] > constants.MATING_REACH * tolerance + 2.0 * step:
             continue
         met = _refined(first, second, float(s[k]), float(t[nearest[k]]), tolerance)
         if met is not None:
@@ -171,7 +147,7 @@ def _closest(first: Curve, second: Curve, tolerance: float) -> list[_Meeting]:
 def _sampled(curve: Curve) -> Array:
     """Parameters along those segments that come near the other part, and their neighbours."""
     near = curve.near | np.append(curve.near[1:], False) | np.append(False, curve.near[:-1])
-    inner = curve.knots[:-1, None] + np.linspace(0.0, 1.0, CURVE_SAMPLES + 1) * np.diff(curve.knots)[:, None]
+    inner = curve.knots[:-1, None] + np.linspace(0.0, 1.0, constants.CURVE_SAMPLES + 1) * np.diff(curve.knots)[:, None]
     return np.unique(inner[near])
 
 
@@ -207,7 +183,7 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
     From the parameters s and t; None where the Jacobian is singular.
     """
     ends = (first.knots[-1], second.knots[-1])
-    for _ in range(NEWTON_STEPS):
+    for _ in range(constants.NEWTON_STEPS):
         at = _Place.of(first, second, s, t)
         speeds = [float(np.linalg.norm(c.spline(x, 1))) for c, x in ((first, s), (second, t))]
         apart, along = at.p - at.q, float(at.u @ at.w)
@@ -240,11 +216,11 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
     slip = abs(float((at.q - at.p) @ mean))
     relative = float(kappa + lam)
     inner = max(tolerance, float(np.diff(first.knots).min()))
-    if float(at.u @ at.w) > CURVES_OPPOSED or abs(turn) > math.sin(CURVE_END_SPARE):
+    if float(at.u @ at.w) > constants.CURVES_OPPOSED or abs(turn) > math.sin(constants.CURVE_END_SPARE):
         return None
-    if abs(gap) > MATING_REACH * tolerance or slip > SLIP_LEAST * inner:
+    if abs(gap) > constants.MATING_REACH * tolerance or slip > constants.SLIP_LEAST * inner:
         return None
-    if relative <= ROUNDER * max(abs(kappa), abs(lam)):
+    if relative <= constants.ROUNDER * max(abs(kappa), abs(lam)):
         return None
     i, j = first.segment(at.s), second.segment(at.t)
     shares = np.array([abs(kappa), abs(lam)]) / (abs(kappa) + abs(lam))
@@ -261,11 +237,11 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     out: list[_Meeting] = []
     for met in sorted(meetings, key=lambda m: (m.doubt, m.gap, *m.point.tolist())):
         low, high = met.reach
-        if high - low <= LENGTH_SHARED * tolerance:
+        if high - low <= constants.LENGTH_SHARED * tolerance:
             continue
         if all(
-            float(np.linalg.norm(met.point - other.point)) > DISTINCT_DISTANCE * tolerance
-            or float(met.normal @ other.normal) < DISTINCT_COSINE
+            float(np.linalg.norm(met.point - other.point)) > constants.DISTINCT_DISTANCE * tolerance
+            or float(met.normal @ other.normal) < constants.DISTINCT_COSINE
             for other in out
         ):
             out.append(met)
@@ -275,12 +251,12 @@ def _distinct(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
 def _nearest(meetings: list[_Meeting], tolerance: float) -> list[_Meeting]:
     """Those that touch. Where nothing touches, those that hold a tooth between them with equal play."""
     least = min(met.gap for met in meetings)
-    margin = max(2.0 * max(met.chord for met in meetings), GAP_ROUNDING * tolerance)
+    margin = max(2.0 * max(met.chord for met in meetings), constants.GAP_ROUNDING * tolerance)
     close = [met for met in meetings if met.gap <= max(least, 0.0) + margin]
-    limit = TOUCH * tolerance
+    limit = constants.TOUCH * tolerance
     if least > limit:
         opposed = any(float(x.normal @ y.normal) < 0.0 for x in close for y in close)
-        limit = CAPTIVE * tolerance if opposed else limit
+        limit = constants.CAPTIVE * tolerance if opposed else limit
     return sorted((m for m in close if abs(m.gap) <= limit), key=lambda m: (*m.point.tolist(),))
 
 
@@ -305,13 +281,13 @@ def _one_line(meetings: list[_Meeting]) -> list[_Meeting]:
 
 def _agree(one: _Meeting, two: _Meeting) -> bool:
     """Whether both lie on one line of action."""
-    allowed = SIGMAS * (one.doubt + two.doubt) + 1e-6
+    allowed = constants.SIGMAS * (one.doubt + two.doubt) + 1e-6
     if float(one.normal @ two.normal) < 0.0:
         return False
     angle = abs(float(one.normal[0] * two.normal[1] - one.normal[1] * two.normal[0]))
     apart = two.point - one.point
     off = abs(float(one.normal[0] * apart[1] - one.normal[1] * apart[0]))
-    place = SIGMAS * (one.place + two.place)
+    place = constants.SIGMAS * (one.place + two.place)
     return angle <= allowed and off <= allowed * float(np.linalg.norm(apart)) + place
 
 
@@ -319,21 +295,21 @@ def _patch(pair: PairView, met: _Meeting, direction: Array) -> Patch:
     """The line in which two outlines meet, along the direction."""
     plane = plane_basis(direction)
     low, high = met.reach
-    height = low + (high - low) * (np.arange(LINE_SAMPLES) + 0.5) / LINE_SAMPLES
+    height = low + (high - low) * (np.arange(constants.LINE_SAMPLES) + 0.5) / constants.LINE_SAMPLES
     points = met.point @ plane + height[:, None] * direction
     labels = [int(curve.labels[k]) for curve, k in zip(met.curves, met.segments, strict=True)]
     bends = [_radius(curve, met) for curve in met.curves]
     samples = TouchSamples(
         points,
-        np.tile(met.normal @ plane, (LINE_SAMPLES, 1)),
-        np.full(LINE_SAMPLES, met.gap),
-        2.0 * math.sqrt(2.0 * ZONE * pair.tolerance / met.curvature) * (high - low) / LINE_SAMPLES,
+        np.tile(met.normal @ plane, (constants.LINE_SAMPLES, 1)),
+        np.full(constants.LINE_SAMPLES, met.gap),
+        2.0 * math.sqrt(2.0 * constants.ZONE * pair.tolerance / met.curvature) * (high - low) / constants.LINE_SAMPLES,
         axis=direction,
         radii=(bends[0], bends[1]),
         uncertainty=(met.doubt, met.place),
         chord=met.chord,
     )
-    return touch_patch(pair, (labels[0], labels[1]), samples, EXACT_GAP * pair.tolerance)
+    return touch_patch(pair, (labels[0], labels[1]), samples, constants.EXACT_GAP * pair.tolerance)
 
 
 def _radius(curve: Curve, met: _Meeting) -> float:

@@ -17,8 +17,6 @@ from kinform.contacts.search.pair_view import SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
 
-__all__ = ["Meeting", "meeting"]
-
 
 @dataclass(frozen=True, eq=False)
 class Meeting:

@@ -12,8 +12,6 @@ from kinform.contacts.search.pair_view import PairView
 from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 
-__all__ = ["TouchSamples", "touch_patch"]
-
 
 @dataclass(frozen=True, eq=False)
 class TouchSamples:

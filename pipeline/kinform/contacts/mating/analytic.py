@@ -12,21 +12,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    LENS_WIDTH,
-    MATING_OFFSET,
-    MATING_REACH,
-    MATING_TILT,
-    SEEN_FROM_AXIS,
-    TILT_LIKELY,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.charts import ConeChart, CylinderChart, PlaneChart, SphereChart, perpendicular
 from kinform.contacts.mating.mate import Axes, Mate, aligned, mean_axes, mean_direction, mean_position, radial_limit
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
-
-__all__ = ["analytic_mates"]
 
 
 def analytic_mates(pair: PairView, reach: float) -> list[Mate]:
@@ -58,7 +49,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
     above_a, above_b = float((middle - on_first) @ first), float((middle - on_second) @ second)
     gap = above_a + above_b
     tilt = angle * float(np.linalg.norm(size))
-    if abs(gap) > MATING_REACH * tolerance + tilt:
+    if abs(gap) > constants.MATING_REACH * tolerance + tilt:
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
     return Mate(
@@ -70,11 +61,11 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
         point=half,
         gap=gap,
         gradient=first + second,
-        limit=MATING_REACH * tolerance,
+        limit=constants.MATING_REACH * tolerance,
         slack=surfaces.slack + tilt,
         misalignment=angle,
         uncertainty=(turn, sum(surfaces.shifts)),
-        thin=min(LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
+        thin=min(constants.LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
     )
 
 
@@ -110,7 +101,7 @@ def _cylinder_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
 
 def _cone_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     """Tapers in sockets of the same half-angle among the surfaces flagged in `overlap` (s, t)."""
-    limit = MATING_REACH * pair.tolerance
+    limit = constants.MATING_REACH * pair.tolerance
     for surfaces in _nearly_coaxial(pair, overlap, "cone"):
         angles, side = surfaces.both("half_angles"), surfaces.sides[0]
         unlike = abs(angles[1] - angles[0])
@@ -158,7 +149,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
         gap = (radii[1] - radii[0]) * side
         offset = float(np.linalg.norm(second - first))
         limit = radial_limit(pair.tolerance, min(radii))
-        spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + MATING_OFFSET * pair.tolerance
+        spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
         if abs(gap) > limit or offset > spare:
             continue
         centre, shift = mean_position(first, second, surfaces.shifts)
@@ -185,7 +176,7 @@ def _nearly_coaxial(pair: PairView, overlap: Flags, kind: str) -> Iterator[Surfa
     rows, columns, flags = pair.of_kinds(overlap, kind)
     cosine = np.abs(a.axes[rows] @ b.axes[columns].T)
     convex = a.sides[rows][:, None] * b.sides[columns][None] < 0.0
-    for i, j in np.argwhere(flags & convex & (cosine > math.cos(TILT_LIKELY * MATING_TILT))):
+    for i, j in np.argwhere(flags & convex & (cosine > math.cos(constants.TILT_LIKELY * constants.MATING_TILT))):
         yield pair.surfaces(rows[i], columns[j])
 
 
@@ -203,4 +194,4 @@ def _base(surfaces: SurfacePair, axes: Axes, radius: float) -> Array:
     """Azimuth that looks into the common box of the two surfaces, where it has one."""
     arm = surfaces.box()[0] - axes.point
     arm = arm - (arm @ axes.axis) * axes.axis
-    return perpendicular(axes.axis, arm if np.linalg.norm(arm) > SEEN_FROM_AXIS * radius else None)
+    return perpendicular(axes.axis, arm if np.linalg.norm(arm) > constants.SEEN_FROM_AXIS * radius else None)

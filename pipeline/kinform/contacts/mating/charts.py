@@ -18,8 +18,6 @@ from kinform.foundation.algebra import vectors
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["Chart", "ConeChart", "CylinderChart", "PlaneChart", "SphereChart", "perpendicular", "plane_basis"]
-
 
 class Chart(Protocol):
     """What the overlay needs of a surface."""

@@ -13,18 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    ENCLOSING_GAP,
-    FACETS_FACING,
-    FREEFORM_ANGLE,
-    FREEFORM_KINDS,
-    FREEFORM_PROBES,
-    GAP_SCATTER,
-    MATING_REACH,
-    PATCH_AREA,
-    SCATTER_CHORDS,
-    TURNING_KINDS,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.mate import aligned, mean_axes, mean_direction
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, SurfacePair
@@ -33,12 +22,10 @@ from kinform.foundation.algebra.vectors import cross, dot, widest_gap
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 
-__all__ = ["freeform_patches"]
-
 
 def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
     """Patches between freeform surfaces flagged in `overlap` (s, t), in the frame of the pair."""
-    rows, columns, flags = pair.of_kinds(overlap, *FREEFORM_KINDS)
+    rows, columns, flags = pair.of_kinds(overlap, *constants.FREEFORM_KINDS)
     probed = []
     for i, j in np.argwhere(flags):
         surfaces = pair.surfaces(rows[i], columns[j])
@@ -47,14 +34,14 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
             probed.append((surfaces, probes, shares))
     if not probed:
         return []
-    verdict = verify(pair, [probes for _, probes, _ in probed], FACETS_FACING)
+    verdict = verify(pair, [probes for _, probes, _ in probed], constants.FACETS_FACING)
     patches = []
     for (surfaces, probes, shares), holds, along_a, along_b, cosine in zip(
         probed, verdict.holds, verdict.along_a, verdict.along_b, verdict.cosine, strict=True
     ):
-        here = np.flatnonzero(holds & (np.abs(along_b - along_a) <= MATING_REACH * pair.tolerance))
+        here = np.flatnonzero(holds & (np.abs(along_b - along_a) <= constants.MATING_REACH * pair.tolerance))
         weights = shares[here]
-        if weights.sum() >= PATCH_AREA * pair.tolerance**2:
+        if weights.sum() >= constants.PATCH_AREA * pair.tolerance**2:
             gaps, middle = (along_b - along_a)[here], 0.5 * (along_a + along_b)[here]
             points = probes.points[here] + middle[:, None] * probes.normals[here]
             disagreement = float(weights @ np.arccos(np.clip(-cosine[here], -1.0, 1.0)) / float(weights.sum()))
@@ -66,14 +53,14 @@ def freeform_patches(pair: PairView, overlap: Flags) -> list[Patch]:
 
 def _probes(pair: PairView, surfaces: SurfacePair) -> tuple[Probes, Array]:
     """Probes at the middles of facets of both surfaces, and half the area (m²) each stands for."""
-    reach = MATING_REACH * pair.tolerance
+    reach = constants.MATING_REACH * pair.tolerance
     middle, size = surfaces.box()
     low, high = middle - 0.5 * size - reach, middle + 0.5 * size + reach
     points, normals, shares = [], [], []
     for part, facets, sense in zip(pair.parts, surfaces.facets, (1.0, -1.0), strict=True):
         centres = part.vertices[part.faces[facets]].mean(axis=1)
         within = np.nonzero(((centres >= low) & (centres <= high)).all(axis=1))[0]
-        chosen = within[:: max(1, math.ceil(len(within) / FREEFORM_PROBES))]
+        chosen = within[:: max(1, math.ceil(len(within) / constants.FREEFORM_PROBES))]
         areas = part.index.areas(facets[chosen])
         total = float(part.index.areas(facets[within]).sum())
         points.append(centres[chosen])
@@ -111,7 +98,7 @@ def _patch(
         radii=(0.0, 0.0),
         misalignment=disagreement,
         offset=0.0,
-        uncertainty=(max(disagreement, FREEFORM_ANGLE), surfaces.chord),
+        uncertainty=(max(disagreement, constants.FREEFORM_ANGLE), surfaces.chord),
         chord=surfaces.chord,
         fit=classify_fit(gaps, surfaces.chord, 0.0, pair.tolerance),
     )
@@ -120,7 +107,7 @@ def _patch(
 def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     """The patch as one of two surfaces that turn about one axis, where they do: its normals then leave that turn
     exactly free."""
-    if not set(surfaces.kinds) <= set(TURNING_KINDS):
+    if not set(surfaces.kinds) <= set(constants.TURNING_KINDS):
         return patch
     axes = mean_axes(surfaces, patch.point)
     length = float(np.ptp(patch.points @ axes.axis))
@@ -154,8 +141,8 @@ def _sliding(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
     if max(spread) > alignment or angle > alignment + 2.0 * uncertainty:
         return patch
     scatter = math.sqrt(float(patch.weights @ (patch.gaps - patch.gap) ** 2) / patch.area)
-    encloses = widest_gap(patch.normals, axis) < ENCLOSING_GAP
-    if scatter > max(GAP_SCATTER * pair.tolerance, SCATTER_CHORDS * patch.chord) and not encloses:
+    encloses = widest_gap(patch.normals, axis) < constants.ENCLOSING_GAP
+    if scatter > max(constants.GAP_SCATTER * pair.tolerance, constants.SCATTER_CHORDS * patch.chord) and not encloses:
         # two cams: they curve away from each other, and touch along a line
         return patch
     normals = patch.normals - (patch.normals @ axis)[:, None] * axis

@@ -10,19 +10,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    CLEARANCE_SHARE,
-    HALF_RADIUS_SHARE,
-    MATING_OFFSET,
-    MATING_REACH,
-    MATING_TILT,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
-
-__all__ = ["Axes", "Mate", "aligned", "mean_axes", "mean_direction", "mean_position", "radial_limit"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +53,9 @@ class Mate:
 def radial_limit(tolerance: float, radius: float) -> float:
     """Greatest radial gap or overlap at which curved surfaces mate (m): real coaxial clearances grow
     with the radius, and a gap of a third of the radius is no fit."""
-    return MATING_REACH * min(max(tolerance, CLEARANCE_SHARE * radius), radius / HALF_RADIUS_SHARE)
+    return constants.MATING_REACH * min(
+        max(tolerance, constants.CLEARANCE_SHARE * radius), radius / constants.HALF_RADIUS_SHARE
+    )
 
 
 def _shares(first: float, second: float) -> tuple[float, float]:
@@ -117,5 +111,5 @@ def aligned(pair: PairView, axes: Axes, clearance: float, length: float) -> bool
     """Whether two axes agree: to what the clearance allows over the engaged length, or within `alignment`."""
     spare = max(clearance, 0.0)
     tilt = pair.tolerances.alignment + 2.0 * axes.uncertainty[0] + 2.0 * spare / max(length, 1e-12)
-    offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + MATING_OFFSET * pair.tolerance
-    return axes.misalignment <= min(tilt, MATING_TILT) and axes.offset <= offset
+    offset = spare + min(2.0 * axes.uncertainty[1], pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
+    return axes.misalignment <= min(tilt, constants.MATING_TILT) and axes.offset <= offset

@@ -22,8 +22,6 @@ from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
-__all__ = ["one_sided_mates", "without_continuations"]
-
 
 def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     """One-sided mates among the pairs of surfaces flagged in `overlap` (s, t)."""

@@ -16,19 +16,9 @@ import numpy as np
 from manifold3d import CrossSection, FillRule, triangulate
 from numpy.typing import NDArray
 
-from kinform.contacts.constants import (
-    MANY_TRIANGLES,
-    PATCH_BINS,
-    PATCH_RIM_POINTS,
-    POINT_SAME,
-    REGION_SIMPLE,
-    REGION_SMALL,
-    REGION_THIN,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.charts import Chart
 from kinform.model.arrays import Array, Flags, Ints
-
-__all__ = ["Cells", "overlay"]
 
 
 def _signed(corners: Array) -> Array:
@@ -85,7 +75,7 @@ class Cells:
 
     def _keys(self, points: Array) -> NDArray[np.complex128]:
         """One number a point (n, 2), the same for points that are one."""
-        grid = np.round(points / (POINT_SAME * self.unit))
+        grid = np.round(points / (constants.POINT_SAME * self.unit))
         return np.asarray(grid[:, 0] + 1j * grid[:, 1])
 
     def quadrature(self) -> tuple[Array, Array]:
@@ -110,7 +100,7 @@ def _region(flat: Array, unit: float) -> CrossSection:
     signed = _signed(flat)
     flat = np.where((signed < 0.0)[:, None, None], flat[:, ::-1], flat) / unit
     flat = np.ascontiguousarray(flat[np.abs(signed) > 1e-12 * unit * unit])
-    return CrossSection(_outline(flat) if len(flat) > MANY_TRIANGLES else list(flat), FillRule.Positive)
+    return CrossSection(_outline(flat) if len(flat) > constants.MANY_TRIANGLES else list(flat), FillRule.Positive)
 
 
 def _outline(flat: Array) -> list[Array]:
@@ -118,7 +108,7 @@ def _outline(flat: Array) -> list[Array]:
 
     They wind about every point as often as the triangles do, and there are far fewer of them.
     """
-    cells = np.round(flat.reshape(-1, 2) / POINT_SAME)
+    cells = np.round(flat.reshape(-1, 2) / constants.POINT_SAME)
     order = np.lexsort((cells[:, 1], cells[:, 0]))
     fresh = np.r_[True, (cells[order[1:]] != cells[order[:-1]]).any(axis=1)]
     renamed = np.empty(len(order), np.int64)
@@ -202,9 +192,9 @@ def _pieces(region: CrossSection, thin: float) -> list[list[Array]]:
     """The connected pieces of a region that are neither points nor narrower than `thin`, as polygons."""
     pieces = []
     for piece in region.decompose():
-        polygons = [np.asarray(p) for p in piece.simplify(REGION_SIMPLE).to_polygons()]
+        polygons = [np.asarray(p) for p in piece.simplify(constants.REGION_SIMPLE).to_polygons()]
         area = piece.area()
-        if polygons and area >= REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
+        if polygons and area >= constants.REGION_SMALL and 2.0 * area >= thin * _perimeter(polygons):
             pieces.append(polygons)
     return pieces
 
@@ -214,7 +204,7 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
     corners = np.concatenate(polygons)
     if flat:
         corners = np.concatenate([np.asarray(p) for p in CrossSection.hull_points(corners).to_polygons()])
-    every = math.ceil(len(corners) / PATCH_RIM_POINTS)
+    every = math.ceil(len(corners) / constants.PATCH_RIM_POINTS)
     return np.asarray(corners[::every])
 
 
@@ -224,7 +214,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case.
     """
     region = _overlap(chart, first, second, tolerance)
-    pieces = _pieces(region, max(REGION_THIN, thin / tolerance)) if region is not None else []
+    pieces = _pieces(region, max(constants.REGION_THIN, thin / tolerance)) if region is not None else []
     if not pieces:
         return None
     step = np.array(chart.step) / tolerance
@@ -235,7 +225,7 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
         triangles.append(np.concatenate(pieces[number])[triangulate(pieces[number])])
     corners = np.concatenate(triangles)
     area = float(np.abs(_signed(corners)).sum())
-    size = np.minimum(step, math.sqrt(area / PATCH_BINS))
+    size = np.minimum(step, math.sqrt(area / constants.PATCH_BINS))
     corners = _split(corners, size)
     corners = corners[np.abs(_signed(corners)) > 0.0]
     # Bins are counted from the region's own corner, so that they move with it.

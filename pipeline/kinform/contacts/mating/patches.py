@@ -7,21 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    EXACT_GAP,
-    GAP_SCATTER,
-    PATCH_AREA,
-    PROBE_SPARE,
-    SCATTER_CHORDS,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.mating.overlay import Cells, overlay
 from kinform.contacts.search.pair_view import PairView
 from kinform.contacts.search.probing import Probes, verify
 from kinform.model.arrays import Array, freeze
 from kinform.model.contacts import Patch
-
-__all__ = ["classify_fit", "in_world", "mated_patches"]
 
 
 def mated_patches(pair: PairView, mates: list[Mate]) -> list[Patch]:
@@ -59,10 +51,10 @@ def _rests(mate: Mate, cells: Cells, gaps: Array, tolerance: float) -> bool:
     area = float(shares.sum())
     mean = float(shares @ gaps) / area
     scatter = math.sqrt(float(shares @ (gaps - mean) ** 2) / area)
-    allowed = GAP_SCATTER * tolerance
+    allowed = constants.GAP_SCATTER * tolerance
     if mate.kind not in ("plane", "other"):
-        allowed = max(allowed, SCATTER_CHORDS * mate.surfaces.chord)
-    return area >= PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
+        allowed = max(allowed, constants.SCATTER_CHORDS * mate.surfaces.chord)
+    return area >= constants.PATCH_AREA * tolerance**2 and (mate.kind == "other" or scatter <= allowed)
 
 
 def _cells(pair: PairView, mate: Mate) -> Cells | None:
@@ -81,7 +73,7 @@ def _probes(mate: Mate, cells: Cells, tolerance: float) -> Probes:
     """One a bin, on the surface half-way between the two."""
     points = mate.chart.lift(cells.probes())
     gaps = mate.gaps(points)
-    reach = 0.5 * np.abs(gaps) + mate.slack + PROBE_SPARE * tolerance
+    reach = 0.5 * np.abs(gaps) + mate.slack + constants.PROBE_SPARE * tolerance
     return Probes.of(points, mate.sign * mate.chart.normals(points), gaps, reach, mate.surfaces)
 
 
@@ -91,7 +83,7 @@ def classify_fit(gaps: Array, chord: float, uncertainty: float, tolerance: float
     Beyond chord errors and uncertainty: clearance, or interference. No gap at all, as far as the surfaces
     are known: touch. Everything between, and patches with both: transition.
     """
-    exact = uncertainty + EXACT_GAP * tolerance
+    exact = uncertainty + constants.EXACT_GAP * tolerance
     low, high = float(gaps.min()), float(gaps.max())
     if low >= -exact and high <= exact:
         return "touch"

@@ -13,17 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    FLANK_GAP,
-    FLANK_HELIX_WEIGHT,
-    FLANK_NEIGHBOURS,
-    FLANKS_FACING,
-    PATCH_AREA,
-    PITCH_SAME,
-    PROFILE_SHARES,
-    THREAD_AXIS_VAGUE,
-    THREAD_FACETS,
-)
+from kinform.contacts import constants
 from kinform.contacts.mating.charts import plane_basis
 from kinform.contacts.mating.mate import Axes, aligned, mean_axes, radial_limit
 from kinform.contacts.mating.patches import classify_fit
@@ -31,8 +21,6 @@ from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
-
-__all__ = ["threaded_patches"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +65,10 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     turns = engaged / max(abs(first), 1e-12)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
-    limit = min(radial_limit(pair.tolerance, min(surfaces.radii)), FLANK_GAP * abs(pitch))
-    if max(surfaces.turns) > THREAD_AXIS_VAGUE:
+    limit = min(radial_limit(pair.tolerance, min(surfaces.radii)), constants.FLANK_GAP * abs(pitch))
+    if max(surfaces.turns) > constants.THREAD_AXIS_VAGUE:
         return None
-    if apart > PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:
+    if apart > constants.PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:
         return None
     return (axes, pitch, limit) if aligned(pair, axes, limit, engaged) else None
 
@@ -100,7 +88,7 @@ def _patch(pair: PairView, surfaces: SurfacePair) -> Patch | None:
         np.concatenate([getattr(side, name) for side in samples])
         for name in ("points", "azimuth", "height", "gaps", "area")
     )
-    if not len(flat) or areas.sum() < PATCH_AREA * pair.tolerance**2:
+    if not len(flat) or areas.sum() < constants.PATCH_AREA * pair.tolerance**2:
         return None
     normal = np.concatenate([samples[0].normal, -samples[1].normal])
     base, aside = plane_basis(axes.axis)
@@ -186,8 +174,8 @@ class _Samples:
 
 def _places(profile: _Profile, pitch: float) -> tuple[Ints, Array, Array, Array, Array]:
     """Facet, point (2,), normal (3,), azimuth and height of the samples of every facet."""
-    facet = np.repeat(np.arange(len(profile.area)), len(PROFILE_SHARES))
-    share = np.tile(PROFILE_SHARES, len(profile.area))
+    facet = np.repeat(np.arange(len(profile.area)), len(constants.PROFILE_SHARES))
+    share = np.tile(constants.PROFILE_SHARES, len(profile.area))
     points = profile.select(facet).at(share)
     azimuth = profile.azimuth[facet]
     normal = profile.normal[facet].copy()
@@ -201,7 +189,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     """Samples of one side that lie within `limit` (m) of the other side's profile, and half their areas."""
     from scipy.spatial import cKDTree
 
-    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / THREAD_FACETS)))
+    kept = np.arange(0, len(mine.area), max(1, math.ceil(len(mine.area) / constants.THREAD_FACETS)))
     share = len(mine.area) / max(len(kept), 1)
     facet, points, normal, azimuth, height = _places(mine.select(kept), pitch)
     if not len(facet) or not len(other.area):
@@ -213,10 +201,12 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
 
     def embedded(places: Array, heights: Array) -> Array:
         turn = np.mod(places[:, 1], lead)
-        return np.stack([places[:, 0], np.where(turn >= lead, 0.0, turn), FLANK_HELIX_WEIGHT * (heights - low)], axis=1)
+        return np.stack(
+            [places[:, 0], np.where(turn >= lead, 0.0, turn), constants.FLANK_HELIX_WEIGHT * (heights - low)], axis=1
+        )
 
     tree = cKDTree(embedded(their_points, their_height), boxsize=[far, lead, far])
-    count = min(FLANK_NEIGHBOURS, len(their_points))
+    count = min(constants.FLANK_NEIGHBOURS, len(their_points))
     _, near = tree.query(embedded(points, height), k=count)
     near = near.reshape(len(points), count)
     line = theirs[near]
@@ -231,7 +221,7 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     foot = np.einsum("ijk,ijk->ij", from_start, along) / length**2
     beside = np.abs(height[:, None] - their_height[near]) - other.reach[line] - mine.reach[kept][facet][:, None]
     good = (
-        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < FLANKS_FACING)
+        (np.einsum("ijk,ijk->ij", np.broadcast_to(normal[:, None], opposite.shape), opposite) < constants.FLANKS_FACING)
         & (np.abs(gap) <= limit)
         & (foot >= -1e-6)
         & (foot <= 1.0 + 1e-6)
@@ -239,5 +229,5 @@ def _resting(mine: _Profile, other: _Profile, pitch: float, limit: float) -> _Sa
     )
     best = np.argmin(np.where(good, np.abs(gap), np.inf), axis=1)
     holds = np.flatnonzero(good.any(axis=1))
-    area = 0.5 * share * mine.area[kept][facet] / len(PROFILE_SHARES)
+    area = 0.5 * share * mine.area[kept][facet] / len(constants.PROFILE_SHARES)
     return _Samples(points[holds], normal[holds], azimuth[holds], height[holds], gap[holds, best[holds]], area[holds])

@@ -12,23 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.contacts.constants import (
-    BESIDE_DEEPEST,
-    DEPTH_SAMPLES,
-    DEPTH_SAMPLES_LEAST,
-    EXACT_OVERLAP,
-    MATING_REACH,
-    PARTING_LEAST,
-    PARTING_STEPS,
-    PARTING_TRIED,
-    SHELL_INSET,
-)
+from kinform.contacts import constants
 from kinform.contacts.overlap.solids import Piece, SolidStore
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
-
-__all__ = ["find_interference"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +57,7 @@ class _Allowance:
         pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
         mated = bool(mates) and bool(
             (
-                (samples.depth[deep] <= MATING_REACH * self.tolerance)
+                (samples.depth[deep] <= constants.MATING_REACH * self.tolerance)
                 & (at_mate[deep] | (samples.depth[deep] <= pressed))
             ).all()
         )
@@ -79,7 +67,7 @@ class _Allowance:
 def find_interference(pair: PairView, patches: list[Patch], solids: SolidStore) -> Interference | None:
     """Overlap of two solids beyond the chord errors of their surfaces, in the frame of the pair."""
     a, b = pair.parts
-    least = EXACT_OVERLAP * pair.tolerance
+    least = constants.EXACT_OVERLAP * pair.tolerance
     if not (a.part.solid and b.part.solid) or not _meet(a, b, patches, least):
         return None
     allowance = _Allowance(
@@ -116,7 +104,7 @@ def _meet(a: PartView, b: PartView, patches: list[Patch], least: float) -> bool:
         return a.region.crosses(b.region, X_AF @ X_FB)
 
     apart = _parting(patches)
-    if apart is None or crosses(PARTING_TRIED * least * apart):
+    if apart is None or crosses(constants.PARTING_TRIED * least * apart):
         shift = least * np.array([0.61, 0.53, 0.59])
         if any(crosses(move) for move in (np.zeros(3), shift, -shift)):
             return True
@@ -132,14 +120,14 @@ def _parting(patches: list[Patch]) -> Array | None:
     if not len(normals):
         return None
     nearest = normals.mean(axis=0)
-    for _ in range(PARTING_STEPS):
+    for _ in range(constants.PARTING_STEPS):
         step = normals[np.argmin(normals @ nearest)] - nearest
         gain = -float(step @ nearest)
         if gain <= 1e-9:
             break
         nearest = nearest + min(1.0, gain / float(step @ step)) * step
     length = float(np.linalg.norm(nearest))
-    return nearest / length if length > PARTING_LEAST else None
+    return nearest / length if length > constants.PARTING_LEAST else None
 
 
 def _holds(outer: PartView, inner: PartView) -> bool:
@@ -180,7 +168,7 @@ def _deepest(a: PartView, b: PartView, piece: Piece, samples: _Samples, deep: Fl
     best = int(np.argmax(np.where(deep, samples.depth, -math.inf)))
     points, part, facet = _points_of(piece)
     off = np.linalg.norm(points - samples.points[best], axis=1)
-    beside = np.lexsort((np.arange(len(off)), off))[:BESIDE_DEEPEST]
+    beside = np.lexsort((np.arange(len(off)), off))[: constants.BESIDE_DEEPEST]
     more = _measured_on(a, b, points[beside], part[beside], facet[beside])
     return max(float(samples.depth[best]), float(more.depth.max()))
 
@@ -194,7 +182,9 @@ def _points_of(piece: Piece) -> tuple[Array, Ints, Ints]:
 
 def _within(corners: Array, middle: Array) -> Array:
     """(4 n, 3) the middles (n, 3) of facets (n, 3, 3), and points just inside their corners."""
-    return np.concatenate([middle, (SHELL_INSET * corners + (1.0 - SHELL_INSET) * middle[:, None]).reshape(-1, 3)])
+    return np.concatenate(
+        [middle, (constants.SHELL_INSET * corners + (1.0 - constants.SHELL_INSET) * middle[:, None]).reshape(-1, 3)]
+    )
 
 
 def _measured_on(a: PartView, b: PartView, points: Array, part: Ints, facet: Ints) -> _Samples:
@@ -215,7 +205,7 @@ def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowa
         # Faces that coincide leave sheets of no thickness: they need no measuring.
         if piece.volume <= allowance.floor**3:
             continue
-        count = max(DEPTH_SAMPLES_LEAST, round(DEPTH_SAMPLES * len(piece.corners) / facets))
+        count = max(constants.DEPTH_SAMPLES_LEAST, round(constants.DEPTH_SAMPLES * len(piece.corners) / facets))
         samples = _sampled(a, b, piece, count)
         deep, at_mates = allowance.unexplained(samples)
         thick = 2.0 * piece.volume / piece.area
@@ -258,7 +248,7 @@ def _inside(owner: PartView, other: PartView) -> tuple[Array, Ints]:
     points = _within(corners, corners.mean(axis=1))
     facets = np.concatenate([np.arange(len(corners)), np.repeat(np.arange(len(corners)), 3)])
     within = np.nonzero(((points > other.low) & (points < other.high)).all(axis=1))[0]
-    chosen = within[:: max(1, math.ceil(len(within) / DEPTH_SAMPLES))]
+    chosen = within[:: max(1, math.ceil(len(within) / constants.DEPTH_SAMPLES))]
     points, facets = points[chosen], facets[chosen]
     inside = other.index.contains(other.to_part(points))
     return points[inside], facets[inside].astype(np.int64)

@@ -17,8 +17,6 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-__all__ = ["Piece", "SolidStore"]
-
 
 @dataclass(frozen=True, eq=False)
 class Piece:

@@ -9,8 +9,6 @@ from kinform.contacts.constants import MATING_REACH
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
-__all__ = ["candidate_pairs", "excluded_pairs"]
-
 Pair = tuple[PartName, PartName]
 
 

@@ -25,8 +25,6 @@ from kinform.model.names import PartName
 from kinform.model.surfaces import KINDS, MeshSurfaces
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["NearSurfaces", "PairView", "PartView", "SurfacePair", "near_facets", "pair_view"]
-
 
 @dataclass(frozen=True, eq=False)
 class PartView:

@@ -18,8 +18,6 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.meshes.probes import Hits
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["Probes", "Verdict", "verify"]
-
 
 @dataclass(frozen=True, eq=False)
 class Probes:

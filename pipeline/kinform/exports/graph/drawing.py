@@ -12,29 +12,13 @@ from html import escape
 
 import numpy as np
 
-from kinform.exports.constants import (
-    CLEARANCE,
-    EDGE_LENGTH,
-    LETTER_WIDTH,
-    LINE_HEIGHT,
-    LONGEST_NAME,
-    MARGIN,
-    MOST_BODIES,
-    MOST_CLEARED,
-    MOST_LOOPS,
-    PANEL,
-    SYMBOL_PLACES,
-    SYMBOL_RADIUS,
-)
+from kinform.exports import constants
 from kinform.exports.graph.layout import box_centres
 from kinform.foundation.graphs.cycles import short_cycles
 from kinform.foundation.graphs.graph import blocks
 from kinform.foundation.words import counted, one_line
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
-
-__all__ = ["graph_dot", "graph_legend", "graph_panel", "graph_svg"]
-
 
 SYMBOLS = {
     "fixed": "F", "revolute": "R", "prismatic": "P", "cylindrical": "C", "spherical": "S", "planar": "E",
@@ -80,7 +64,7 @@ class _Drawing:
     @property
     def extent(self) -> Array:
         """(2,) px."""
-        return np.asarray((self.at + self.sizes / 2).max(axis=0, initial=0.0) + MARGIN)
+        return np.asarray((self.at + self.sizes / 2).max(axis=0, initial=0.0) + constants.MARGIN)
 
 
 def _drawing(kinematics: Kinematics, names: list[str], extra: float, *, upright: bool = False) -> _Drawing:
@@ -88,23 +72,23 @@ def _drawing(kinematics: Kinematics, names: list[str], extra: float, *, upright:
     index = {body.name: n for n, body in enumerate(kinematics.bodies)}
     edges = [(index[j.bodies[0]], index[j.bodies[1]]) for j in kinematics.joints]
     ground = next((n for n, body in enumerate(kinematics.bodies) if body.ground), 0)
-    sizes = np.array([[LETTER_WIDTH * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
+    sizes = np.array([[constants.LETTER_WIDTH * len(name) + extra, 30.0] for name in names]).reshape(-1, 2)
     at = (
-        box_centres(sizes[:, ::-1], edges, ground, EDGE_LENGTH)[:, ::-1]
+        box_centres(sizes[:, ::-1], edges, ground, constants.EDGE_LENGTH)[:, ::-1]
         if upright
-        else box_centres(sizes, edges, ground, EDGE_LENGTH)
+        else box_centres(sizes, edges, ground, constants.EDGE_LENGTH)
     )
-    return _Drawing(kinematics, names, sizes, at + MARGIN, edges, _loops(kinematics, edges))
+    return _Drawing(kinematics, names, sizes, at + constants.MARGIN, edges, _loops(kinematics, edges))
 
 
 def graph_svg(kinematics: Kinematics) -> str:
     """The graph as one SVG: ground hatched, ambiguous joints dashed, drivers of freedoms filled, loops numbered."""
     drawing = _drawing(kinematics, [one_line(body.name) for body in kinematics.bodies], 22.0)
     extent, legend = drawing.extent, graph_legend(kinematics)
-    width = max(float(extent[0]), LETTER_WIDTH * max(map(len, legend)) + 2 * MARGIN)
-    height = float(extent[1]) + LINE_HEIGHT * len(legend) + MARGIN
+    width = max(float(extent[0]), constants.LETTER_WIDTH * max(map(len, legend)) + 2 * constants.MARGIN)
+    height = float(extent[1]) + constants.LINE_HEIGHT * len(legend) + constants.MARGIN
     texts = [
-        f'<text x="{MARGIN:.0f}" y="{extent[1] + LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
+        f'<text x="{constants.MARGIN:.0f}" y="{extent[1] + constants.LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
         for n, text in enumerate(legend)
     ]
     head = (
@@ -131,12 +115,14 @@ def graph_panel(kinematics: Kinematics, colours: Sequence[str]) -> str:
 
     They carry their numbers as data-body and data-joint. Empty where the graph is too large to be read.
     """
-    if not 0 < len(kinematics.bodies) <= MOST_BODIES:
+    if not 0 < len(kinematics.bodies) <= constants.MOST_BODIES:
         return ""
     names = [one_line(body.name) for body in kinematics.bodies]
-    names = [name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…" for name in names]
+    names = [
+        name if len(name) <= constants.LONGEST_NAME else name[: constants.LONGEST_NAME - 1] + "…" for name in names
+    ]
     both = [_drawing(kinematics, names, 36.0, upright=upright) for upright in (True, False)]
-    drawing = min(both, key=lambda d: float((d.extent / PANEL).max()))
+    drawing = min(both, key=lambda d: float((d.extent / constants.PANEL).max()))
     width, height = drawing.extent
     return (
         f'<svg class="graph" viewBox="0 0 {width:.0f} {height:.0f}" width="{width:.0f}" height="{height:.0f}" '
@@ -216,7 +202,7 @@ def _loops(kinematics: Kinematics, edges: list[tuple[int, int]]) -> list[_Loop]:
             members = [block[k] for k, _ in cycle]
             around = tuple(sorted({n for k in members for n in edges[k]}))
             out.append(_Loop(around, held.get(frozenset(names[k] for k in members), 0)))
-    return out if len(out) <= MOST_LOOPS else []
+    return out if len(out) <= constants.MOST_LOOPS else []
 
 
 def _trimmed(start: Array, end: Array, size: Array) -> Array:
@@ -234,10 +220,10 @@ def _ends(at: Array, sizes: Array, edge: tuple[int, int]) -> tuple[Array, Array]
 def _middle(at: Array, sizes: Array, edge: tuple[int, int]) -> Array:
     """Where the symbol of the joint stands: half-way, or beside that where a box is in the way."""
     first, second = _ends(at, sizes, edge)
-    if len(at) <= MOST_CLEARED:
-        for share in SYMBOL_PLACES:
+    if len(at) <= constants.MOST_CLEARED:
+        for share in constants.SYMBOL_PLACES:
             place = first + share * (second - first)
-            if not (np.abs(at - place) < sizes / 2 + CLEARANCE * SYMBOL_RADIUS).all(axis=1).any():
+            if not (np.abs(at - place) < sizes / 2 + constants.CLEARANCE * constants.SYMBOL_RADIUS).all(axis=1).any():
                 return np.asarray(place)
     return np.asarray((first + second) / 2)
 
@@ -252,7 +238,7 @@ def _box(name: str, centre: Array, size: Array, ground: bool, colour: str = "") 
     x, y = centre - size / 2
     frame = f'x="{x:.1f}" y="{y:.1f}" width="{size[0]:.1f}" height="{size[1]:.1f}" rx="4"'
     box = f'<rect class="body" {frame}/>'
-    wide = LETTER_WIDTH * len(name) + 6.0
+    wide = constants.LETTER_WIDTH * len(name) + 6.0
     if ground:
         plate = f'x="{centre[0] - wide / 2:.1f}" y="{centre[1] - 9:.1f}" width="{wide:.1f}" height="18"'
         box += f'<rect class="ground" {frame}/><rect class="plate" {plate}/>'
@@ -270,7 +256,7 @@ def _symbol(centre: Array, joint: Joint, drives: bool) -> str:
     dash = f' stroke-dasharray="{DASHES[joint.status]}"' if joint.status in DASHES else ""
     return (
         f'<g><title>{escape(one_line(_about(joint)))}</title><circle class="symbol{" drives" if drives else ""}" '
-        f'cx="{x:.1f}" cy="{y:.1f}" r="{SYMBOL_RADIUS}"{dash}/><text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" '
+        f'cx="{x:.1f}" cy="{y:.1f}" r="{constants.SYMBOL_RADIUS}"{dash}/><text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" '
         f'text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
     )
 

@@ -7,8 +7,6 @@ from kinform.exports.graph.drawing import graph_dot, graph_svg
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 
-__all__ = ["export_dot", "export_svg"]
-
 
 def export_dot(model: ExportModel) -> Exported:
     """NAME.dot, for Graphviz."""

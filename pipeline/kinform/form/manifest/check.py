@@ -8,8 +8,6 @@ from pydantic import Field, StringConstraints
 
 from kinform.form.manifest.common import Reference, Table
 
-__all__ = ["CheckTable", "IgnoreTable"]
-
 
 class IgnoreTable(Table):
     """`[[check.ignore]]`: findings that are accepted."""

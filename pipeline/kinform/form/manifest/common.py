@@ -11,22 +11,6 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-__all__ = [
-    "Finite",
-    "JointType",
-    "Matrix",
-    "Name",
-    "NonNegative",
-    "Pair",
-    "Posed",
-    "Positive",
-    "Quantity",
-    "Reference",
-    "Table",
-    "Unit",
-    "Vector",
-]
-
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]

@@ -19,8 +19,6 @@ from kinform.form.manifest.common import (
 )
 from kinform.form.manifest.requirements import Require
 
-__all__ = ["Coupling", "Drive", "FunctionTable", "IntendedJointTable", "LawTable", "Load"]
-
 
 class IntendedJointTable(Table):
     """`[[function.joint]]`: values are of the second of `between` about `axis`, relative to the first."""

@@ -20,17 +20,6 @@ from kinform.form.manifest.common import (
     Vector,
 )
 
-__all__ = [
-    "AssemblyTable",
-    "Assume",
-    "Fasteners",
-    "Group",
-    "Material",
-    "Part",
-    "Subassembly",
-    "TolerancesTable",
-]
-
 
 class AssemblyTable(Table):
     """`[assembly]`."""

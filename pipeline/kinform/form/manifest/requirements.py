@@ -8,8 +8,6 @@ from pydantic import Field
 
 from kinform.form.manifest.common import Finite, Name, NonNegative, Pair, Positive, Quantity, Reference, Table, Vector
 
-__all__ = ["Require"]
-
 Length = Quantity("length")
 Angle = Quantity("angle")
 Point = Quantity("point")

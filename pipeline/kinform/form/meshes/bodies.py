@@ -13,8 +13,6 @@ from kinform.foundation.meshes.edges import edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["named_bodies", "select_body", "shell_bodies"]
-
 
 def named_bodies(raw: RawMesh) -> dict[str, RawMesh]:
     """Bodies that the file names, by name: objects, else groups, else solids; {} when it names fewer than two."""

@@ -15,8 +15,6 @@ from kinform.foundation.meshes.shells import shells_of
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh, MeshHealth
 
-__all__ = ["build_mesh"]
-
 
 def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool) -> Mesh:
     """The welded mesh of a file, in metres.

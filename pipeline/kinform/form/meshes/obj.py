@@ -20,8 +20,6 @@ from kinform.form.meshes.polygons import triangulate
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh
 from kinform.foundation.words import counted
 
-__all__ = ["parse_obj", "read_obj"]
-
 _SKIPPED = frozenset(
     "vt vn vp s l p usemtl mtllib usemap maplib lod mg bevel c_interp d_interp shadow_obj trace_obj".split()
 )

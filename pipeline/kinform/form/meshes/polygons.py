@@ -13,8 +13,6 @@ from kinform.form.constants import CUT_AREA, NO_TRIANGLE
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["triangulate"]
-
 
 def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:
     """Triangles (T, 3), the polygon of each (T,), and the polygons that cross themselves (k,).

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["REEXPORT", "Fault", "Labelling", "MeshError", "RawMesh", "soup"]
-
 REEXPORT = "export the mesh again"
 """The remedy where nothing else helps."""
 

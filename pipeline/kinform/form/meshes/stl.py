@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, soup
 from kinform.foundation.words import counted
 
-__all__ = ["parse_ascii", "parse_binary", "read_stl"]
-
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID = re.compile(r"^[ \t]*(end)?solid\b[ \t]*([^\n]*)$", re.MULTILINE | re.IGNORECASE)

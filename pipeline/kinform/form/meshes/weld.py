@@ -15,8 +15,6 @@ from kinform.form.meshes.raw import Fault, MeshError
 from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["merge_close", "merge_exact", "used_only"]
-
 _LINES = np.array([[0.57735, 0.51763, 0.63144], [-0.70143, 0.37291, 0.60741]])
 _LINES /= np.linalg.norm(_LINES, axis=1)[:, None]
 """Directions along which no designer lays an edge."""

@@ -29,8 +29,6 @@ from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["load", "load_with_contents"]
-
 
 def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:
     """As `load_with_contents`, without the contents."""

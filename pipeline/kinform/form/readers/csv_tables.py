@@ -11,8 +11,6 @@ import numpy as np
 
 from kinform.form.readers.scope import Scope
 
-__all__ = ["law_rows", "path_rows"]
-
 
 def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Times (strictly ascending) and values of a file; a header line and further columns are allowed.

@@ -21,8 +21,6 @@ from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import Coupling, Drive, InitialValue, IntendedJoint, Law, Load, SimulationRequest
 
-__all__ = ["FunctionReader"]
-
 NEEDED = {
     "axis": ("revolute", "prismatic", "cylindrical", "planar", "screw", "universal"),
     "point": ("revolute", "cylindrical", "spherical", "screw", "universal"),

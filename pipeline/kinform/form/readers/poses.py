@@ -9,8 +9,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["pose", "quaternion_rotation", "rpy_rotation", "unit_error"]
-
 
 def quaternion_rotation(wxyz: Sequence[float]) -> Array:
     """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""

@@ -12,8 +12,6 @@ from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
 from kinform.form.readers.toml_lines import LineTable, Path
 
-__all__ = ["names_of", "report", "without_errors"]
-
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 
 

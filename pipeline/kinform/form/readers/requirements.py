@@ -19,8 +19,6 @@ from kinform.form.readers.csv_tables import path_rows
 from kinform.form.readers.function import FunctionReader
 from kinform.model.function import Requirement
 
-__all__ = ["requirements_of"]
-
 
 def requirements_of(reader: FunctionReader) -> list[Requirement]:
     """`[[function.require]]` of the manifest that the reader reads."""

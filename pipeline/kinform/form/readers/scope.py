@@ -21,9 +21,6 @@ from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 
-__all__ = ["Scope", "parse"]
-
-
 _PLACE = re.compile(r"\(at line (\d+), column \d+\)")
 
 

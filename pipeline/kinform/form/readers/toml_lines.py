@@ -10,8 +10,6 @@ import re
 import tomllib
 from collections.abc import Collection, Iterator
 
-__all__ = ["LineTable", "Path"]
-
 Path = tuple[str | int, ...]
 
 _BLANK = re.compile(r"[ \t]*")

@@ -7,8 +7,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = ["adjoint", "carry", "displacement", "exponentials", "inverse", "poses", "twist_of"]
-
 
 def displacement(twist: Array) -> Array:
     """(4, 4) exponential of a twist (ω; v at the origin) over unit time."""

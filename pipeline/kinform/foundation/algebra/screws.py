@@ -14,8 +14,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 
-__all__ = ["Frame", "bracket", "rotation", "rows", "scaled", "span", "translation", "twist_at_origin"]
-
 
 @dataclass(frozen=True, eq=False)
 class Frame:

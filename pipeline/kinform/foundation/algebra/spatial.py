@@ -10,17 +10,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import CROSS, cross_matrix
 from kinform.model.arrays import Array
 
-__all__ = [
-    "along_motion",
-    "cross_force",
-    "cross_motion",
-    "multiply",
-    "quaternions",
-    "rotation_vector",
-    "to_matrix",
-]
-
-
 _BLOCKS = np.zeros((6, 6, 6))
 _BLOCKS[:3, :3, :3] = _BLOCKS[:3, 3:, 3:] = _BLOCKS[3:, 3:, :3] = CROSS.reshape(3, 3, 3)
 TWIST = _BLOCKS.reshape(6, 36)

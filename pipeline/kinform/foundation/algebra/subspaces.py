@@ -6,8 +6,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = ["null_space"]
-
 
 def null_space(matrix: Array, share: float) -> Array:
     """(k, n) orthonormal rows x with matrix (m, n) · x = 0; singular values up to that share of the largest count as

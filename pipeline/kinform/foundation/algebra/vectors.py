@@ -9,18 +9,6 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-__all__ = [
-    "CROSS",
-    "canonical",
-    "canonical_sign",
-    "cross",
-    "cross_matrix",
-    "dot",
-    "normalised",
-    "perpendicular",
-    "widest_gap",
-]
-
 _NEXT, _AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])
 _CROSS = np.zeros((3, 3, 3))
 for _i in range(3):

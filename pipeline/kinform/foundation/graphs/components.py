@@ -11,8 +11,6 @@ import numpy as np
 
 from kinform.model.arrays import Ints
 
-__all__ = ["components"]
-
 
 def components(a: Ints, b: Ints, count: int) -> Ints:
     """(count,) number of the connected component of each node under the links a–b, (n,) each; components are numbered

@@ -10,8 +10,6 @@ from collections.abc import Sequence
 
 from kinform.foundation.graphs.graph import Edge, forest, neighbours
 
-__all__ = ["Cycle", "short_cycles"]
-
 Cycle = tuple[tuple[int, int], ...]
 """(edge, +1 or −1) in the order of walking; +1 from the edge's first node to its second."""
 

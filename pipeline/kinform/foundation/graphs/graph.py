@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["Forest", "UnionFind", "blocks", "forest"]
-
 Edge = tuple[int, int]
 
 

@@ -5,18 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.constants import (
-    CHUNK,
-    GRID_FINEST,
-    GRID_LISTED,
-    GRID_LISTED_LEAST,
-    OFTEN,
-    PLACE_BITS,
-    SIZE_OCTAVES,
-)
+from kinform.foundation import constants
 from kinform.model.arrays import Array, Ints
-
-__all__ = ["FacetBoxes", "FlatBoxes", "box_corners", "facet_boxes", "together"]
 
 
 def box_corners(low: Array, high: Array, X: Array) -> Array:
@@ -43,18 +33,18 @@ class FacetBoxes:
     def meeting(self, low: Array, high: Array) -> Ints:
         """Facets whose boxes meet the box from `low` to `high` (d,), ascending."""
         self._asked += 1
-        if self._asked <= OFTEN or len(self.low) <= CHUNK:
+        if self._asked <= constants.OFTEN or len(self.low) <= constants.CHUNK:
             meets = np.ones(len(self.low), dtype=bool)
             for axis in range(self.low.shape[1]):
                 meets &= (self.low[:, axis] <= high[axis]) & (self.high[:, axis] >= low[axis])
             return np.flatnonzero(meets)
         if self._order is None:
             self._order = together(self.low, self.high)
-            self._starts = np.arange(0, len(self.low), CHUNK)
+            self._starts = np.arange(0, len(self.low), constants.CHUNK)
             self._chunk_low = np.minimum.reduceat(self.low[self._order], self._starts)
             self._chunk_high = np.maximum.reduceat(self.high[self._order], self._starts)
         chunks = np.flatnonzero(((self._chunk_low <= high) & (self._chunk_high >= low)).all(axis=1))
-        at = (self._starts[chunks, None] + np.arange(CHUNK)).ravel()
+        at = (self._starts[chunks, None] + np.arange(constants.CHUNK)).ravel()
         facets = np.sort(self._order[at[at < len(self._order)]])
         meets = ((self.low[facets] <= high) & (self.high[facets] >= low)).all(axis=1)
         return np.asarray(facets[meets])
@@ -67,13 +57,13 @@ class FlatBoxes:
         self.low, self.high = low, high
         self._origin = low.min(axis=0, initial=np.inf)
         whole = np.maximum(high.max(axis=0, initial=-np.inf) - self._origin, 1e-300)
-        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, GRID_FINEST))
+        side = int(np.clip(2.0 * np.sqrt(len(low)), 1, constants.GRID_FINEST))
         while True:
             self._cell, self._side = whole / side, side
             first, last = self._cells(low), self._cells(high)
             wide = last - first + 1
             count = wide.prod(axis=1)
-            if side == 1 or count.sum() <= GRID_LISTED * len(low) + GRID_LISTED_LEAST:
+            if side == 1 or count.sum() <= constants.GRID_LISTED * len(low) + constants.GRID_LISTED_LEAST:
                 break
             side = (side + 1) // 2
         box = np.repeat(np.arange(len(low)), count)
@@ -109,12 +99,14 @@ def together(low: Array, high: Array) -> Ints:
         return np.zeros(0, np.int64)
     size = (high - low).max(axis=1)
     whole = max(float((high.max(axis=0) - low.min(axis=0)).max()), 1e-300)
-    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -SIZE_OCTAVES, 0).astype(np.int64)
-    cell = np.clip((0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**PLACE_BITS, 0, 2**PLACE_BITS - 1).astype(
+    octave = np.clip(np.floor(np.log2(np.maximum(size, 1e-12 * whole) / whole)), -constants.SIZE_OCTAVES, 0).astype(
         np.int64
     )
+    cell = np.clip(
+        (0.5 * (low + high) - low.min(axis=0)) / whole * 2.0**constants.PLACE_BITS, 0, 2**constants.PLACE_BITS - 1
+    ).astype(np.int64)
     code = np.zeros(count, dtype=np.int64)
-    for bit in range(PLACE_BITS):
+    for bit in range(constants.PLACE_BITS):
         for axis in range(dimensions):
             code |= ((cell[:, axis] >> bit) & 1) << (dimensions * bit + axis)
     return np.lexsort((code, -octave)).astype(np.int64)

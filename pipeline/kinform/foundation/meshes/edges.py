@@ -15,8 +15,6 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["EdgeTable", "SharedEdges", "edge_ends", "edge_table", "shared_edges"]
-
 
 @dataclass(frozen=True, eq=False)
 class SharedEdges:

@@ -7,8 +7,6 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["UNIT", "fcl_distance", "fcl_model", "fcl_pose", "partial_model"]
-
 UNIT = 2.0**20
 """What a metre is to FCL. The distance that it finds between triangles is 0 where their edges are shorter than about
 2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""

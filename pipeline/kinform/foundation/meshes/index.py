@@ -24,8 +24,6 @@ from kinform.model.surfaces import MeshSurfaces
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-__all__ = ["MeshIndex", "MeshStore", "inner_weights"]
-
 
 class MeshIndex:
     """One mesh with what is asked of its facets; its BVH and their boxes are made when first asked for."""

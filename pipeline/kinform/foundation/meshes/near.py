@@ -15,8 +15,6 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.constants import FEW_PAIRS, LINE, SHARED_PAIRS
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["Near"]
-
 
 class Near:
     """Points (m, k), k up to 4, that lie within a distance of each other."""

@@ -9,8 +9,6 @@ from kinform.foundation.meshes.boxes import FlatBoxes, facet_boxes
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 
-__all__ = ["Ray"]
-
 
 class Ray:
     """A mesh as seen along one direction."""

@@ -20,8 +20,6 @@ from kinform.foundation.meshes.fcl_adapter import UNIT, fcl_distance, fcl_model,
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Mesh
 
-__all__ = ["Facets", "Hits", "Region"]
-
 
 class Facets(Protocol):
     """A mesh that tells the normals of its facets."""

@@ -11,8 +11,6 @@ import numpy as np
 from kinform.foundation.constants import CELLS_LEAST, CELLS_MOST
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["near_boxes"]
-
 
 def near_boxes(low_a: Array, high_a: Array, low_b: Array, high_b: Array, margin: float) -> tuple[Flags, Flags]:
     """Which boxes (n, 3) of the first kind may come within `margin` of any (m, 3) of the second, and the reverse.

@@ -15,8 +15,6 @@ from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["shells_of"]
-
 
 def shells_of(vertices: Array, faces: Ints, edges: EdgeTable | None = None) -> Ints:
     """(F,) number of the shell of each facet; shells are numbered by their first facet."""

@@ -9,8 +9,6 @@ import numpy as np
 from kinform.model.arrays import Array, Ints
 from kinform.model.surfaces import KINDS, MeshSurfaces
 
-__all__ = ["SurfaceTable"]
-
 
 @dataclass(frozen=True, eq=False)
 class SurfaceTable:

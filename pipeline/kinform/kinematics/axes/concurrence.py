@@ -17,8 +17,6 @@ from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import FIRST_LOOK, LEAST_CROSSING, MET, RCOND
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["Locus", "meeting_shifts"]
-
 
 @dataclass(frozen=True, eq=False)
 class Locus:

@@ -24,8 +24,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Joint
 
-__all__ = ["align_higher_pairs", "is_higher"]
-
 
 def is_higher(joint: Joint, patches: Sequence[Patch]) -> bool:
     """Whether the joint is `general` and carried by points and lines, beside planes across them."""

@@ -21,33 +21,12 @@ from kinform.foundation.algebra.displacements import adjoint, displacement
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.graph import blocks
-from kinform.kinematics.constants import (
-    CLOSED_GAP,
-    EXACTLY_PARALLEL,
-    FILE_ROUNDING,
-    FITTED_RANK,
-    FITTING_ROUNDS,
-    GLANCE,
-    IMPROVED,
-    LEAST_FRAME,
-    MOST_FITTED_FREEDOMS,
-    MOST_FITTED_RATES,
-    POSE_CLOSED,
-    POSE_LOST,
-    RCOND,
-    SIGMAS,
-    SOUND_POSE,
-    STRIDE,
-    STRIDES,
-    WAY_LOST,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Misfit
-
-__all__ = ["fit_proportions"]
 
 
 def fit_proportions(graph: JointGraph, doubts: Array, size: float, misfit: Misfit) -> tuple[tuple[Joint, ...], Misfit]:
@@ -61,7 +40,7 @@ def fit_proportions(graph: JointGraph, doubts: Array, size: float, misfit: Misfi
         joints = [out[k] for k in block]
         if len(block) < 2 or any(joint.type == "general" or joint.status == "ambiguous" for joint in joints):
             continue
-        sigma = np.maximum(doubts[list(block)], [FILE_ROUNDING, FILE_ROUNDING * size])
+        sigma = np.maximum(doubts[list(block)], [constants.FILE_ROUNDING, constants.FILE_ROUNDING * size])
         loops = _Loops([graph.edges[k] for k in block], joints, sigma, _frame(joints, size))
         for k, joint in zip(block, _fit_axes(loops), strict=True):
             misfit = _with_move(misfit, out[k], joint)
@@ -99,34 +78,34 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
     moves the axes for the gaps along a walk through the poses, and walks again through those of the moved loops.
     """
     joints = loops.joints
-    if sum(joint.freedoms for joint in joints) > MOST_FITTED_RATES or _planar(joints):
+    if sum(joint.freedoms for joint in joints) > constants.MOST_FITTED_RATES or _planar(joints):
         return joints
     system = loops.system
     values = np.linalg.svd(system.close(np.zeros((1, system.coordinates))).jacobian[0], compute_uv=False)
-    rank = int(np.count_nonzero(values > FITTED_RANK * max(values.max(initial=0.0), 1e-300)))
+    rank = int(np.count_nonzero(values > constants.FITTED_RANK * max(values.max(initial=0.0), 1e-300)))
     freedoms = system.coordinates - rank
-    if rank == 6 * len(system.loops) or not 0 < freedoms <= MOST_FITTED_FREEDOMS:
+    if rank == 6 * len(system.loops) or not 0 < freedoms <= constants.MOST_FITTED_FREEDOMS:
         return joints
-    if _glance(system, rank) < GLANCE * CLOSED_GAP:
+    if _glance(system, rank) < constants.GLANCE * constants.CLOSED_GAP:
         return joints
     before = walk = _walk(system, rank)
-    if before.gap < CLOSED_GAP:
+    if before.gap < constants.CLOSED_GAP:
         return joints
     twists = np.zeros((len(joints), 6))
     moved = loops
-    for _ in range(FITTING_ROUNDS):
+    for _ in range(constants.FITTING_ROUNDS):
         step = _moves(moved, walk.q, rank)
         twists = twists + step
         moved = replace(moved, joints=[_displace(j, twist) for j, twist in zip(moved.joints, step, strict=True)])
         walk = _walk(moved.system, rank)
-        if walk.gap < CLOSED_GAP:
+        if walk.gap < constants.CLOSED_GAP:
             break
-    if walk.gap > max(IMPROVED * before.gap, CLOSED_GAP):
+    if walk.gap > max(constants.IMPROVED * before.gap, constants.CLOSED_GAP):
         return joints
     for joint, twist, (angle, place) in zip(joints, twists, loops.sigma, strict=True):
         at = np.zeros(3) if joint.point is None else joint.point
         turn, shift = np.linalg.norm(twist[:3]), np.linalg.norm(twist[3:] + cross(twist[:3], at))
-        if turn > SIGMAS * angle or shift > SIGMAS * place:
+        if turn > constants.SIGMAS * angle or shift > constants.SIGMAS * place:
             return joints
     return moved.joints
 
@@ -140,13 +119,13 @@ def _planar(joints: Sequence[Joint]) -> bool:
         return False
     crossed = np.linalg.norm(cross(np.array(turns), turns[0]), axis=1).max()
     tilted = [min(abs(float(s @ turns[0])), float(np.linalg.norm(cross(s, turns[0])))) for s in slides]
-    return bool(max([float(crossed), *tilted]) < EXACTLY_PARALLEL)
+    return bool(max([float(crossed), *tilted]) < constants.EXACTLY_PARALLEL)
 
 
 def _frame(joints: Sequence[Joint], size: float) -> Frame:
     points = np.array([joint.point for joint in joints if joint.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), size)
-    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
+    return Frame(frame.centre, max(frame.length, constants.LEAST_FRAME * size))
 
 
 def _glance(system: LoopSystem, rank: int) -> float:
@@ -154,7 +133,7 @@ def _glance(system: LoopSystem, rank: int) -> float:
     start = np.zeros(system.coordinates)
     _, _, right = np.linalg.svd(system.close(start[None]).jacobian[0])
     ahead = right[rank:].sum(axis=0)
-    q, sound = _close_pose(system, rank, start + STRIDE * ahead / np.abs(ahead).max())[:2]
+    q, sound = _close_pose(system, rank, start + constants.STRIDE * ahead / np.abs(ahead).max())[:2]
     return float(np.abs(system.close(q[None]).residual).max()) if sound else np.inf
 
 
@@ -162,14 +141,18 @@ def _close_pose(system: LoopSystem, rank: int, q: Array) -> tuple[Array, bool, A
     """The pose near q (n,) that closes the loops as well as its rank allows, whether it is far from singular ones, and
     its freedoms (k, n)."""
     change, values, right = np.ones(1), np.ones(1), np.eye(len(q))
-    for _ in range(FITTING_ROUNDS):
+    for _ in range(constants.FITTING_ROUNDS):
         closed = system.close(q[None])
         left, values, right = np.linalg.svd(closed.jacobian[0])
         change = -(left[:, :rank].T @ closed.residual[0] / values[:rank]) @ right[:rank]
         q = q + change
-        if np.abs(change).max() < POSE_CLOSED:
+        if np.abs(change).max() < constants.POSE_CLOSED:
             break
-    return q, bool(values[rank - 1] >= SOUND_POSE * values[0] and np.abs(change).max() <= POSE_LOST), right[rank:]
+    return (
+        q,
+        bool(values[rank - 1] >= constants.SOUND_POSE * values[0] and np.abs(change).max() <= constants.POSE_LOST),
+        right[rank:],
+    )
 
 
 def _walk(system: LoopSystem, rank: int) -> _Walk:
@@ -181,12 +164,12 @@ def _walk(system: LoopSystem, rank: int) -> _Walk:
     poses, gap = [], 0.0
     for way in (sign * way for way in ways for sign in (1.0, -1.0)):
         q, ahead = start, way
-        for _ in range(STRIDES):
-            q, sound, null = _close_pose(system, rank, q + STRIDE * ahead / np.abs(ahead).max())
+        for _ in range(constants.STRIDES):
+            q, sound, null = _close_pose(system, rank, q + constants.STRIDE * ahead / np.abs(ahead).max())
             if not sound:
                 break
             ahead = null.T @ (null @ ahead)
-            if np.abs(ahead).max() < WAY_LOST:
+            if np.abs(ahead).max() < constants.WAY_LOST:
                 break
             poses.append(q)
             gap = max(gap, float(np.abs(system.close(q[None]).residual).max()))
@@ -224,7 +207,7 @@ def _moves(loops: _Loops, q: Array, rank: int) -> Array:
         rows.append(beyond @ effect[k].reshape(6 * cycles, -1))
         gaps.append(beyond @ closed.residual[k])
     matrix, missing = np.concatenate(rows), np.concatenate(gaps)
-    answer = np.linalg.lstsq(matrix, -missing, rcond=RCOND)[0].reshape(-1, 6)
+    answer = np.linalg.lstsq(matrix, -missing, rcond=constants.RCOND)[0].reshape(-1, 6)
     local: Array = np.einsum("jkl,jl->jk", weigh, answer)
     out = local.copy()
     # from the block's units about its centre to metres about the world's origin

@@ -21,9 +21,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Misfit
 
-__all__ = ["snap_axes", "uncertainties"]
-
-
 LINES = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line, not only a direction."""
 CARRIERS = ("cylinder", "cone", "sphere")

@@ -18,8 +18,6 @@ from kinform.model.kinematics import Body, Joint
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["Pairs", "decide_all", "evidence_between"]
-
 
 class Pairs:
     """Decides pairs of bodies by the patches between them."""

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from kinform.model.assembly import Assembly
 from kinform.model.names import PartName
 
-__all__ = ["Extents"]
-
 
 class Extents:
     """Boxes of the meshed parts of an assembly, in the world (m)."""

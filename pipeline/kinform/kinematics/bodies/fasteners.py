@@ -15,8 +15,6 @@ from kinform.model.contacts import Contacts, Suggestion
 from kinform.model.kinematics import Body, Joint
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["INFERRED", "fasten", "label_inferred", "turn_about_suggested_axes"]
-
 INFERRED = "inferred: "
 """How the reason begins for which a suggestion made parts one body."""
 

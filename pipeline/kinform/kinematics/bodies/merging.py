@@ -9,8 +9,6 @@ from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Body
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["Merger"]
-
 
 class Merger:
     """Parts of an assembly, merged step by step; remembers why."""

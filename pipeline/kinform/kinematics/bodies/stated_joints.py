@@ -11,8 +11,6 @@ from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["Pair", "intended_joints", "pair_between", "stated_joints", "stated_roots"]
-
 Pair = tuple[BodyName, BodyName]
 """Two bodies, sorted by name."""
 

@@ -15,25 +15,8 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.cycles import Cycle, short_cycles
-from kinform.kinematics.constants import (
-    AXES_RANK,
-    CLOSED,
-    FACTOR_ROUNDING,
-    FAR_AXIS,
-    FEW_RATES,
-    LEAST_FRAME,
-    LOOSEST_CLOSED,
-    MOST_RATES,
-    PIVOT_SHARE,
-    RATE_ROUNDING,
-    SIGMAS,
-    SUM_ROUNDING,
-    SURE_DROPPED,
-    SURE_KEPT,
-)
+from kinform.kinematics import constants
 from kinform.model.arrays import Array, Ints
-
-__all__ = ["Block", "Solution", "axes_frame", "close_block", "loop_matrix"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +46,7 @@ class Block:
 
 def close_block(
     edges: Sequence[tuple[int, int]], spaces: Sequence[Array], block: Sequence[int], prefer: Array, size: float,
-    few: int = FEW_RATES, doubts: Array | None = None,
+    few: int = constants.FEW_RATES, doubts: Array | None = None,
 ) -> Block:  # fmt: skip
     """Closure of the joints `block` (indices into `edges` and `spaces`).
 
@@ -85,11 +68,14 @@ def close_block(
     solutions, sure = None, True
     if count > few:
         solutions, sure = _eliminate(members, cycles, norms, prefer, size)
-    if solutions is None or (not sure and count <= MOST_RATES):
-        closed = CLOSED
+    if solutions is None or (not sure and count <= constants.MOST_RATES):
+        closed = constants.CLOSED
         if doubts is not None:
             blur = doubts[list(block)]
-            closed = max(CLOSED, min(LOOSEST_CLOSED, SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())))
+            closed = max(
+                constants.CLOSED,
+                min(constants.LOOSEST_CLOSED, constants.SIGMAS * float((blur[:, 0] + blur[:, 1] / frame.length).max())),
+            )
         solutions, sure = _decompose(loop_matrix(members, cycles, frame, norms), prefer, closed), True
     return Block(tuple(block), tuple(cycles), frame, _in_joint_units(solutions, norms), sure)
 
@@ -118,14 +104,14 @@ def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
     start = feet.mean(axis=0)
     missing = np.einsum("nij,nj->i", across, feet - start)
-    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=AXES_RANK)[0]
+    centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=constants.AXES_RANK)[0]
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
-    return Frame(frame.centre, max(frame.length, LEAST_FRAME * size))
+    return Frame(frame.centre, max(frame.length, constants.LEAST_FRAME * size))
 
 
 def _turns(twist: Array, size: float) -> bool:
     """Whether a twist turns, beyond the rounding of a slide."""
-    return float(np.linalg.norm(twist[:3])) * size > FAR_AXIS * float(np.linalg.norm(twist[3:]))
+    return float(np.linalg.norm(twist[:3])) * size > constants.FAR_AXIS * float(np.linalg.norm(twist[3:]))
 
 
 def _feet(turns: Array, centre: Array) -> Array:
@@ -147,7 +133,7 @@ def _decompose(matrix: Array, prefer: Array, closed: float) -> list[Solution]:
     reduced[:, drivers] = np.eye(len(drivers))
     out = []
     for driver, row in sorted(zip(drivers, reduced, strict=True), key=lambda pair: pair[0]):
-        columns = np.flatnonzero(np.abs(row) > RATE_ROUNDING * np.abs(row).max())
+        columns = np.flatnonzero(np.abs(row) > constants.RATE_ROUNDING * np.abs(row).max())
         out.append(Solution(driver, columns, row[columns]))
     return out
 
@@ -219,10 +205,10 @@ def _pivots(matrix: Array, prefer: Array) -> tuple[list[int], bool]:
         norms = np.linalg.norm(rest, axis=0)
         norms[pivots] = 0.0
         largest = float(norms.max())
-        clear &= largest < SURE_DROPPED or largest > SURE_KEPT
-        if largest < CLOSED:
+        clear &= largest < constants.SURE_DROPPED or largest > constants.SURE_KEPT
+        if largest < constants.CLOSED:
             break
-        good = np.flatnonzero(norms >= PIVOT_SHARE * largest)
+        good = np.flatnonzero(norms >= constants.PIVOT_SHARE * largest)
         best = int(good[np.argmax(prefer[good])])
         pivots.append(best)
         unit = rest[:, best] / norms[best]
@@ -238,14 +224,14 @@ def _substitute(
     others = [n for n in range(len(columns)) if n not in set(pivots)]
     factors = -np.linalg.lstsq(matrix[:, pivots], matrix[:, others], rcond=None)[0]
     for pivot, row in zip((int(columns[p]) for p in pivots), factors, strict=True):
-        keep = np.flatnonzero(np.abs(row) > FACTOR_ROUNDING)
+        keep = np.flatnonzero(np.abs(row) > constants.FACTOR_ROUNDING)
         by = [(int(columns[others[n]]), float(row[n])) for n in keep]
         for user in users[pivot]:
             factors_of = depends[user]
             share = factors_of.pop(pivot)
             for free, factor in by:
                 total = factors_of.get(free, 0.0) + share * factor
-                if abs(total) > SUM_ROUNDING:
+                if abs(total) > constants.SUM_ROUNDING:
                     factors_of[free] = total
                     users[free].add(user)
                 else:
@@ -263,7 +249,7 @@ def _solutions(depends: list[dict[int, float]]) -> list[Solution]:
     out = []
     for driver in sorted(rows):
         largest = max(abs(f) for _, f in rows[driver])
-        kept = [(c, f) for c, f in rows[driver] if abs(f) > RATE_ROUNDING * largest]
+        kept = [(c, f) for c, f in rows[driver] if abs(f) > constants.RATE_ROUNDING * largest]
         out.append(Solution(driver, np.array([c for c, _ in kept]), np.array([f for _, f in kept])))
     return out
 

@@ -20,8 +20,6 @@ from kinform.model.arrays import Array
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-__all__ = ["Closure", "body_twists", "close"]
-
 
 @dataclass(frozen=True, eq=False)
 class Closure:

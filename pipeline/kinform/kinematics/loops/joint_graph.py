@@ -10,8 +10,6 @@ from kinform.kinematics.loops.closure import Closure, close
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint
 
-__all__ = ["JointGraph"]
-
 
 @dataclass(frozen=True, eq=False)
 class JointGraph:

@@ -23,8 +23,6 @@ from kinform.foundation.graphs.graph import forest
 from kinform.kinematics.constants import FAR_AXIS
 from kinform.model.arrays import Array, Flags
 
-__all__ = ["Closed", "LoopSystem", "loop_system"]
-
 Index = NDArray[np.intp]
 
 

@@ -11,20 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.kinematics.constants import (
-    BALANCED,
-    CLOSED,
-    COMPLEMENT,
-    MOST_PASSING,
-    MOST_TESTED_FREEDOMS,
-    RCOND,
-    SAME_LINE,
-    SLOW_ITERATIONS,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.model.arrays import Array
-
-__all__ = ["Pose", "complement", "first_order", "independent", "second_order", "units"]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +30,7 @@ class Pose:
     system: LoopSystem
 
     @staticmethod
-    def at(system: LoopSystem, q: Array, tolerance: float = CLOSED) -> Pose:
+    def at(system: LoopSystem, q: Array, tolerance: float = constants.CLOSED) -> Pose:
         """The pose at the closed configuration q (n,); relative `tolerance` of its rank."""
         closed = system.close(q[None])
         rows, columns = closed.jacobian[0].shape
@@ -74,35 +63,37 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
     """
     count = pose.freedoms
     none = np.zeros((0, pose.free.shape[1]))
-    if count > MOST_TESTED_FREEDOMS:
+    if count > constants.MOST_TESTED_FREEDOMS:
         bends = np.linalg.norm(pose.obstruction(units(rng.normal(size=(6, count))) @ pose.free), axis=1)
-        return ("extends" if bends.max() < BALANCED else "", none)
+        return ("extends" if bends.max() < constants.BALANCED else "", none)
     i, j = np.triu_indices(count)
     bent = pose.obstruction(np.concatenate([pose.free[i] + pose.free[j], pose.free[i] - pose.free[j]]))
     flat = 0.25 * (bent[: len(i)] - bent[len(i) :])
     # fewer forms with the same zeros
     _, values, right = np.linalg.svd(flat.T, full_matrices=False)
-    flat = (values[:, None] * right)[values > BALANCED]
+    flat = (values[:, None] * right)[values > constants.BALANCED]
     if not len(flat):
         return "extends", none
     forms = np.zeros((len(flat), count, count))
     forms[:, i, j] = forms[:, j, i] = flat
     if len(forms) == 1:
         values = np.linalg.eigvalsh(forms[0])
-        if values[0] > BALANCED or values[-1] < -BALANCED:
+        if values[0] > constants.BALANCED or values[-1] < -constants.BALANCED:
             return "obstructed", none
     u = units(rng.normal(size=(8 + 4 * count, count)))
-    for _ in range(SLOW_ITERATIONS):
+    for _ in range(constants.SLOW_ITERATIONS):
         value = np.einsum("pij,di,dj->dp", forms, u, u)
         slope = 2.0 * np.einsum("pij,dj->dpi", forms, u)
-        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=RCOND), value))
+        u = units(u - np.einsum("dip,dp->di", np.linalg.pinv(slope, rcond=constants.RCOND), value))
     left = np.linalg.norm(np.einsum("pij,di,dj->dp", forms, u, u), axis=1)
-    passing = u[left < BALANCED]
+    passing = u[left < constants.BALANCED]
     if not len(passing):
         return "obstructed", none
     distinct: list[Array] = []
     for direction in passing:
-        if len(distinct) < MOST_PASSING and all(abs(float(direction @ other)) < SAME_LINE for other in distinct):
+        if len(distinct) < constants.MOST_PASSING and all(
+            abs(float(direction @ other)) < constants.SAME_LINE for other in distinct
+        ):
             distinct.append(direction)
     return "partly", np.array(distinct) @ pose.free
 
@@ -110,7 +101,7 @@ def second_order(pose: Pose, rng: np.random.Generator) -> tuple[str, Array]:
 def independent(twists: Array) -> Array:
     """Orthonormal basis (r, m) of what the rows (n, m) span."""
     _, values, right = np.linalg.svd(twists, full_matrices=False)
-    return right[: int(np.count_nonzero(values > CLOSED * values.max(initial=0.0)))]
+    return right[: int(np.count_nonzero(values > constants.CLOSED * values.max(initial=0.0)))]
 
 
 def complement(space: Array, part: Array) -> Array:
@@ -118,7 +109,7 @@ def complement(space: Array, part: Array) -> Array:
     if not len(part):
         return space
     _, values, right = np.linalg.svd(part @ space.T)
-    return right[int(np.count_nonzero(values > COMPLEMENT)) :] @ space
+    return right[int(np.count_nonzero(values > constants.COMPLEMENT)) :] @ space
 
 
 def units(vectors: Array) -> Array:

@@ -24,9 +24,6 @@ from kinform.model.assembly import Assembly, Mesh
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, Coupling, Joint, Meshing
 
-__all__ = ["convex_turns", "couplings_between"]
-
-
 SINGLE = ("revolute", "prismatic", "screw")
 """Joints of one freedom, whose values a ratio compares."""
 

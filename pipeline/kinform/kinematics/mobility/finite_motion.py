@@ -23,9 +23,6 @@ from kinform.kinematics.mobility.local_motions import LocalMotions, local_motion
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
 
-__all__ = ["Finite", "finite_mobility"]
-
-
 PLACED = ("revolute", "screw", "cylindrical", "spherical", "universal")
 """Joints whose point says where the mechanism is."""
 

@@ -15,8 +15,6 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.kinematics import Joint
 from kinform.model.surfaces import MeshSurfaces
 
-__all__ = ["guide", "joint_twist", "preserved"]
-
 
 def joint_twist(joint: Joint) -> Array:
     """(6,) twist of a joint's value: |ω| 1 for turns, |v| 1 for slides, in the sense of its axis."""

@@ -15,15 +15,8 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
 from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
-from kinform.kinematics.constants import (
-    IDLE_AXIS,
-    IDLE_LEAST_SECTOR,
-    IDLE_PLACE,
-    IDLE_SECTORS,
-    INTENDED_AXIS,
-    INTENDED_PLACE,
-)
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.certainty import TOUCHING
 from kinform.kinematics.pair.evidence import COAXIAL
@@ -34,8 +27,6 @@ from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 from kinform.model.surfaces import MeshSurfaces
-
-__all__ = ["idle_turns", "touching_balls"]
 
 
 def touching_balls(
@@ -129,7 +120,7 @@ def _idle_turns(held: _Held) -> Array:
     for axis, point in _candidates(patches, held.size):
         twist = rotation(axis, point, frame)
         if (
-            all(float(np.linalg.norm(twist - free @ (free.T @ twist))) < IDLE_AXIS for free in spaces)
+            all(float(np.linalg.norm(twist - free @ (free.T @ twist))) < constants.IDLE_AXIS for free in spaces)
             and all(_invariant(patch, axis, point, held.size) for patch in patches)
             and not any(_names(wanted, axis, point, leaf, held.size) for wanted in held.intended)
         ):
@@ -155,7 +146,7 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
     for k, a in enumerate(centres):
         for b in centres[:k]:
             far = float(np.linalg.norm(b - a))
-            if far > IDLE_PLACE * size:
+            if far > constants.IDLE_PLACE * size:
                 lines.append(((b - a) / far, a))
     if centres and not lines:
         lines = [(e, centres[0]) for e in np.eye(3)]
@@ -165,16 +156,19 @@ def _candidates(patches: Sequence[Patch], size: float) -> list[tuple[Array, Arra
 def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
     """Does the patch, as bounded as it is, turn onto itself?"""
     if patch.kind == "sphere" or patch.kind in COAXIAL:
-        parallel = patch.kind == "sphere" or float(np.linalg.norm(cross(patch.axis, axis))) < IDLE_AXIS
+        parallel = patch.kind == "sphere" or float(np.linalg.norm(cross(patch.axis, axis))) < constants.IDLE_AXIS
         away = float(np.linalg.norm(cross(patch.point - point, axis)))
-        return parallel and away <= abs(patch.gap) + IDLE_PLACE * size
-    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > IDLE_AXIS:
+        return parallel and away <= abs(patch.gap) + constants.IDLE_PLACE * size
+    if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > constants.IDLE_AXIS:
         return False
     u, v = perpendicular(axis)
     arm = patch.points - point
-    sector = np.floor(np.arctan2(arm @ v, arm @ u) / (2.0 * np.pi) * IDLE_SECTORS).astype(int) % IDLE_SECTORS
-    area = np.bincount(sector, weights=patch.weights, minlength=IDLE_SECTORS)
-    return bool(area.min() > IDLE_LEAST_SECTOR * area.mean())
+    sector = (
+        np.floor(np.arctan2(arm @ v, arm @ u) / (2.0 * np.pi) * constants.IDLE_SECTORS).astype(int)
+        % constants.IDLE_SECTORS
+    )
+    area = np.bincount(sector, weights=patch.weights, minlength=constants.IDLE_SECTORS)
+    return bool(area.min() > constants.IDLE_LEAST_SECTOR * area.mean())
 
 
 def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: float) -> bool:
@@ -186,5 +180,5 @@ def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: f
         return True
     if wanted.type not in ("revolute", "cylindrical", "screw") or wanted.axis is None or wanted.point is None:
         return False
-    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < INTENDED_AXIS
-    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < INTENDED_PLACE * size
+    parallel = float(np.linalg.norm(cross(wanted.axis, axis))) < constants.INTENDED_AXIS
+    return parallel and float(np.linalg.norm(cross(wanted.point - point, axis))) < constants.INTENDED_PLACE * size

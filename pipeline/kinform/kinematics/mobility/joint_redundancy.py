@@ -21,8 +21,6 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint, Redundancy
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["redundancy", "redundancy_within", "sites"]
-
 
 def redundancy(
     kind: str, text: str, rows: int, joints: Sequence[Joint], locked: Sequence[Locked], frame: Frame

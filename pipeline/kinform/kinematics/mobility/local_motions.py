@@ -19,39 +19,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import bracket
-from kinform.kinematics.constants import (
-    BRANCH_MIXES,
-    BRANCH_STEP,
-    CLOSED,
-    CLOSURE_ROUNDING,
-    CONE_SHARE,
-    FAST_CHANGE,
-    FAST_ITERATIONS,
-    FINEST_VALUE,
-    HIGHER_ORDER,
-    LONGEST_CHANGE,
-    MANY_MIXES,
-    MIXES,
-    MOST_BRANCHES,
-    MOST_STEP_WORK,
-    SAME_BRANCH,
-    SEED,
-    SLOW_CHANGE,
-    SLOW_ITERATIONS,
-    STEP_ASIDE,
-    STEP_ASTRAY,
-    STEP_KEPT,
-    STEP_LOST,
-    STEP_SIZES,
-    STEPPED_RANK,
-    STEPPED_RANK_EXACT,
-    UNBALANCED,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
 from kinform.kinematics.mobility.closed_pose import Pose, complement, independent, second_order, units
 from kinform.model.arrays import Array
-
-__all__ = ["LocalMotions", "local_motions"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +57,12 @@ def local_motions(system: LoopSystem) -> LocalMotions:
     count, none = pose.freedoms, np.zeros((0, system.coordinates))
     if count == 0:
         return LocalMotions(0, 0, none, stepped=0)
-    rng = np.random.default_rng(SEED)
-    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else MIXES, count))) @ pose.free
+    rng = np.random.default_rng(constants.SEED)
+    mixes = units(rng.normal(size=(1 if _submersion(system, pose) else constants.MIXES, count))) @ pose.free
     bends = np.linalg.norm(pose.obstruction(mixes), axis=1)
-    for step in STEP_SIZES:
-        closed = _regular(pose, mixes, step, STEP_SIZES[0])
-        if closed is not None and bends.max() > UNBALANCED:
+    for step in constants.STEP_SIZES:
+        closed = _regular(pose, mixes, step, constants.STEP_SIZES[0])
+        if closed is not None and bends.max() > constants.UNBALANCED:
             why = "steps close, but the second-order test finds an obstruction"
             return LocalMotions(count, None, none, (count,), step, *closed, count, "obstructed", why)
         if closed is not None:
@@ -121,17 +92,21 @@ def _regular(pose: Pose, mixes: Array, stride: float, step: float) -> tuple[floa
         ahead = q + stride * mixes
         q, residual, jacobian = _solve(pose.system, ahead, stride, pose.rank)
         kept = min(kept, 1.0 - float(np.abs(((ahead - q) * mixes).sum(axis=1)).max()) / stride)
-        if residual.max() > CLOSED * step or kept < STEP_KEPT:
+        if residual.max() > constants.CLOSED * step or kept < constants.STEP_KEPT:
             return None
     worst = float(residual.max())
-    if worst > CLOSURE_ROUNDING:
+    if worst > constants.CLOSURE_ROUNDING:
         # misfit of the axes grows with the step, an obstruction of third or higher order with its powers
         _, half, _ = _solve(pose.system, pose.q + 0.5 * stride * mixes, stride, pose.rank)
-        if float(half.max()) < HIGHER_ORDER * worst * stride / step:
+        if float(half.max()) < constants.HIGHER_ORDER * worst * stride / step:
             return None
     values = np.linalg.svd(jacobian, compute_uv=False)
     beyond = values[:, pose.rank :].max(initial=0.0) / max(values.max(), 1e-300)
-    return (kept, worst) if beyond < (STEPPED_RANK if worst > CLOSURE_ROUNDING else STEPPED_RANK_EXACT) else None
+    return (
+        (kept, worst)
+        if beyond < (constants.STEPPED_RANK if worst > constants.CLOSURE_ROUNDING else constants.STEPPED_RANK_EXACT)
+        else None
+    )
 
 
 def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = None) -> tuple[Array, Array, Array]:
@@ -143,18 +118,18 @@ def _solve(system: LoopSystem, start: Array, step: float, rank: int | None = Non
     """
     q = start.copy()
     active = np.arange(len(q))
-    for _ in range(SLOW_ITERATIONS if rank is None else FAST_ITERATIONS):
+    for _ in range(constants.SLOW_ITERATIONS if rank is None else constants.FAST_ITERATIONS):
         closed = system.close(q[active])
         left, values, right = np.linalg.svd(closed.jacobian, full_matrices=False)
-        used = values > FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
+        used = values > constants.FINEST_VALUE * values.max(axis=1, initial=1e-300, keepdims=True)
         if rank is not None:
             used[:, rank:] = False
         parts = np.einsum("dri,dr->di", left, closed.residual)
         change = -np.einsum("di,din->dn", np.where(used, parts / np.where(used, values, 1.0), 0.0), right)
         size = np.linalg.norm(change, axis=1)
-        change *= np.minimum(1.0, LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
+        change *= np.minimum(1.0, constants.LONGEST_CHANGE * step / np.maximum(size, 1e-300))[:, None]
         q[active] += change
-        active = active[size > (SLOW_CHANGE if rank is None else FAST_CHANGE)]
+        active = active[size > (constants.SLOW_CHANGE if rank is None else constants.FAST_CHANGE)]
         if not len(active):
             break
     closed = system.close(q)
@@ -181,10 +156,10 @@ def _spread(pose: Pose, directions: Array, step: float) -> _Spread:
     q, residual, _ = _solve(pose.system, start, step)
     moved = (q - pose.q) @ pose.free.T / step
     kept = np.linalg.norm(moved, axis=1)
-    closed = residual < CLOSED * step
-    stays = closed & (kept > STEP_LOST) & (np.linalg.norm(q - start, axis=1) < STEP_ASTRAY * step)
+    closed = residual < constants.CLOSED * step
+    stays = closed & (kept > constants.STEP_LOST) & (np.linalg.norm(q - start, axis=1) < constants.STEP_ASTRAY * step)
     _, values, right = np.linalg.svd(moved[stays], full_matrices=False)
-    cone = right[: int(np.count_nonzero(values > CONE_SHARE * values.max(initial=0.0)))] @ pose.free
+    cone = right[: int(np.count_nonzero(values > constants.CONE_SHARE * values.max(initial=0.0)))] @ pose.free
     return _Spread(
         q[stays],
         cone,
@@ -198,24 +173,33 @@ def _smooth(pose: Pose, cone: Array, step: float, rng: np.random.Generator) -> b
     """Is every step within the cone kept, so that the cone is the tangent space of one smooth branch?"""
     if not len(cone):
         return True
-    mixes = units(rng.normal(size=(MIXES, len(cone)))) @ cone
+    mixes = units(rng.normal(size=(constants.MIXES, len(cone)))) @ cone
     q, residual, _ = _solve(pose.system, pose.q + step * mixes, step)
     kept = ((q - pose.q) * mixes).sum(axis=1) / step
     aside = np.linalg.norm((q - pose.q) @ pose.free.T / step - kept[:, None] * (mixes @ pose.free.T), axis=1)
-    return bool(residual.max() < CLOSED * step and kept.min() > STEP_KEPT and aside.max() < STEP_ASIDE)
+    return bool(
+        residual.max() < constants.CLOSED * step
+        and kept.min() > constants.STEP_KEPT
+        and aside.max() < constants.STEP_ASIDE
+    )
 
 
 def _singular(pose: Pose, rng: np.random.Generator) -> LocalMotions:
     """Motions at a pose that is not regular: steps of two sizes have to agree with each other, and with the second
     order. What they found is told with the reason where they do not."""
     order, along = second_order(pose, rng)
-    directions = np.concatenate([along, pose.free, units(rng.normal(size=(MANY_MIXES, pose.freedoms))) @ pose.free])
+    directions = np.concatenate(
+        [along, pose.free, units(rng.normal(size=(constants.MANY_MIXES, pose.freedoms))) @ pose.free]
+    )
     none = np.zeros((0, pose.system.coordinates))
     rows, columns = 6 * len(pose.system.loops), pose.system.coordinates
-    if 2.0 * len(directions) * SLOW_ITERATIONS * rows * columns * min(rows, columns) > MOST_STEP_WORK:
+    if (
+        2.0 * len(directions) * constants.SLOW_ITERATIONS * rows * columns * min(rows, columns)
+        > constants.MOST_STEP_WORK
+    ):
         why = "the pose is singular, and the block too large for the steps that would tell its branches"
         return LocalMotions(pose.freedoms, None, none, order=order, reason=why)
-    wide, narrow = STEP_SIZES[:2]
+    wide, narrow = constants.STEP_SIZES[:2]
     first, second = (_explore(pose, directions, step, rng) for step in (wide, narrow))
     reason = ""
     if second.dimension is None:
@@ -244,17 +228,17 @@ def _explore(pose: Pose, directions: Array, step: float, rng: np.random.Generato
     doubt = "the loops did not close after a step" if spread.undecided else ""
     if _smooth(pose, spread.cone, step, rng):
         count = len(spread.cone)
-        stepped = [Pose.at(pose.system, q, STEPPED_RANK).freedoms for q in spread.ends[:1]]
+        stepped = [Pose.at(pose.system, q, constants.STEPPED_RANK).freedoms for q in spread.ends[:1]]
         measured = step, spread.kept, spread.residual, max(stepped, default=None)
         return LocalMotions(pose.freedoms, count, lost, (count,) if count else (), *measured, reason=doubt)
     poses: list[Pose] = []
     dimensions: list[int | None] = []
     for end in spread.ends:
-        there = Pose.at(pose.system, end, STEPPED_RANK)
-        fresh = len(poses) < MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
+        there = Pose.at(pose.system, end, constants.STEPPED_RANK)
+        fresh = len(poses) < constants.MOST_BRANCHES or all(there.freedoms != other.freedoms for other in poses)
         if fresh and not any(_same(there, other) for other in poses):
             poses.append(there)
-            dimensions.append(_dimension(there, BRANCH_STEP * float(np.linalg.norm(end - pose.q)), rng))
+            dimensions.append(_dimension(there, constants.BRANCH_STEP * float(np.linalg.norm(end - pose.q)), rng))
     decided = [] if None in dimensions else [d for d in dimensions if d is not None]
     if not decided:
         doubt = "a branch is singular itself"
@@ -270,7 +254,7 @@ def _dimension(pose: Pose, step: float, rng: np.random.Generator) -> int | None:
     count = pose.freedoms
     if count == 0:
         return 0
-    mixes = units(rng.normal(size=(BRANCH_MIXES, count))) @ pose.free
+    mixes = units(rng.normal(size=(constants.BRANCH_MIXES, count))) @ pose.free
     if _regular(pose, mixes, step, step) is not None:
         return count
     more = units(rng.normal(size=(count + 3, count))) @ pose.free
@@ -285,4 +269,4 @@ def _same(a: Pose, b: Pose) -> bool:
     if a.freedoms == 0:
         return True
     cosines = np.linalg.svd(a.free @ b.free.T, compute_uv=False)
-    return bool(cosines.min() > SAME_BRANCH)
+    return bool(cosines.min() > constants.SAME_BRANCH)

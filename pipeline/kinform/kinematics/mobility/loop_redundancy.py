@@ -23,8 +23,6 @@ from kinform.kinematics.wording import Locked, axis_word, locked_text, locked_wr
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Redundancy
 
-__all__ = ["redundancies_of_loops"]
-
 
 def redundancies_of_loops(joints: Sequence[Joint], closure: Closure, size: float) -> tuple[Redundancy, ...]:
     """What is held more than once in the loops of the joints, block by block of their `closure`; `size` of the assembly

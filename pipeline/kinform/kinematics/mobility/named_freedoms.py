@@ -22,8 +22,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics
 from kinform.model.names import BodyName, JointName
 
-__all__ = ["Motions", "named_freedoms"]
-
 
 def named_freedoms(
     graph: JointGraph, closure: Closure, idle: Mapping[BodyName, Array], places: Sequence[Array]

@@ -19,8 +19,6 @@ from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Joint, Mobility
 from kinform.model.names import BodyName
 
-__all__ = ["coupled_mobility", "coupling_rows", "restrict_closure"]
-
 
 def coupling_rows(
     function: Function, joints: Sequence[Joint], body_of: Mapping[str, BodyName], offset: Sequence[int]

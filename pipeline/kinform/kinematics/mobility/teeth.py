@@ -20,8 +20,6 @@ from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Meshing
 
-__all__ = ["Side", "meshing"]
-
 
 @dataclass(frozen=True, eq=False)
 class Side:

@@ -15,33 +15,13 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.words import counted
-from kinform.kinematics.constants import (
-    ACROSS_LINE,
-    ALONG_AXIS,
-    FILLED_SECTOR,
-    MISSED_AXES,
-    ON_RADIUS,
-    PASSING_GAP,
-    STRAY_AREA,
-    STRAY_AREA_APART,
-    THREAD_AXES,
-    THREAD_FIT,
-    THREAD_LEAN,
-    THREAD_SECTORS,
-    THREAD_SLOPE,
-    TILTED_AXES,
-    WIDE_CONTACT,
-    WIDE_GAP,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
 from kinform.kinematics.pair.lower_pairs import name_space
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
-
-__all__ = ["TOUCHING", "certainty", "meets", "momentary"]
-
 
 TOUCHING = ("point", "line")
 """Kinds of higher pairs: alone they are no joint, and leave what they leave at this instant."""
@@ -75,7 +55,11 @@ def meets(patches: Sequence[Patch]) -> bool:
     lines = [patch.axis for patch in patches if patch.kind == "line"]
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
-        or (patch.kind == "plane" and lines and all(np.linalg.norm(cross(patch.axis, d)) < ACROSS_LINE for d in lines))
+        or (
+            patch.kind == "plane"
+            and lines
+            and all(np.linalg.norm(cross(patch.axis, d)) < constants.ACROSS_LINE for d in lines)
+        )
         for patch in patches
     )
 
@@ -96,7 +80,9 @@ def momentary(evidence: Evidence, basis: Array) -> bool:
             arm = arm - np.outer(arm @ form.axis, form.axis)
         away = np.linalg.norm(arm, axis=1)
         if all(
-            (np.abs(away - radius) > ON_RADIUS * max(radius, ON_RADIUS * evidence.frame.length)).any()
+            (
+                np.abs(away - radius) > constants.ON_RADIUS * max(radius, constants.ON_RADIUS * evidence.frame.length)
+            ).any()
             for radius in item.patch.radii
         ):
             return True
@@ -129,8 +115,8 @@ def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: 
     wide = np.repeat(curved, np.diff(evidence.start))
     widened = replace(
         evidence,
-        angle=np.where(wide, np.maximum(evidence.angle, TILTED_AXES * tolerances.alignment), evidence.angle),
-        position=evidence.position + np.where(wide, MISSED_AXES * evidence.contact, 0.0),
+        angle=np.where(wide, np.maximum(evidence.angle, constants.TILTED_AXES * tolerances.alignment), evidence.angle),
+        position=evidence.position + np.where(wide, constants.MISSED_AXES * evidence.contact, 0.0),
     )
     left = _count(widened, twists, np.ones(len(curved), dtype=bool), tolerances)
     if left == 0:
@@ -144,7 +130,7 @@ def _thread_doubt(evidence: Evidence, basis: Array) -> str:
     if form.type == "screw" or basis.shape[1] > 2:
         return ""
     coaxial = sorted((i for i in evidence.items if i.patch.kind in COAXIAL), key=lambda i: (-i.area, i.index))
-    lines = [(item.patch.axis, item.patch.point) for item in coaxial[:THREAD_AXES]]
+    lines = [(item.patch.axis, item.patch.point) for item in coaxial[: constants.THREAD_AXES]]
     if form.axis is not None and form.point is not None:
         lines.append((form.axis, form.point))
     for axis, point in lines:
@@ -174,19 +160,22 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
     radius = float(weights @ np.linalg.norm(radial, axis=1) / weights.sum())
     turning, sliding = np.einsum("ij,ij->i", normals, cross(axis, arm)), normals @ axis
     u, v = perpendicular(axis)
-    sector = np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * THREAD_SECTORS).astype(int) % THREAD_SECTORS
-    share = np.bincount(sector, weights=weights, minlength=THREAD_SECTORS) / weights.sum()
-    filled = np.count_nonzero(share > FILLED_SECTOR) >= THREAD_SECTORS - 1
-    if not filled or weights @ sliding**2 < THREAD_SLOPE * weights.sum():
+    sector = (
+        np.floor(np.arctan2(radial @ v, radial @ u) / (2.0 * np.pi) * constants.THREAD_SECTORS).astype(int)
+        % constants.THREAD_SECTORS
+    )
+    share = np.bincount(sector, weights=weights, minlength=constants.THREAD_SECTORS) / weights.sum()
+    filled = np.count_nonzero(share > constants.FILLED_SECTOR) >= constants.THREAD_SECTORS - 1
+    if not filled or weights @ sliding**2 < constants.THREAD_SLOPE * weights.sum():
         return 0.0
     advance = -float(weights @ (turning * sliding) / (weights @ sliding**2))
     rest = float(weights @ (turning + advance * sliding) ** 2)
-    lean = abs(advance) > THREAD_LEAN * radius and rest < THREAD_FIT * float(weights @ turning**2)
+    lean = abs(advance) > constants.THREAD_LEAN * radius and rest < constants.THREAD_FIT * float(weights @ turning**2)
     return advance if lean else 0.0
 
 
 def _about(item: Item, axis: Array) -> bool:
-    return float(np.linalg.norm(cross(item.patch.axis, axis))) < ALONG_AXIS
+    return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
 
 
 def _stray_doubt(evidence: Evidence) -> str:
@@ -195,10 +184,10 @@ def _stray_doubt(evidence: Evidence) -> str:
     if evidence.size == 0.0 or (normals @ (evidence.share @ normals) <= 0.0).any():
         return ""
     area = sum(item.patch.area for item in evidence.items)
-    least = max(WIDE_GAP * evidence.contact, PASSING_GAP * evidence.size)
+    least = max(constants.WIDE_GAP * evidence.contact, constants.PASSING_GAP * evidence.size)
     apart = all(item.patch.gap > least for item in evidence.items)
-    least_area = STRAY_AREA_APART if apart else STRAY_AREA
-    if area >= least_area * evidence.size**2 or evidence.frame.length > WIDE_CONTACT * evidence.size:
+    least_area = constants.STRAY_AREA_APART if apart else constants.STRAY_AREA
+    if area >= least_area * evidence.size**2 or evidence.frame.length > constants.WIDE_CONTACT * evidence.size:
         return ""
     what = "they pass each other without touching" if apart else "they touch"
     return f"{what} over {1e6 * area:.3g} mm² on one side only: too little to tell a joint from a stray touch"

@@ -12,15 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.constants import (
-    ALONG_AXIS,
-    DEEP_OVERLAP,
-    MOST_LEFT_OUT,
-    MOST_STOPPED,
-    NEW_FREEDOM,
-    OPPOSING_SPEED,
-    PRESS_RATIO,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.pair.certainty import certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
@@ -28,8 +20,6 @@ from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
-
-__all__ = ["Decision", "decide"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +81,12 @@ def _consensus(
         if keep.all() or not keep.any():
             continue
         share = float(area[~keep].sum() / area.sum())
-        small = share <= MOST_LEFT_OUT
-        stopped = share <= MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
+        small = share <= constants.MOST_LEFT_OUT
+        stopped = share <= constants.MOST_STOPPED and _turns_on_journal(evidence, motion, keep)
         if not (small or stopped) or (best is not None and share >= best[0]):
             continue
         beyond = float(np.linalg.norm(motion.twist - strict @ (strict.T @ motion.twist)))
-        if strict.shape[1] and (not (motion.turn and motion.curved) or beyond < NEW_FREEDOM):
+        if strict.shape[1] and (not (motion.turn and motion.curved) or beyond < constants.NEW_FREEDOM):
             continue
         if _frees_thrust(evidence, motion, keep):
             continue
@@ -111,7 +101,7 @@ def _frees_thrust(evidence: Evidence, motion: Motion, keep: Flags) -> bool:
         return False
 
     def along(item: Item) -> bool:
-        return float(np.linalg.norm(cross(item.patch.axis, motion.axis))) < ALONG_AXIS
+        return float(np.linalg.norm(cross(item.patch.axis, motion.axis))) < constants.ALONG_AXIS
 
     shaft = any(item.patch.kind in COAXIAL and along(item) for item in evidence.chosen(keep))
     return shaft and any(item.patch.kind == "plane" and along(item) for item in evidence.chosen(~keep))
@@ -141,10 +131,14 @@ def _excusable(evidence: Evidence, motion: Motion, out: Flags, speed: Array, *, 
         if not curved and item.patch.one_sided and not stops_only:
             continue
         deep = item.interferes and not stops_only
-        if not curved and deep and -item.patch.gap > PRESS_RATIO * press + DEEP_OVERLAP * evidence.contact:
+        if (
+            not curved
+            and deep
+            and -item.patch.gap > constants.PRESS_RATIO * press + constants.DEEP_OVERLAP * evidence.contact
+        ):
             continue
         along = speed[evidence.start[k] : evidence.start[k + 1]]
-        large = OPPOSING_SPEED * float(np.abs(along).max())
+        large = constants.OPPOSING_SPEED * float(np.abs(along).max())
         up, down = bool((along > large).any()), bool((along < -large).any())
         if up and down:
             return False

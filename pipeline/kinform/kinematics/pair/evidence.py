@@ -18,9 +18,6 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["COAXIAL", "GUIDES", "Evidence", "Item", "Member", "gather"]
-
-
 COAXIAL = ("cylinder", "cone", "torus", "revolution", "helicoid")
 """Kinds of patches with an axis that is a line."""
 GUIDES = (*COAXIAL, "sphere", "extrusion")

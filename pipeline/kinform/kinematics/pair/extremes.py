@@ -8,22 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.foundation.algebra.vectors import perpendicular
-from kinform.kinematics.constants import (
-    BALL_DIRECTIONS,
-    CAP,
-    FEW_SAMPLES,
-    HULL_DIRECTIONS,
-    NORMAL_SECTORS,
-    SAME_PLACE,
-    STRAIGHT_EDGE,
-)
+from kinform.kinematics import constants
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
 
-__all__ = ["extreme_samples", "hull"]
-
-
-_TURN = 2.0 * np.pi * np.arange(HULL_DIRECTIONS) / HULL_DIRECTIONS
+_TURN = 2.0 * np.pi * np.arange(constants.HULL_DIRECTIONS) / constants.HULL_DIRECTIONS
 _ROUND = np.stack([np.cos(_TURN), np.sin(_TURN)])
 """(2, 16) directions whose ends are corners of a hull."""
 
@@ -37,16 +26,16 @@ def extreme_samples(patch: Patch) -> Ints:
     points = patch.points
     if patch.kind == "plane":
         return hull(points, patch.axis)
-    if len(points) <= FEW_SAMPLES or not (np.any(patch.axis) or patch.kind == "sphere"):
+    if len(points) <= constants.FEW_SAMPLES or not (np.any(patch.axis) or patch.kind == "sphere"):
         return np.arange(len(points), dtype=np.int64)
     if patch.kind == "sphere":
         return _rim(patch.normals)
     u, v = perpendicular(patch.axis)
     angle = np.arctan2(patch.normals @ v, patch.normals @ u)
     height = points @ patch.axis
-    sector = np.floor(angle / (2.0 * np.pi / NORMAL_SECTORS)).astype(int)
-    turn = np.round(angle / SAME_PLACE)
-    level = np.round(height / (SAME_PLACE * max(float(np.ptp(height)), 1e-300)))
+    sector = np.floor(angle / (2.0 * np.pi / constants.NORMAL_SECTORS)).astype(int)
+    turn = np.round(angle / constants.SAME_PLACE)
+    level = np.round(height / (constants.SAME_PLACE * max(float(np.ptp(height)), 1e-300)))
     ends = [np.lexsort((p * level, q * turn, sector)) for p in (1.0, -1.0) for q in (1.0, -1.0)]
     ends += [np.lexsort((p * level, sector)) for p in (1.0, -1.0)]
     first = np.flatnonzero(np.diff(sector[ends[0]], prepend=sector.min() - 1))
@@ -64,7 +53,7 @@ def hull(points: Array, axis: Array) -> Ints:
     if size == 0.0:
         return np.zeros(1, dtype=np.int64)
     _, _, right = np.linalg.svd(flat, full_matrices=False)
-    if float(np.abs(flat @ right[1]).max()) < STRAIGHT_EDGE * size:
+    if float(np.abs(flat @ right[1]).max()) < constants.STRAIGHT_EDGE * size:
         along = flat @ right[0]
         return np.array(sorted((int(along.argmin()), int(along.argmax()))), dtype=np.int64)
     corners = _around(flat)
@@ -73,7 +62,7 @@ def hull(points: Array, axis: Array) -> Ints:
         edge, arm = after - before, here - before
         out = np.abs(edge[:, 0] * arm[:, 1] - edge[:, 1] * arm[:, 0])
         k = int(np.argmin(out))
-        if out[k] > STRAIGHT_EDGE * size * max(float(np.hypot(*edge[k])), STRAIGHT_EDGE * size):
+        if out[k] > constants.STRAIGHT_EDGE * size * max(float(np.hypot(*edge[k])), constants.STRAIGHT_EDGE * size):
             break
         corners = np.delete(corners, k)
     return np.sort(corners)
@@ -113,7 +102,7 @@ def _rim(normals: Array) -> Ints:
     """Normals (n, 3) of a ball that span the same cone: the rim of a cap, or ends in directions all round."""
     mean = normals.mean(axis=0)
     along = normals @ mean / max(float(np.linalg.norm(mean)), 1e-300)
-    if along.min() > CAP:
+    if along.min() > constants.CAP:
         return hull(normals / along[:, None], mean / np.linalg.norm(mean))
     ends = _SPREAD @ normals.T
     return np.unique(ends.argmax(axis=1)).astype(np.int64)
@@ -128,5 +117,5 @@ def _spread(count: int) -> Array:
     return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
 
 
-_SPREAD = _spread(BALL_DIRECTIONS)
+_SPREAD = _spread(constants.BALL_DIRECTIONS)
 """Directions in which the ends of a ball's normals are looked for."""

@@ -11,22 +11,11 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import span
 from kinform.foundation.algebra.vectors import cross, foot
-from kinform.kinematics.constants import (
-    CLEARLY_NEW,
-    CONE_SLACK,
-    DIFFERENCE_SLACK,
-    NEW_FREEDOM,
-    PURE_SLIDE,
-    SAME_PITCH,
-    SIGMAS,
-    THREAD_TURNING,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import Evidence
 from kinform.kinematics.pair.lower_pairs import name_space, nearest_pair
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
-
-__all__ = ["freedoms", "preserved_motions"]
 
 
 def preserved_motions(evidence: Evidence, twists: Array, speeds: Array, slack: float = 1.0) -> Flags:
@@ -45,8 +34,10 @@ def preserved_motions(evidence: Evidence, twists: Array, speeds: Array, slack: f
         if item.patch.kind == "cone":
             # the slope of a cone is a fact, not a misalignment: slides along it have no slack
             samples = slice(evidence.start[k], evidence.start[k + 1])
-            slides = turning < PURE_SLIDE
-            allowed[samples, slides] = (SIGMAS * item.patch.uncertainty[0] + CONE_SLACK) * speed[samples, slides]
+            slides = turning < constants.PURE_SLIDE
+            allowed[samples, slides] = (constants.SIGMAS * item.patch.uncertainty[0] + constants.CONE_SLACK) * speed[
+                samples, slides
+            ]
     weight = evidence.share[:, None]
     first = evidence.start[:-1]
     missed = np.add.reduceat(weight * speeds**2, first, axis=0)
@@ -65,7 +56,7 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
     row = int(evidence.start[number])
     angular, linear = twists[:3] / frame.length, twists[3:]
     square = np.einsum("ij,ij->j", angular, angular)
-    turning = square > (THREAD_TURNING / frame.length) ** 2
+    turning = square > (constants.THREAD_TURNING / frame.length) ** 2
     square = np.where(turning, square, 1.0)
     advance = np.einsum("ij,ij->j", angular, linear) / square
     feet = frame.centre[:, None] + np.cross(angular, linear, axis=0) / square
@@ -80,7 +71,7 @@ def _screws(evidence: Evidence, number: int, twists: Array, slack: float) -> Fla
         turning
         & (tilt <= slack * angle)
         & (apart <= slack * (float(evidence.position[row]) + angle * reach))
-        & (np.abs(advance - wanted) <= slack * SAME_PITCH * abs(wanted))
+        & (np.abs(advance - wanted) <= slack * constants.SAME_PITCH * abs(wanted))
     )
 
 
@@ -98,7 +89,9 @@ def freedoms(
         rest = twist - basis @ (basis.T @ twist)
         size = float(np.linalg.norm(rest))
         unit = rest / max(size, 1e-300)
-        if size > CLEARLY_NEW or (size > NEW_FREEDOM and _all_preserve(evidence, unit, keep, DIFFERENCE_SLACK)):
+        if size > constants.CLEARLY_NEW or (
+            size > constants.NEW_FREEDOM and _all_preserve(evidence, unit, keep, constants.DIFFERENCE_SLACK)
+        ):
             basis = np.column_stack([basis, unit])
     chosen = np.repeat(keep, np.diff(evidence.start))
     rows = evidence.rows[chosen] * np.sqrt(evidence.share[chosen] / evidence.share[chosen].sum())[:, None]

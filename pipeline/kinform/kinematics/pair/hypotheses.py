@@ -14,25 +14,10 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import rotation, translation
 from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
-from kinform.kinematics.constants import (
-    CENTRE_SLACK,
-    DISTINCT_SLIDE,
-    LEAST_MEETING,
-    LEAST_POSITION,
-    MOST_DIRECTIONS,
-    MOST_FACES,
-    MOST_NORMALS,
-    MOST_SLIDES,
-    ONE_NORMAL,
-    SAME_PITCH,
-    SEPARATE_CENTRES,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.wording import components
 from kinform.model.arrays import Array
-
-__all__ = ["Line", "Motion", "candidate_motions", "motion_words"]
-
 
 Value = TypeVar("Value")
 Merge = Callable[[Value, Value], Value]
@@ -80,7 +65,7 @@ def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...
             out.append(Motion(True, twist, line.axis, line.point, True, pitch))
     for centre in centres:
         turns = [*np.eye(3), *(d for d, _ in directions), *(n for n, _ in normals)]
-        apart = SEPARATE_CENTRES * frame.length
+        apart = constants.SEPARATE_CENTRES * frame.length
         turns += [canonical(c - centre) for c in centres if np.linalg.norm(c - centre) > apart]
         out += [Motion(True, rotation(d, centre, frame), d, centre, True) for d in turns]
     for direction, curved in directions:
@@ -109,7 +94,7 @@ def _pitches(evidence: Evidence, line: Line) -> list[float]:
     threads = [(item.patch.pitch, item.area) for item in items if item.patch.kind == "helicoid"]
     pitches = _merge(
         threads,
-        lambda a, b: abs(b[0] - a[0]) <= SAME_PITCH * abs(a[0]),
+        lambda a, b: abs(b[0] - a[0]) <= constants.SAME_PITCH * abs(a[0]),
         lambda a, b: ((a[0] * a[1] + b[0] * b[1]) / (a[1] + b[1]), a[1] + b[1]),
     )
     return [pitch for pitch, _ in pitches]
@@ -158,7 +143,7 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
         crossing = item.patch.point + along * ((z - float(axis @ (item.patch.point - origin))) / float(along @ axis))
         length = float(np.ptp((item.points - origin) @ axis)) + 1e-12
         # what a patch does not know better than its fit and its clearance, it says less loudly
-        position = max(item.position, LEAST_POSITION * length, 1e-12)
+        position = max(item.position, constants.LEAST_POSITION * length, 1e-12)
         direction = max(item.patch.uncertainty[0], position / length)
         for k, unit in enumerate((u, v)):
             row = np.zeros(4)
@@ -175,7 +160,7 @@ def _fit_line(items: list[Item], indices: list[int]) -> Line:
 
 def _centres(evidence: Evidence) -> list[Array]:
     """Centres of spherical patches, the largest first, those that agree merged."""
-    slack = CENTRE_SLACK * evidence.frame.length
+    slack = constants.CENTRE_SLACK * evidence.frame.length
     items = sorted((i for i in evidence.items if i.patch.kind == "sphere"), key=lambda i: -i.area)
     centres = _merge(
         [(item.patch.point, item.area, item.position) for item in items],
@@ -198,7 +183,7 @@ def _directions(candidates: Iterable[Direction], alignment: float) -> list[Direc
         lambda a, b: bool(np.linalg.norm(cross(b[0], a[0])) <= np.sin(alignment)),
         mean,
     )
-    return sorted(merged, key=lambda m: -m[1])[:MOST_DIRECTIONS]
+    return sorted(merged, key=lambda m: -m[1])[: constants.MOST_DIRECTIONS]
 
 
 def _slides(
@@ -210,21 +195,21 @@ def _slides(
     slides: list[tuple[Array, bool]] = [(line.axis, True) for line in lines]
 
     def add(direction: Array, curved: bool) -> None:
-        if all(np.linalg.norm(cross(direction, d)) > DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
+        if all(np.linalg.norm(cross(direction, d)) > constants.DISTINCT_SLIDE * np.sin(alignment) for d, _ in slides):
             slides.append((direction, curved))
 
     for axis, _ in _directions(
         [(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "extrusion"], alignment
     ):
         add(axis, True)
-    heavy = [normal for normal, _ in normals[:MOST_NORMALS]]
+    heavy = [normal for normal, _ in normals[: constants.MOST_NORMALS]]
     meeting = [cross(a, b) for k, a in enumerate(heavy) for b in heavy[:k]]
-    for normal in heavy[:MOST_FACES]:
+    for normal in heavy[: constants.MOST_FACES]:
         meeting += [*perpendicular(normal), *(cross(normal, line.axis) for line in lines)]
     for direction in meeting:
-        if np.linalg.norm(direction) > LEAST_MEETING:
+        if np.linalg.norm(direction) > constants.LEAST_MEETING:
             add(_refine(canonical(direction), planes, alignment), False)
-    return slides[:MOST_SLIDES]
+    return slides[: constants.MOST_SLIDES]
 
 
 def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: float) -> Array:
@@ -235,7 +220,7 @@ def _refine(direction: Array, planes: list[tuple[Array, float]], alignment: floa
     normals = np.array([n for n, _ in near])
     spread = normals.T @ (normals * np.array([w for _, w in near])[:, None])
     values, vectors = np.linalg.eigh(spread)
-    if values[1] < ONE_NORMAL * values[2]:
+    if values[1] < constants.ONE_NORMAL * values[2]:
         flat = direction - vectors[:, 2] * float(vectors[:, 2] @ direction)
         return canonical(flat)
     return canonical(vectors[:, 0])

@@ -16,9 +16,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Blocker, Joint
 from kinform.model.names import BodyName, JointName
 
-__all__ = ["FREEDOMS", "joint_from_decision", "misalignment", "stated_joint", "twists_of"]
-
-
 FREEDOMS = {
     "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
     "spherical": 3, "planar": 3,

@@ -16,8 +16,6 @@ from kinform.foundation.algebra.vectors import canonical, cross, cross_matrix, p
 from kinform.kinematics.constants import EXACT_PAIR, NEAR_PAIR
 from kinform.model.arrays import Array
 
-__all__ = ["JointForm", "name_space", "nearest_pair"]
-
 
 @dataclass(frozen=True, eq=False)
 class JointForm:

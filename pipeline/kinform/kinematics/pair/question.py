@@ -20,8 +20,6 @@ from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, JointName
 from kinform.model.tolerances import Tolerances
 
-__all__ = ["Answer", "Question", "answer_pair", "bare_patches", "joint_between"]
-
 
 @dataclass(frozen=True, eq=False)
 class Question:

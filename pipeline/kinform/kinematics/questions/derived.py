@@ -8,8 +8,6 @@ from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
 
-__all__ = ["Derived"]
-
 
 class Derived(Protocol):
     """A design, as far as questions look at it; None: not computed yet."""

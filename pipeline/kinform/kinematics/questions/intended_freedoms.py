@@ -14,8 +14,6 @@ from kinform.kinematics.questions.motion_query import QueryAnswer, query_twist
 from kinform.model.arrays import Array
 from kinform.model.function import IntendedJoint
 
-__all__ = ["IntendedAnswer", "IntendedMotion", "intended_answers"]
-
 
 @dataclass(frozen=True, eq=False)
 class IntendedMotion:

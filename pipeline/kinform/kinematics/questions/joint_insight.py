@@ -23,8 +23,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
-__all__ = ["Alternative", "Insight", "PatchRole", "insight", "patches_between"]
-
 
 @dataclass(frozen=True, eq=False)
 class PatchRole:

@@ -19,8 +19,6 @@ from kinform.model.arrays import Array
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Joint
 
-__all__ = ["QueryAnswer", "QueryBlocker", "query", "query_twist"]
-
 
 @dataclass(frozen=True, eq=False)
 class QueryBlocker:

@@ -26,8 +26,6 @@ from kinform.model.kinematics import Joint, Kinematics
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-__all__ = ["Attempt", "attempt", "pair_ways"]
-
 
 @dataclass(frozen=True, eq=False)
 class Attempt:

@@ -17,8 +17,6 @@ from kinform.kinematics.loops.closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.kinematics import Joint, Kinematics
 
-__all__ = ["HelperMotion", "motion_through_helpers"]
-
 
 @dataclass(frozen=True, eq=False)
 class HelperMotion:

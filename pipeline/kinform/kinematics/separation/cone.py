@@ -15,31 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.kinematics.constants import (
-    CERTIFICATE_SHARE,
-    CONE_FREE,
-    CONE_HELD,
-    EQUAL_ROWS,
-    FAR_EXPONENT,
-    LEAST_ROW,
-    LONGEST_STEP,
-    MOST_RAYS,
-    NEWTON_STEPS,
-)
+from kinform.kinematics import constants
 from kinform.model.arrays import Array, Flags, Ints
-
-__all__ = [
-    "Opening",
-    "extreme_rays",
-    "grams",
-    "held_for_certain",
-    "opening",
-    "rows_beside",
-    "split_directions",
-    "unit_rows",
-    "unit_rows_of",
-]
-
 
 _MIX = np.array([0x2C1B3C6D, 0x9E3779B1, 0x85EBCA77, 0xC2B2AE3D, 0x27D4EB2F, 0x165667B1, 0x5BD1E995], dtype=np.int64)
 """Odd factors by which rows that are not equal hardly ever sum up to the same."""
@@ -64,12 +41,12 @@ def unit_rows(rows: Array) -> Array:
 def unit_rows_of(rows: Array, group: Ints) -> tuple[Array, Ints]:
     """As `unit_rows`, of rows (n, d) that each belong to a group (n,), and the groups of those that are left."""
     size = np.sqrt(np.einsum("ij,ij->i", rows, rows))
-    long = size > LEAST_ROW
+    long = size > constants.LEAST_ROW
     rows, group = rows[long] / size[long, None], group[long]
     if len(rows) < 2:
         return rows, group
     keys = np.empty((len(rows), rows.shape[1] + 1), dtype=np.int64)
-    keys[:, 0], keys[:, 1:] = group, np.rint(rows / EQUAL_ROWS)
+    keys[:, 0], keys[:, 1:] = group, np.rint(rows / constants.EQUAL_ROWS)
     order = (keys @ _MIX[: keys.shape[1]]).argsort(kind="stable")
     ordered = keys[order]
     again = (ordered[1:] == ordered[:-1]).all(axis=1)
@@ -90,7 +67,7 @@ def split_directions(rows: Array) -> tuple[Array, Array]:
     if not len(rows):
         return np.zeros((rows.shape[1], 0)), np.eye(rows.shape[1])
     values, vectors = np.linalg.eigh(rows.T @ rows)
-    moved = values > CONE_FREE**2 * len(rows)
+    moved = values > constants.CONE_FREE**2 * len(rows)
     return vectors[:, moved], vectors[:, ~moved]
 
 
@@ -106,12 +83,12 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
     rows = np.concatenate([pairs[k] for k in active])
     counts = np.array([len(pairs[k]) for k in active])
     values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
-    loose = values < CONE_FREE**2 * counts[:, None]
+    loose = values < constants.CONE_FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
     at = np.zeros((len(active), 6))
-    for _ in range(NEWTON_STEPS):
+    for _ in range(constants.NEWTON_STEPS):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
-        weight = np.exp(-np.clip(exponent, -FAR_EXPONENT, FAR_EXPONENT))
+        weight = np.exp(-np.clip(exponent, -constants.FAR_EXPONENT, constants.FAR_EXPONENT))
         start = np.concatenate([[0], np.cumsum(counts)[:-1]])
         pull = np.add.reduceat(weight[:, None] * rows, start, axis=0)
         pull -= np.einsum("pij,pj->pi", still, pull)
@@ -121,11 +98,13 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
         certificate = weight * (1.0 - change)
         # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
-        proven = np.minimum.reduceat(certificate, start) > CERTIFICATE_SHARE * np.maximum.reduceat(weight, start)
+        proven = np.minimum.reduceat(certificate, start) > constants.CERTIFICATE_SHARE * np.maximum.reduceat(
+            weight, start
+        )
         held[active[proven]] = True
         longest = np.maximum.reduceat(np.abs(change), start)
-        at = at + step * np.minimum(1.0, LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
-        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < FAR_EXPONENT)
+        at = at + step * np.minimum(1.0, constants.LONGEST_STEP / np.maximum(longest, 1e-300))[:, None]
+        keep = ~proven & (np.maximum.reduceat(np.abs(exponent), start) < constants.FAR_EXPONENT)
         if not keep.any():
             break
         chosen = np.repeat(keep, counts)
@@ -155,9 +134,9 @@ def opening(rows: Array) -> Opening:
     if primal.status != 0:
         return Opening(None, np.zeros(6), 0.0)
     speed = float((inner @ primal.x).max())
-    if speed > CONE_HELD:
+    if speed > constants.CONE_HELD:
         return Opening(False, basis @ primal.x, speed)
-    if speed >= CONE_FREE:
+    if speed >= constants.CONE_FREE:
         return Opening(None, basis @ primal.x, speed)
     dual = linprog(np.ones(len(inner)), A_eq=inner.T, b_eq=np.zeros(inner.shape[1]), bounds=(1.0, None), method="highs")
     return Opening(True if dual.status == 0 else None, np.zeros(6), speed)
@@ -183,7 +162,7 @@ def extreme_rays(rows: Array) -> Array | None:
     while rest:
         # the row that most rays violate cuts most away
         speeds = rays @ inner[rest].T
-        broken = (speeds < -EQUAL_ROWS).sum(axis=0)
+        broken = (speeds < -constants.EQUAL_ROWS).sum(axis=0)
         done += [k for k, n in zip(rest, broken, strict=True) if n == 0]
         rest = [k for k, n in zip(rest, broken, strict=True) if n > 0]
         if not rest:
@@ -215,11 +194,11 @@ def _independent(inner: Array) -> list[int]:
 def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | None:
     """The rays after one more row: those inside, and where edges of the cone cross it."""
     speed = rays @ row
-    inside, outside = np.flatnonzero(speed > EQUAL_ROWS), np.flatnonzero(speed < -EQUAL_ROWS)
-    kept = rays[speed >= -EQUAL_ROWS]
+    inside, outside = np.flatnonzero(speed > constants.EQUAL_ROWS), np.flatnonzero(speed < -constants.EQUAL_ROWS)
+    kept = rays[speed >= -constants.EQUAL_ROWS]
     if not len(inside):
         return kept
-    tight = np.abs(rays @ inner[list(done)].T) <= EQUAL_ROWS
+    tight = np.abs(rays @ inner[list(done)].T) <= constants.EQUAL_ROWS
     common = (tight[inside][:, None] & tight[outside][None]).reshape(-1, tight.shape[1])
     a, b = (x.ravel() for x in np.meshgrid(inside, outside, indexing="ij"))
     enough = common.sum(axis=1) >= rays.shape[1] - 2
@@ -230,6 +209,6 @@ def _cut(rays: Array, inner: Array, done: Sequence[int], row: Array) -> Array | 
     a, b = a[neighbours], b[neighbours]
     new = rays[b] * speed[a][:, None] - rays[a] * speed[b][:, None]
     new /= np.maximum(np.linalg.norm(new, axis=1), 1e-300)[:, None]
-    if len(kept) + len(new) > MOST_RAYS:
+    if len(kept) + len(new) > constants.MOST_RAYS:
         return None
     return np.vstack([kept, new])

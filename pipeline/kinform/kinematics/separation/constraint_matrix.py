@@ -17,8 +17,6 @@ from kinform.model.arrays import Ints
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
 
-__all__ = ["constraint_matrix"]
-
 
 def constraint_matrix(
     bodies: Sequence[Body],

@@ -21,9 +21,6 @@ from kinform.model.contacts import Patch
 from kinform.model.kinematics import Body, ConstraintMatrix, Joint
 from kinform.model.names import BodyName, PartName
 
-__all__ = ["Cone", "ContactRows", "is_stated", "pair_cones"]
-
-
 Members = Sequence[tuple[int, bool]]
 """Patches by index, each turned when its part a belongs to the second body."""
 

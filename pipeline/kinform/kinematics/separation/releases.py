@@ -9,21 +9,12 @@ import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
-from kinform.kinematics.constants import (
-    CONE_FREE,
-    CONE_HELD,
-    MIDDLE_STEPS,
-    MIDDLE_STRIDE,
-    MOST_RELEASES,
-    SAME_DIRECTION,
-)
+from kinform.kinematics import constants
 from kinform.kinematics.separation.cone import extreme_rays, held_for_certain, opening, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone
 from kinform.kinematics.wording import direction_words
 from kinform.model.arrays import Array, Flags
 from kinform.model.kinematics import Joint, Release
-
-__all__ = ["Leaving", "certainly_held", "leaving_of", "release_of", "with_releases"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +55,11 @@ def leaving_of(cone: Cone, *, turns: bool = True) -> Leaving:
         if lp.held:
             return Leaving(held=True)
         if lp.held is None:
-            bounds = f"between none (< {CONE_FREE:g}) and certain (> {CONE_HELD:g})"
+            bounds = f"between none (< {constants.CONE_FREE:g}) and certain (> {constants.CONE_HELD:g})"
             return Leaving(None, held_reason=f"contact opens at {lp.speed:.2g} of the motion: {bounds}")
     rays = extreme_rays(cone.rows) if turns else None
     releases = [release_of(np.concatenate([np.zeros(3), d]), cone.frame, extreme=not many) for d in slides]
-    if rays is not None and len(rays) <= MOST_RELEASES:
+    if rays is not None and len(rays) <= constants.MOST_RELEASES:
         others = [ray for ray in rays if not _slides_off(ray, cone, slides)]
         releases += sorted((release_of(ray, cone.frame) for ray in others), key=_order)
     elif not releases:
@@ -85,7 +76,7 @@ def _slides(cone: Cone) -> tuple[Array, bool]:
     straight = np.eye(3)
     if len(cone.fixed):
         _, values, right = np.linalg.svd(cone.fixed[:, 3:], full_matrices=True)
-        straight = right[int(np.count_nonzero(values > SAME_DIRECTION)) :].T
+        straight = right[int(np.count_nonzero(values > constants.SAME_DIRECTION)) :].T
     normals = unit_rows(cone.rows[:, 3:] @ straight)
     none = np.zeros((0, 3))
     if not len(normals):
@@ -95,11 +86,11 @@ def _slides(cone: Cone) -> tuple[Array, bool]:
         rays = _middle(normals)
         return rays @ straight.T, True
     # pure slides must break contact in fact, not by rounding
-    rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > CONE_HELD] if len(rays) else none
+    rays = rays[(rays @ normals.T).max(axis=1, initial=0.0) > constants.CONE_HELD] if len(rays) else none
     if not len(rays):
         return none, False
     rays = _distinct(rays @ straight.T)
-    if len(rays) > MOST_RELEASES:
+    if len(rays) > constants.MOST_RELEASES:
         middle = rays.sum(axis=0)
         return (middle / np.linalg.norm(middle))[None], True
     return rays[np.lexsort(np.round(rays, 6).T)[::-1]], False
@@ -108,19 +99,19 @@ def _slides(cone: Cone) -> tuple[Array, bool]:
 def _middle(normals: Array) -> Array:
     """The direction (1, t) farthest inside a cone of very many extreme directions; (0, t) where it has no inside."""
     mean = normals.mean(axis=0)
-    for _ in range(MIDDLE_STEPS):
+    for _ in range(constants.MIDDLE_STEPS):
         speed = normals @ mean
         worst = int(speed.argmin())
-        if speed[worst] > CONE_HELD * float(np.linalg.norm(mean)):
+        if speed[worst] > constants.CONE_HELD * float(np.linalg.norm(mean)):
             return np.asarray(mean / np.linalg.norm(mean))[None]
-        mean = mean + normals[worst] * (MIDDLE_STRIDE - speed[worst])
+        mean = mean + normals[worst] * (constants.MIDDLE_STRIDE - speed[worst])
     return np.zeros((0, normals.shape[1]))
 
 
 def _distinct(rays: Array) -> Array:
     kept: list[Array] = []
     for ray in rays:
-        if all(np.linalg.norm(ray - other) > SAME_DIRECTION for other in kept):
+        if all(np.linalg.norm(ray - other) > constants.SAME_DIRECTION for other in kept):
             kept.append(ray)
     return np.array(kept)
 
@@ -131,7 +122,7 @@ def _slides_off(ray: Array, cone: Cone, slides: Array) -> bool:
     for slide in slides:
         shadow = basis @ (basis.T @ np.concatenate([np.zeros(3), slide]))
         size = float(np.linalg.norm(shadow))
-        if size > SAME_DIRECTION and np.linalg.norm(shadow / size - ray) < SAME_DIRECTION:
+        if size > constants.SAME_DIRECTION and np.linalg.norm(shadow / size - ray) < constants.SAME_DIRECTION:
             return True
     return False
 
@@ -146,7 +137,7 @@ def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     no sum of other releases."""
     omega, velocity = ray[:3] / frame.length, ray[3:]
     turning = float(np.linalg.norm(ray[:3]))
-    if turning < SAME_DIRECTION * float(np.linalg.norm(ray)):
+    if turning < constants.SAME_DIRECTION * float(np.linalg.norm(ray)):
         direction = velocity / np.linalg.norm(velocity)
         twist = np.concatenate([np.zeros(3), direction])
         return Release("slide", twist, direction, None, extreme, f"lift off along {direction_words(direction)}")
@@ -156,7 +147,7 @@ def release_of(ray: Array, frame: Frame, *, extreme: bool = True) -> Release:
     point = frame.centre + cross(omega, velocity) / rate**2
     twist = (twist_at_origin(ray[:, None], frame) / rate).ravel()
     about = direction_words(direction)
-    if abs(lead) < SAME_DIRECTION * frame.length:
+    if abs(lead) < constants.SAME_DIRECTION * frame.length:
         return Release("turn", twist, direction, point, extreme, f"tip about {about}")
     sense = "along" if lead > 0.0 else "against"
     return Release("screw", twist, direction, point, extreme, f"turn about {about} while sliding {sense} it")

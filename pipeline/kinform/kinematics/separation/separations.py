@@ -35,8 +35,6 @@ from kinform.model.names import BodyName, JointName
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-__all__ = ["Link", "links_between", "separations"]
-
 
 @dataclass(frozen=True, eq=False)
 class Link:

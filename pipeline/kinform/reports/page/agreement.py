@@ -18,8 +18,6 @@ from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words, requirement_words
 
-__all__ = ["MARKS", "Row", "rows"]
-
 MARKS = {
     "agrees": "✓", "disagrees": "✕", "doubtful": "▲", "not decided": "?", "not stated": "–", "not checked": "?",
 }  # fmt: skip

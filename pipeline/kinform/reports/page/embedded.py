@@ -22,8 +22,6 @@ from kinform.reports.page.phrases import joint_sentence, patch_words
 from kinform.reports.page.scene import Scene
 from kinform.reports.values.plain import plain
 
-__all__ = ["embedded_scene"]
-
 
 def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
     """JSON of the scene, and the bytes it points into as base64 of deflate."""

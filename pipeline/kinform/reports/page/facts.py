@@ -17,11 +17,6 @@ from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
 
-__all__ = [
-    "Assumed", "FindingFacts", "JointFacts", "Verdict", "assumptions", "findings", "joints", "rules",
-    "verdict_of",
-]  # fmt: skip
-
 SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
 
 

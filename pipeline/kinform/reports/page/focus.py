@@ -13,9 +13,6 @@ from kinform.model.findings import Finding
 from kinform.reports.page.movements import Mark, Movement
 from kinform.reports.page.subjects import subjects_of
 
-__all__ = ["Focus", "focus_of"]
-
-
 MEETING = ("KF412", "KF423", "KF505")
 """Rules whose findings are about parts that meet on the way."""
 

@@ -17,27 +17,7 @@ from kinform.foundation.algebra.displacements import displacement
 from kinform.foundation.graphs.graph import forest
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint, Kinematics
-from kinform.reports.constants import (
-    CLOSED,
-    CLOSED_WELL,
-    FINEST_TURN,
-    FOLLOWER_TURN,
-    FREEDOM_RANK,
-    FULL_TURN,
-    LARGE_SHARE,
-    LEAST_MOVE,
-    LEAST_RATE_ERROR,
-    MOST_CLOSING_STEPS,
-    MOST_COORDINATES,
-    MOST_FREEDOMS,
-    NUDGE,
-    SHOWN_SLIDE,
-    SHOWN_TURN,
-    SIDE_FRAMES,
-    SLOPE_RANK,
-)
-
-__all__ = ["Showing", "Span", "freedom_motions"]
+from kinform.reports import constants
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +56,14 @@ def freedom_motions(kinematics: Kinematics, size: float, spans: Mapping[str, Spa
     rates = linkage.rates(freedoms)
     led = [found for freedom in kinematics.mobility.named if (found := linkage.led(freedom)) is not None]
     if led:
-        out = [linkage.shown(own, driver) for own, driver in led[:MOST_FREEDOMS]]
-        return out + _loose(kinematics, freedoms, len(led), rates, size)[: MOST_FREEDOMS - len(out)]
+        out = [linkage.shown(own, driver) for own, driver in led[: constants.MOST_FREEDOMS]]
+        return out + _loose(kinematics, freedoms, len(led), rates, size)[: constants.MOST_FREEDOMS - len(out)]
     drivers, mixes = _drivers(rates, linkage.turning, size)
-    out = [linkage.shown(mix @ rates, driver) for driver, mix in list(zip(drivers, mixes, strict=True))[:MOST_FREEDOMS]]
-    return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: MOST_FREEDOMS - len(out)]
+    out = [
+        linkage.shown(mix @ rates, driver)
+        for driver, mix in list(zip(drivers, mixes, strict=True))[: constants.MOST_FREEDOMS]
+    ]
+    return out + _loose(kinematics, freedoms, len(drivers), rates, size)[: constants.MOST_FREEDOMS - len(out)]
 
 
 def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Array]:
@@ -90,7 +73,7 @@ def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Arra
     weighted = rates * np.where(turning, 1.0, 1.0 / size)
     _, triangle, order = qr(weighted, mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))
-    rank = int(np.count_nonzero(diagonal > FREEDOM_RANK * max(float(diagonal.max(initial=0.0)), 1e-300)))
+    rank = int(np.count_nonzero(diagonal > constants.FREEDOM_RANK * max(float(diagonal.max(initial=0.0)), 1e-300)))
     chosen = np.sort(order[:rank])
     return [int(k) for k in chosen], np.asarray(np.linalg.pinv(rates[:, chosen]), dtype=np.float64)
 
@@ -104,8 +87,8 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
     for mix in still:
         twists = np.einsum("m,mbi->bi", mix, freedoms)
         extent = max(float(np.abs(twists[:, 3:]).max()) / size, float(np.abs(twists[:, :3]).max()), 1e-300)
-        shares = np.linspace(-1.0, 1.0, 2 * SIDE_FRAMES + 1)
-        poses = np.array([[displacement(t * SHOWN_SLIDE * s / extent) for t in twists] for s in shares])
+        shares = np.linspace(-1.0, 1.0, 2 * constants.SIDE_FRAMES + 1)
+        poses = np.array([[displacement(t * constants.SHOWN_SLIDE * s / extent) for t in twists] for s in shares])
         turns = bool(np.abs(twists[:, :3]).max() * size > np.abs(twists[:, 3:]).max())
         note = "no joint connects what moves to ground"
         shown.append(Showing(None, turns, _moving(kinematics, poses, size), poses, shares, note))
@@ -113,7 +96,7 @@ def _loose(kinematics: Kinematics, freedoms: Array, driven: int, rates: Array, s
 
 
 def _moving(kinematics: Kinematics, poses: Array, size: float) -> tuple[str, ...]:
-    far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > LEAST_MOVE * max(size, 1e-300)
+    far = np.abs(poses - np.eye(4)).max(axis=(0, 2, 3)) > constants.LEAST_MOVE * max(size, 1e-300)
     return tuple(body.name for body, moves in zip(kinematics.bodies, far, strict=True) if moves)
 
 
@@ -155,7 +138,7 @@ class _Linkage:
                 return None
             at = int(self.start[number[name]]) + coordinate
             rates[at] = rate
-            if name == freedom.driver and abs(abs(rate) - 1.0) < LEAST_RATE_ERROR:
+            if name == freedom.driver and abs(abs(rate) - 1.0) < constants.LEAST_RATE_ERROR:
                 driver = at if driver is None else driver
         return None if driver is None else (rates, driver)
 
@@ -168,7 +151,11 @@ class _Linkage:
         poses, shares, note, ends = [], [], "", []
         for sign, end in ((-1.0, span.lower), (1.0, span.upper)):
             reach = self._reach(rates, turns, end)
-            many = max(SIDE_FRAMES, int(np.ceil(reach / FINEST_TURN))) if turns else SIDE_FRAMES
+            many = (
+                max(constants.SIDE_FRAMES, int(np.ceil(reach / constants.FINEST_TURN)))
+                if turns
+                else constants.SIDE_FRAMES
+            )
             steps = np.linspace(0.0, 1.0, many + 1)
             followed, why = self._followed(rates, driver, sign * reach * steps)
             note = note or why
@@ -184,15 +171,20 @@ class _Linkage:
     def _reach(self, rates: Array, turns: bool, end: float | None) -> float:
         """How far the driver goes to one side (rad or m, positive)."""
         if end is not None:
-            return float(min(abs(end), FULL_TURN if turns else self.size))
-        reach = float(SHOWN_TURN if turns else SHOWN_SLIDE * self.size)
+            return float(min(abs(end), constants.FULL_TURN if turns else self.size))
+        reach = float(constants.SHOWN_TURN if turns else constants.SHOWN_SLIDE * self.size)
         return float(
-            min(reach, FOLLOWER_TURN * SHOWN_TURN / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300))
+            min(
+                reach,
+                constants.FOLLOWER_TURN
+                * constants.SHOWN_TURN
+                / max(float(np.abs(rates[self.turning]).max(initial=0.0)), 1e-300),
+            )
         )
 
     def _followed(self, rates: Array, driver: int, steps: Array) -> tuple[Array, str]:
         """Poses (S, B, 4, 4) at the driver's steps; the last closed pose again where loops do not close."""
-        large = bool(self.chords) and len(self.screws) > MOST_COORDINATES
+        large = bool(self.chords) and len(self.screws) > constants.MOST_COORDINATES
         q, poses, note = np.zeros(len(self.screws)), [self.poses(np.zeros(len(self.screws)))], ""
         for before, now in zip(steps[:-1], steps[1:], strict=True):
             if note:
@@ -200,7 +192,7 @@ class _Linkage:
                 continue
             q = q + (now - before) * rates
             if large:
-                q = LARGE_SHARE * now * rates
+                q = constants.LARGE_SHARE * now * rates
             elif self.chords:
                 closed = self._closed(q, driver)
                 if closed is None:
@@ -242,16 +234,16 @@ class _Linkage:
         """The nearest closed configuration with the driver where it is."""
         free = np.array([i for i in range(len(q)) if i != driver])
         unit = np.where(self.turning, 1.0, self.size)
-        for _ in range(MOST_CLOSING_STEPS):
+        for _ in range(constants.MOST_CLOSING_STEPS):
             missing = self._missing(q)
-            if float(np.abs(missing).max()) < CLOSED_WELL:
+            if float(np.abs(missing).max()) < constants.CLOSED_WELL:
                 return q
             slope = np.empty((len(missing), len(free)))
             for column, i in enumerate(free):
                 nudged = q.copy()
-                nudged[i] += NUDGE * unit[i]
-                slope[:, column] = (self._missing(nudged) - missing) / NUDGE
-            step = np.linalg.lstsq(slope, -missing, rcond=SLOPE_RANK)[0]
+                nudged[i] += constants.NUDGE * unit[i]
+                slope[:, column] = (self._missing(nudged) - missing) / constants.NUDGE
+            step = np.linalg.lstsq(slope, -missing, rcond=constants.SLOPE_RANK)[0]
             q = q.copy()
             q[free] += step * unit[free]
-        return q if float(np.abs(self._missing(q)).max()) < CLOSED else None
+        return q if float(np.abs(self._missing(q)).max()) < constants.CLOSED else None

@@ -25,8 +25,6 @@ from kinform.reports.page.plots import plot_groups
 from kinform.reports.page.scene import Scene
 from kinform.version import __version__
 
-__all__ = ["page_html"]
-
 
 def page_html(design: Design, scene: Scene | None = None) -> str:
     """The report of a design as HTML; `scene` where it was made already."""

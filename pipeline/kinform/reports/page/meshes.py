@@ -18,8 +18,6 @@ from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces
 from kinform.reports.constants import CREASE, LINE_ANGLE
 
-__all__ = ["Shape", "shape_of", "shape_of_facets"]
-
 
 @dataclass(frozen=True, eq=False)
 class Shape:

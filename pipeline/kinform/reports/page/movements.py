@@ -23,8 +23,6 @@ from kinform.reports.constants import MOST_FRAMES
 from kinform.reports.page.freedoms import Showing, Span, freedom_motions
 from kinform.reports.page.subjects import wanted_names
 
-__all__ = ["Mark", "Movement", "movements_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Mark:

@@ -13,8 +13,6 @@ from kinform.model.contacts import Interference
 from kinform.reports.constants import MOST_OVERLAPS
 from kinform.reports.page.meshes import Shape, shape_of_facets
 
-__all__ = ["overlap_shapes"]
-
 
 def overlap_shapes(design: Design) -> list[Shape | None]:
     """The overlap of each interference in the world (m); None where a mesh is no manifold."""

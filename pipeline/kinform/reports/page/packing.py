@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from kinform.model.arrays import Array, Ints
 from kinform.reports.constants import STEPS
 
-__all__ = ["STEPS", "Blob", "quantised", "restored"]
-
 
 def quantised(values: Array, low: Array, size: Array) -> Ints:
     """Values (n, k) as whole numbers of 0 … STEPS between `low` and `low + size` (k,)."""

@@ -12,17 +12,6 @@ from kinform.model.function import Requirement
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import LEAST_GAP
 
-__all__ = [
-    "assumption",
-    "axis",
-    "axis_words",
-    "contact",
-    "joint_sentence",
-    "patch_words",
-    "point_words",
-    "requirement_words",
-]
-
 ANGLES = ("half_angle", "angle_tolerance")
 LENGTHS = ("tolerance", "distance")
 DIRECTIONS = ("axis", "direction")

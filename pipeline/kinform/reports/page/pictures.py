@@ -13,30 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
-from kinform.reports.constants import (
-    BAND,
-    FAINT,
-    FINDING_MARGIN,
-    FINDING_OVERLAP_WEIGHT,
-    FINDING_SHIFT,
-    FINDING_ZOOM,
-    FINER,
-    GLASS,
-    OUTLINE_COSINE,
-    OUTLINE_SHADE,
-    OUTLINE_STEP,
-    OVERLAP_COLOUR,
-    OVERLAP_WEIGHT,
-    SIGNS_MARGIN,
-    TINT,
-    VIEW_MARGIN,
-)
+from kinform.reports import constants
 from kinform.reports.page.meshes import Shape
 from kinform.reports.page.raster import AXES, Buffers, View, png, rasterise, view_of
 from kinform.reports.page.scene import Scene
 from kinform.reports.page.strokes import dashed, polyline, rgb, ring, strokes_of
-
-__all__ = ["Artist"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +49,18 @@ class Artist:
         if not items and not signs:
             return png(np.zeros((height, width, 4), np.uint8))
         places = np.concatenate([*signs, *(item.vertices for item in items)])
-        view = view_of(places, FINER * width, FINER * height, VIEW_MARGIN if items else SIGNS_MARGIN)
+        view = view_of(
+            places,
+            constants.FINER * width,
+            constants.FINER * height,
+            constants.VIEW_MARGIN if items else constants.SIGNS_MARGIN,
+        )
         image = _image(view, items)
         red = self._red(lambda parts: True)
         if red:
-            image = _over(_image(view, red), image, OVERLAP_WEIGHT)
+            image = _over(_image(view, red), image, constants.OVERLAP_WEIGHT)
         for stroke in signs:
-            polyline(image, view.project(stroke)[:, :2], 2.0 * FINER)
+            polyline(image, view.project(stroke)[:, :2], 2.0 * constants.FINER)
         return png(_reduced(image))
 
     def finding(self, index: int, width: int = 480, height: int = 320) -> bytes:
@@ -90,33 +76,35 @@ class Artist:
         items, others = self._items(chosen, moved, focus.meeting), self._items(rest, moved)
         if not items:
             return png(np.zeros((height, width, 4), np.uint8))
-        view = view_of(_cloud(items), FINER * width, FINER * height, margin=FINDING_MARGIN)
+        view = view_of(
+            _cloud(items), constants.FINER * width, constants.FINER * height, margin=constants.FINDING_MARGIN
+        )
         place = None if focus.place is None else AXES @ focus.place
         if place is not None:
             view = replace(
                 view,
-                target=(1.0 - FINDING_SHIFT) * view.target + FINDING_SHIFT * place,
-                scale=FINDING_ZOOM * view.scale,
+                target=(1.0 - constants.FINDING_SHIFT) * view.target + constants.FINDING_SHIFT * place,
+                scale=constants.FINDING_ZOOM * view.scale,
             )
         covers = [_covers(view, item, place) for item in items] if focus.meeting and place is not None else []
         before = [item for item, hides in zip(items, covers, strict=False) if hides]
         if before and len(before) < len(items):
             behind = [item for item, hides in zip(items, covers, strict=True) if not hides]
-            image = _over(_image(view, before), _image(view, behind), GLASS)
+            image = _over(_image(view, before), _image(view, behind), constants.GLASS)
         else:
             image = _image(view, items)
         if others:
-            image = _over(image, _image(view, others), 1.0, FAINT)
+            image = _over(image, _image(view, others), 1.0, constants.FAINT)
         red = self._red(lambda both: not moved and set(both) <= set(chosen))
         if red:
-            image = _over(_image(view, red), image, FINDING_OVERLAP_WEIGHT)
+            image = _over(_image(view, red), image, constants.FINDING_OVERLAP_WEIGHT)
         for joint in scene.joints:
             if joint.name in focus.joints and joint.axis is not None and not moved:
                 point, size = scene.sign_of(joint)
                 ends_of_axis = np.array([point - 1.6 * size * joint.axis, point + 1.6 * size * joint.axis])
-                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * FINER)
+                dashed(image, view.project(ends_of_axis @ AXES.T)[:, :2], 2.0 * constants.FINER)
         if place is not None:
-            ring(image, view.project(place[None])[0, :2], 15.0 * FINER, 2.0 * FINER)
+            ring(image, view.project(place[None])[0, :2], 15.0 * constants.FINER, 2.0 * constants.FINER)
         return png(_reduced(image))
 
     def _items(
@@ -132,7 +120,8 @@ class Artist:
             colour = rgb(self.scene.colours[body])
             if part.name in meeting:
                 colour = tuple(
-                    (1.0 - TINT) * own + TINT * red for own, red in zip(colour, rgb(OVERLAP_COLOUR), strict=True)
+                    (1.0 - constants.TINT) * own + constants.TINT * red
+                    for own, red in zip(colour, rgb(constants.OVERLAP_COLOUR), strict=True)
                 )  # type: ignore[assignment]
             away = (moved or {}).get(self.scene.bodies[body].name)
             item = self.known.get(part.name) if away is None else None
@@ -149,7 +138,7 @@ class Artist:
     def _red(self, wanted: Callable[[tuple[str, str]], bool]) -> list[_Item]:
         overlaps = [] if self.scene.design.contacts is None else self.scene.design.contacts.interferences
         return [
-            _item(shape, np.eye(4), rgb(OVERLAP_COLOUR), False)
+            _item(shape, np.eye(4), rgb(constants.OVERLAP_COLOUR), False)
             for item, shape in zip(overlaps, self.scene.overlaps, strict=True)
             if shape is not None and len(shape.faces) and wanted(item.parts)
         ]
@@ -179,7 +168,7 @@ def _covers(view: View, item: _Item, place: Array) -> bool:
     column, row = int(x), int(y)
     if not (0 <= column < view.width and 0 <= row < view.height) or buffers.facet[row, column] < 0:
         return False
-    return bool(buffers.near[row, column] > near + OUTLINE_STEP / view.scale)
+    return bool(buffers.near[row, column] > near + constants.OUTLINE_STEP / view.scale)
 
 
 def _within(view: View, projected: Array, faces: Ints) -> Ints:
@@ -243,7 +232,7 @@ def _dot(a: Array, b: Array) -> Array:
 
 def _bands(height: int, width: int) -> Iterator[slice]:
     """Rows in portions that stay in the processor's cache: a picture at once takes more than twice the time."""
-    step = max(1, BAND // max(width, 1))
+    step = max(1, constants.BAND // max(width, 1))
     for start in range(0, height, step):
         yield slice(start, min(start + step, height))
 
@@ -270,7 +259,7 @@ def _light(normal: Array) -> Array:
 
 def _outline(image: Array, buffers: Buffers, owner: NDArray[np.int64], direction: Array, view: View) -> None:
     """Darken where the part, the direction or the depth changes from one pixel to the next."""
-    step = OUTLINE_STEP / view.scale
+    step = constants.OUTLINE_STEP / view.scale
     line = np.zeros(buffers.facet.shape, bool)
     for band in _bands(view.height, view.width):
         more = slice(band.start, band.stop + 1)  # and the row below
@@ -280,13 +269,13 @@ def _outline(image: Array, buffers: Buffers, owner: NDArray[np.int64], direction
         for axis in (0, 1):
             here = tuple(slice(None, -1) if k == axis else slice(None) for k in (0, 1))
             there = tuple(slice(1, None) if k == axis else slice(None) for k in (0, 1))
-            turned = _dot(turn[:, *here], turn[:, *there]) < OUTLINE_COSINE
+            turned = _dot(turn[:, *here], turn[:, *there]) < constants.OUTLINE_COSINE
             apart = np.abs(near[here] - near[there]) > step
             both = seen[here] & seen[there]
             changed = (part[here] != part[there]) | (both & (turned | apart))
             line[more][here] |= changed
             line[more][there] |= changed
-    image[:3, (line & (buffers.facet >= 0)).ravel()] *= OUTLINE_SHADE
+    image[:3, (line & (buffers.facet >= 0)).ravel()] *= constants.OUTLINE_SHADE
 
 
 def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array:
@@ -305,10 +294,10 @@ def _over(front: Array, back: Array, weight: float, faint: float = 1.0) -> Array
 
 def _reduced(image: Array) -> NDArray[np.uint8]:
     """Each block of finer pixels as one, colours by their weight."""
-    height, width = (n // FINER for n in image.shape[:2])
+    height, width = (n // constants.FINER for n in image.shape[:2])
     out = np.empty((height, width, 4), np.uint8)
-    for band in _bands(height, FINER * FINER * width):
-        fine = image[FINER * band.start : FINER * band.stop]
+    for band in _bands(height, constants.FINER * constants.FINER * width):
+        fine = image[constants.FINER * band.start : constants.FINER * band.stop]
         weight = _blocks(fine[..., 3])
         colours = [_blocks(fine[..., k] * fine[..., 3]) / np.maximum(weight, 1e-9) for k in range(3)]
         for k, mean in enumerate((*colours, weight)):
@@ -318,5 +307,7 @@ def _reduced(image: Array) -> NDArray[np.uint8]:
 
 def _blocks(fine: Array) -> Array:
     """Mean of each block of finer pixels."""
-    steps = range(FINER)
-    return np.asarray(sum(fine[i::FINER, j::FINER] for i in steps for j in steps) / FINER**2)
+    steps = range(constants.FINER)
+    return np.asarray(
+        sum(fine[i :: constants.FINER, j :: constants.FINER] for i in steps for j in steps) / constants.FINER**2
+    )

@@ -18,24 +18,9 @@ from kinform.foundation.units import metres_per
 from kinform.function import stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
-from kinform.reports.constants import (
-    FLAT,
-    MOST_COLUMNS,
-    MOST_EVENTS,
-    MOST_PLOTS,
-    PLOT_BOTTOM,
-    PLOT_HEIGHT,
-    PLOT_LEFT,
-    PLOT_RIGHT,
-    PLOT_TOP,
-    PLOT_WIDTH,
-    ROUND_STEPS,
-    TICKS,
-)
+from kinform.reports import constants
 from kinform.reports.page.subjects import wanted_names
 from kinform.reports.values.runs import coordinates
-
-__all__ = ["Plot", "Series", "plot_groups", "plot_svg"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +57,12 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     out = []
     for heading, found in groups:
         if found:
-            left = f"{len(found) - MOST_PLOTS} more are in the results file." if len(found) > MOST_PLOTS else ""
-            out.append((heading, [plot_svg(plot, run.time, events) for plot in found[:MOST_PLOTS]], left))
+            left = (
+                f"{len(found) - constants.MOST_PLOTS} more are in the results file."
+                if len(found) > constants.MOST_PLOTS
+                else ""
+            )
+            out.append((heading, [plot_svg(plot, run.time, events) for plot in found[: constants.MOST_PLOTS]], left))
     return out
 
 
@@ -173,44 +162,60 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
     start, end = float(time[0]), float(time[-1])
 
     def x(t: Any) -> Any:
-        return PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (PLOT_RIGHT - PLOT_LEFT)
+        return constants.PLOT_LEFT + (t - start) / ((end - start) or 1.0) * (constants.PLOT_RIGHT - constants.PLOT_LEFT)
 
     def y(value: Any) -> Any:
-        return PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (PLOT_BOTTOM - PLOT_TOP)
+        return constants.PLOT_BOTTOM - (value - low) / ((high - low) or 1.0) * (
+            constants.PLOT_BOTTOM - constants.PLOT_TOP
+        )
 
-    across, upright = (PLOT_LEFT, PLOT_RIGHT), (PLOT_TOP, PLOT_BOTTOM)
+    across, upright = (constants.PLOT_LEFT, constants.PLOT_RIGHT), (constants.PLOT_TOP, constants.PLOT_BOTTOM)
     parts = []
     for tick in ticks:
-        parts += [_line("grid", across, (y(tick), y(tick))), _text(PLOT_LEFT - 6, y(tick) + 3.5, _number(tick), "end")]
+        parts += [
+            _line("grid", across, (y(tick), y(tick))),
+            _text(constants.PLOT_LEFT - 6, y(tick) + 3.5, _number(tick), "end"),
+        ]
     for share, anchor in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
         text = _number(start + share * (end - start)) + (" s" if share == 1.0 else "")
-        parts.append(_text(PLOT_LEFT + share * (PLOT_RIGHT - PLOT_LEFT), PLOT_BOTTOM + 16, text, anchor))
+        parts.append(
+            _text(
+                constants.PLOT_LEFT + share * (constants.PLOT_RIGHT - constants.PLOT_LEFT),
+                constants.PLOT_BOTTOM + 16,
+                text,
+                anchor,
+            )
+        )
     for label, value in plot.limits:
         at = y(value)
-        inside = at + (11.0 if at < (PLOT_TOP + PLOT_BOTTOM) / 2 else -4.0)
-        side, anchor = (PLOT_LEFT + 4.0, "start") if label.startswith("found") else (PLOT_RIGHT, "end")
+        inside = at + (11.0 if at < (constants.PLOT_TOP + constants.PLOT_BOTTOM) / 2 else -4.0)
+        side, anchor = (
+            (constants.PLOT_LEFT + 4.0, "start") if label.startswith("found") else (constants.PLOT_RIGHT, "end")
+        )
         text = escape(f"{label} {_number(value)}{plot.unit}")
         parts += [_line("limit", across, (at, at)), _text(side, inside, text, anchor)]
-    for moment, event in events[:MOST_EVENTS]:
+    for moment, event in events[: constants.MOST_EVENTS]:
         sign = f"✕<title>{escape(event)}</title>"
         parts.append(_line("event", (x(moment), x(moment)), upright))
-        parts.append(_text(x(moment), PLOT_TOP - 2, sign, "middle", "tick event-sign"))
+        parts.append(_text(x(moment), constants.PLOT_TOP - 2, sign, "middle", "tick event-sign"))
     parts += [
         f'<path class="curve curve-{k}" d="{_path(x(time), y(series.values))}"/>'
         for k, series in enumerate(plot.series)
     ]
-    several, below = len(plot.series) > 1, PLOT_HEIGHT + 8
+    several, below = len(plot.series) > 1, constants.PLOT_HEIGHT + 8
     for k, series in enumerate(plot.series if several else ()):
-        at = PLOT_LEFT + 104.0 * k
+        at = constants.PLOT_LEFT + 104.0 * k
         parts.append(_line(f"curve curve-{k}", (at, at + 18), (below, below)))
-        parts.append(_text(at + 23, PLOT_HEIGHT + 12, escape(series.label)))
-    parts.append(f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{PLOT_TOP}" y2="{PLOT_BOTTOM}"/>')
+        parts.append(_text(at + 23, constants.PLOT_HEIGHT + 12, escape(series.label)))
+    parts.append(
+        f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{constants.PLOT_TOP}" y2="{constants.PLOT_BOTTOM}"/>'
+    )
     spoken = escape(_spoken_text(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {PLOT_WIDTH:.0f} {PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
-        f'aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{PLOT_LEFT}" '
-        f'data-right="{PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
+        f'<svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} {constants.PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
+        f'aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{constants.PLOT_LEFT}" '
+        f'data-right="{constants.PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
     )
 
 
@@ -231,7 +236,7 @@ def _spoken_text(plot: Plot, start: float, end: float, events: Sequence[tuple[fl
             name = f"{series.label}: " if series.label else ""
             texts.append(f"{name}{_number(float(finite.min()))} to {_number(float(finite.max()))} {plot.unit}")
     limits = "".join(f", {label} {_number(value)} {plot.unit}" for label, value in plot.limits)
-    happens = "".join(f", at {_number(moment)} s {text}" for moment, text in events[:MOST_EVENTS])
+    happens = "".join(f", at {_number(moment)} s {text}" for moment, text in events[: constants.MOST_EVENTS])
     return f"{plot.title} from {_number(start)} to {_number(end)} s: {'; '.join(texts)}{limits}{happens}"
 
 
@@ -240,12 +245,12 @@ def _ticks(plot: Plot) -> list[float]:
     every = np.concatenate([s.values for s in plot.series] + [np.array([v for _, v in plot.limits])])
     every = every[np.isfinite(every)]
     low, high = (float(every.min()), float(every.max())) if len(every) else (0.0, 1.0)
-    if high - low <= FLAT * max(abs(low), abs(high), 1e-12):
+    if high - low <= constants.FLAT * max(abs(low), abs(high), 1e-12):
         pad = abs(high) * 0.5 or 1.0
         low, high = low - pad, high + pad
-    raw = (high - low) / TICKS
+    raw = (high - low) / constants.TICKS
     power = 10.0 ** math.floor(math.log10(raw))
-    step = next(m * power for m in ROUND_STEPS if m * power >= 0.999 * raw)
+    step = next(m * power for m in constants.ROUND_STEPS if m * power >= 0.999 * raw)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return [k * step if k else 0.0 for k in range(first, last + 1)]
 
@@ -264,9 +269,9 @@ def _path(x: Array, y: Array) -> str:
 
 
 def _kept_samples(y: Array) -> Sequence[int]:
-    if len(y) <= 2 * MOST_COLUMNS:
+    if len(y) <= 2 * constants.MOST_COLUMNS:
         return range(len(y))
-    edges = np.linspace(0, len(y), MOST_COLUMNS + 1).astype(int)
+    edges = np.linspace(0, len(y), constants.MOST_COLUMNS + 1).astype(int)
     kept = {0, len(y) - 1}
     for a, b in zip(edges[:-1], edges[1:], strict=True):
         piece = np.where(np.isfinite(y[a:b]), y[a:b], 0.0)

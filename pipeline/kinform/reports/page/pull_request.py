@@ -10,8 +10,6 @@ from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.scene import Scene
 
-__all__ = ["page_pictures", "page_summary"]
-
 
 def page_pictures(scene: Scene) -> dict[str, bytes]:
     """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first."""

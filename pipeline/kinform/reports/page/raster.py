@@ -16,9 +16,6 @@ from numpy.typing import NDArray
 from kinform.model.arrays import Array, Ints
 from kinform.reports.constants import EYE_RISE, EYE_TURN, PORTION, VIEW_MARGIN
 
-__all__ = ["AXES", "Buffers", "View", "png", "rasterise", "view_of"]
-
-
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
 
 

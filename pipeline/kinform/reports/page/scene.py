@@ -19,8 +19,6 @@ from kinform.reports.page.movements import Movement, movements_of
 from kinform.reports.page.overlaps import overlap_shapes
 from kinform.reports.page.subjects import wanted_names
 
-__all__ = ["Scene"]
-
 
 @dataclass(frozen=True, eq=False)
 class Scene:

@@ -9,9 +9,6 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import ARC_PIECES, SIGNAL_COLOUR
 
-__all__ = ["dashed", "polyline", "rgb", "ring", "strokes_of"]
-
-
 TURNING = ("revolute", "cylindrical", "screw", "planar")
 SLIDING = ("prismatic", "cylindrical", "screw")
 

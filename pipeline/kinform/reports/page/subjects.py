@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from kinform.design import Design
 from kinform.model.names import PartName
 
-__all__ = ["subjects_of", "wanted_names"]
-
 
 def subjects_of(design: Design, names: Iterable[str]) -> tuple[list[str], list[str]]:
     """The parts and the derived joints that names stand for: parts, groups, bodies, joints, intended joints."""

@@ -11,8 +11,6 @@ from kinform.model.function import IntendedJoint
 from kinform.model.mass import MassProperties
 from kinform.reports.values.plain import fields
 
-__all__ = ["assembly_values", "contact_values", "mass_values"]
-
 
 def assembly_values(design: Design) -> dict[str, Any]:
     """Parts, groups, function and tolerances."""

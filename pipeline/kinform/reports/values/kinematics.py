@@ -11,8 +11,6 @@ from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.reports.freedom_phrases import freedom_text, metres
 from kinform.reports.values.plain import fields
 
-__all__ = ["joint_values", "mobility_counts", "mobility_values", "one_joint", "ranged", "release"]
-
 
 def joint_values(design: Design) -> dict[str, Any]:
     """Bodies and joints, and how they come apart."""

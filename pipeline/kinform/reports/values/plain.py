@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["fields", "plain"]
-
 
 def plain(value: Any) -> Any:
     """The value as JSON has it: arrays as lists, and null for what is not a finite number."""

@@ -13,8 +13,6 @@ from kinform.model.collisions import JointRange
 from kinform.model.simulation import Simulation
 from kinform.reports.values.plain import fields
 
-__all__ = ["behaviour_values", "coordinates", "simulation_values"]
-
 
 def behaviour_values(design: Design) -> dict[str, Any]:
     """Counts of the port model at each level, and its network."""

@@ -19,8 +19,6 @@ from kinform.reports.values.kinematics import joint_values, mobility_values, one
 from kinform.reports.values.plain import fields, plain
 from kinform.reports.values.runs import behaviour_values, simulation_values
 
-__all__ = ["TOPICS", "joint_evidence", "joint_json", "summary", "summary_json"]
-
 
 def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
     """The values of one topic, or of all of them, as JSON has them: dicts, lists, text, numbers, None.

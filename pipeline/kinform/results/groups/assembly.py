@@ -27,8 +27,6 @@ from kinform.results.table import (
     write_texts,
 )
 
-__all__ = ["read", "read_contents", "read_files", "read_header", "write"]
-
 
 @dataclass(frozen=True)
 class _Meshes:

@@ -34,8 +34,6 @@ from kinform.results.table import (
     write_rows,
 )
 
-__all__ = ["read", "write"]
-
 SIGNALS: dict[str, type] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}
 LAW = integer("law")
 

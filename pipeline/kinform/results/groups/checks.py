@@ -5,6 +5,4 @@ from __future__ import annotations
 from kinform.model.checks import CheckSettings
 from kinform.results.layout import Layout, Row, Table, Texts
 
-__all__ = ["CHECK"]
-
 CHECK = Layout(CheckSettings, Row("header", "file", "line"), Texts("select"), Table("severity"), Table("ignore"))

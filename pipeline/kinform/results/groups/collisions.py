@@ -12,8 +12,6 @@ from kinform.model.names import JointName
 from kinform.model.simulation import Simulation
 from kinform.results.layout import Layout, Rows, Table
 
-__all__ = ["COLLISIONS"]
-
 
 @dataclass(frozen=True)
 class _Side:

@@ -14,8 +14,6 @@ from kinform.model.kinematics import ConstraintMatrix
 from kinform.results.layout import Layout, Numbers, Row, Rows, Texts
 from kinform.results.table import TEXT, read_columns, stored_text, write_columns
 
-__all__ = ["read", "write"]
-
 
 class _Origins:
     """Of each row its patch and sample, and for readers the parts that the patch is between."""

@@ -16,8 +16,6 @@ from kinform.model.quantities import Metres, PartPair
 from kinform.results.layout import Layout, Rows, Table
 from kinform.results.table import read_columns, write_columns
 
-__all__ = ["read", "write"]
-
 SAMPLES = {
     "x": "m", "y": "m", "z": "m", "normal_x": "1", "normal_y": "1", "normal_z": "1", "gap": "m", "weight": "m²",
 }  # fmt: skip

@@ -8,8 +8,6 @@ from kinform.design import Design
 from kinform.model.findings import CheckReport
 from kinform.results.layout import Layout, Table
 
-__all__ = ["read", "write"]
-
 LAYOUT = Layout(CheckReport, Table("findings"), Table("rules"), Table("ignored"), Table("gone"))
 
 

@@ -11,8 +11,6 @@ from kinform.results.layout import Layout, Ragged, Row, Rows, Table
 from kinform.results.records import columns_of, hint
 from kinform.results.table import read_rows, text, write_rows
 
-__all__ = ["FUNCTION", "REQUEST"]
-
 
 class _Drives:
     """One row a drive with the numbers of its law; the points of tables are ragged."""

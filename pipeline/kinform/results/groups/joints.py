@@ -11,8 +11,6 @@ from kinform.design import Design
 from kinform.model.kinematics import Body, Kinematics
 from kinform.results.layout import Layout, Ragged, Row, Table, Texts
 
-__all__ = ["read", "read_bodies", "read_decisions", "write"]
-
 LAYOUT = Layout(
     Kinematics,
     Table("bodies"),

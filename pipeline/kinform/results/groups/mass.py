@@ -8,8 +8,6 @@ from kinform.design import Design
 from kinform.model.mass import MassReport
 from kinform.results.layout import Layout, Row, Table
 
-__all__ = ["read", "write"]
-
 LAYOUT = Layout(MassReport, Row("summary", "valid"), Table("parts"), Table("bodies"), Table("problems"))
 
 

@@ -8,8 +8,6 @@ from kinform.design import Design
 from kinform.model.kinematics import Mobility
 from kinform.results.layout import Layout, Numbers, Ragged, Row, Table, Texts
 
-__all__ = ["read", "write"]
-
 LAYOUT = Layout(
     Mobility,
     Row("counts", "instantaneous", "finite", "effective", "idle", "redundant", "blocked"),

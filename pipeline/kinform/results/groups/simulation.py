@@ -13,8 +13,6 @@ from kinform.results.groups.collisions import COLLISIONS
 from kinform.results.layout import Layout, Numbers, Row, Rows, Table, Texts, WholeColumns
 from kinform.results.table import TEXT
 
-__all__ = ["read", "write"]
-
 
 class _EnergyColumns:
     """What the columns of `energy` are."""

@@ -11,8 +11,6 @@ from kinform.model.surfaces import MeshSurfaces
 from kinform.results.layout import Layout, Ragged, Table
 from kinform.results.table import FACETS
 
-__all__ = ["read", "write"]
-
 
 @dataclass(frozen=True, eq=False)
 class _Mesh(MeshSurfaces):

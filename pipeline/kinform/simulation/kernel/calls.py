@@ -18,8 +18,6 @@ import numpy as np
 from kinform.simulation.kernel import equations, explicit, layout
 from kinform.simulation.kernel.tables import Tables, address, addresses
 
-__all__ = ["Engine", "engine", "plainly", "ready"]
-
 
 def plainly(unit: Callable[..., Any], tables: Tables, *arguments: Any) -> Any:
     """What the unit returns for the tables and the arguments, whose arrays it changes as compiled code would.

@@ -18,8 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Nums, Work,
 )  # fmt: skip
 
-__all__ = ["choose"]
-
 
 def choose(ints: Ints, nums: Nums, work: Work) -> None:
     """Picks rows and dependent rates by complete pivoting, those of closing joints first; writes the

@@ -34,8 +34,6 @@ from kinform.simulation.kernel import (
     vectors,
 )
 
-__all__ = ["compiled_units", "is_cached"]
-
 _MODULES = (vectors, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
 _UNITS = (

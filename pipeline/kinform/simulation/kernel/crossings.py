@@ -27,8 +27,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Nums,
 )  # fmt: skip
 
-__all__ = ["alike", "laid", "tip"]
-
 
 def alike(a: float, b: float) -> float:
     """The lesser of two slopes over the greater; 0 when one is not positive."""

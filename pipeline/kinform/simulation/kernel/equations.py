@@ -19,8 +19,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["derivative", "project", "torn"]
-
 
 def impose(links: Index, columns: Index, values: Table, pieces: Table, t: float, y: Row, first: int) -> None:
     """Puts led joints where their laws have them."""

@@ -50,8 +50,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["advance", "look", "sample", "stop_reached"]
-
 
 def sample(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, out: Row) -> None:
     """Writes an output: the state with loops closed, accelerations, efforts given and needed."""

@@ -18,8 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Vector,
 )  # fmt: skip
 
-__all__ = ["between", "control", "drive", "law", "loads", "pace", "push"]
-
 
 def law(values: Table, pieces: Table, k: int, t: float) -> Vector:
     """(value, rate, acceleration) of signal k at time t."""

@@ -18,8 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["back_substitute", "eliminate", "gained", "gap_of", "gather", "line_of"]
-
 
 def line_of(frame: Row, tip: Row, length: float, axis: int) -> tuple[float, float, float, float, float, float]:
     """The wrench (τ; f) about the centre whose power is the rate of the gap along axis 0 to 5 of a loop,

@@ -18,8 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["cholesky", "heavy", "inertias", "mass_matrix", "momentum", "solve_cholesky", "wrenches"]
-
 
 def momentum(
     link: Row, w0: float, w1: float, w2: float, l0: float, l1: float, l2: float

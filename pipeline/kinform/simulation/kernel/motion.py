@@ -17,8 +17,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["place_ball", "place_links", "place_screw", "twist_links"]
-
 
 def place_screw(numbers: Row, parent: Row, link: Row, screw: Row, q: float) -> None:
     """Pose and screw of a link at the value q, from the pose of its parent."""

@@ -29,8 +29,6 @@ from numba.core import cgutils, types
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import lower_builtin, models, register_model
 
-__all__ = ["Row", "Table", "Tables"]
-
 WORD, WHOLE = ir.IntType(64), types.int64
 PAIR = types.UniTuple(WHOLE, 2)
 FIRST = {"target": "cpu"}

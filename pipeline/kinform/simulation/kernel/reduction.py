@@ -18,8 +18,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["factor", "reduce", "settle", "weigh"]
-
 
 def weigh(before: Index, matrix: Table, x: Row, n: int, out: Row) -> None:
     """Takes the mass matrix times x from `out`. The matrix has numbers where rates carry each other only."""

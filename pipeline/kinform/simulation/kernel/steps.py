@@ -27,8 +27,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
-__all__ = ["interpolate", "prepare", "roundings", "slope", "stage", "try_step"]
-
 
 def slope(ints: Ints, nums: Nums, work: Work, clock: Row, t: float, y: Row, dy: Row) -> float:
     """The derivative, in y closed first when a singular pose is near: accelerations depend on it there."""

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["Tables", "address", "addresses"]
-
 
 def address(array: NDArray[Any]) -> int:
     """Of the first number of an array of float64 or int64 in C order; TypeError for any other."""

@@ -6,8 +6,6 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     Row, Vector,
 )  # fmt: skip
 
-__all__ = ["add", "along", "cross", "dot", "place", "put", "six", "three", "turned"]
-
 
 def three(row: Row, j: int) -> Vector:
     """Three numbers of a row from column j."""

@@ -25,8 +25,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.mechanism import Mechanism, Slot
 
-__all__ = ["Acts", "Actuation", "Between", "Push", "Stop"]
-
 
 @dataclass(frozen=True, eq=False)
 class Acts:

@@ -14,8 +14,6 @@ from kinform.model.arrays import Array, Ints
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.settings import SolverSettings
 
-__all__ = ["Factor", "factor", "rank_of", "settle"]
-
 
 @dataclass(frozen=True, eq=False)
 class Factor:

@@ -13,8 +13,6 @@ from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import BallLink, Mechanism, Slot
 from kinform.simulation.mechanism.topology import Topology, arrange
 
-__all__ = ["assemble"]
-
 
 @dataclass
 class _Links:

@@ -17,8 +17,6 @@ from kinform.simulation.mechanism.kernel_tables import tabulate
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States
 
-__all__ = ["Dynamics"]
-
 
 class Dynamics:
     """Constants of one mode of a run: which joints are led, and the rank of the loops for the others."""

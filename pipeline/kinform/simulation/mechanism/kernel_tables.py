@@ -13,8 +13,6 @@ from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.mechanism import Mechanism
 
-__all__ = ["tabulate"]
-
 
 def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Actuation, rank: int) -> Tables:
     """Tables of the mechanism under gravity (3,); `rank` of the loops for rates that are not led.

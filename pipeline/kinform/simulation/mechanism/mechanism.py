@@ -20,9 +20,6 @@ from kinform.behaviour.primitives import OneFreedom
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.model.arrays import Array, Ints
 
-__all__ = ["BallLink", "Mechanism", "Slot"]
-
-
 IDENTITY = np.eye(4)
 
 

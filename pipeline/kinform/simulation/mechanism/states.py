@@ -13,8 +13,6 @@ from kinform.foundation.algebra.spatial import along_motion, cross_motion
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import Mechanism
 
-__all__ = ["States", "poses_at", "states_at"]
-
 
 @dataclass(frozen=True, eq=False)
 class States:

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 from kinform.foundation.graphs.graph import UnionFind, forest
 
-__all__ = ["Carried", "Topology", "arrange"]
-
 
 @dataclass(frozen=True)
 class Carried:

@@ -19,8 +19,6 @@ from kinform.simulation.mechanism.states import States
 from kinform.simulation.outcome.gear_forces import toothed
 from kinform.simulation.outcome.reactions import Network, Reactions, along_rates, applied
 
-__all__ = ["Balance", "imbalance"]
-
 
 @dataclass(frozen=True, eq=False)
 class Balance:

@@ -12,9 +12,6 @@ from kinform.simulation.mechanism.actuation import Acts
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.solver.record import Record
 
-__all__ = ["drive_uses"]
-
-
 _KINDS = {
     layout.EFFORT: "effort", layout.SPRING: "spring", layout.DAMPER: "damper", layout.SERVO: "servo",
     layout.MOTOR: "dc_motor", layout.CONTROLLED: "dc_motor",

@@ -16,8 +16,6 @@ from kinform.model.arrays import Array, Flags
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 
-__all__ = ["Transmitted", "toothed", "transmitted"]
-
 
 @dataclass(frozen=True, eq=False)
 class Transmitted:

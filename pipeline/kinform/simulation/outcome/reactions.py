@@ -23,8 +23,6 @@ from kinform.simulation.mechanism.states import States
 from kinform.simulation.mechanism.topology import arrange
 from kinform.simulation.outcome.gear_forces import Transmitted, toothed, transmitted
 
-__all__ = ["Network", "Reactions", "along_rates", "applied", "joint_points", "needs", "reactions"]
-
 
 @dataclass(frozen=True, eq=False)
 class Reactions:

@@ -21,8 +21,6 @@ from kinform.simulation.outcome.reactions import Reactions, reactions
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.record import Record
 
-__all__ = ["publish", "publish_dynamic", "while_in_mesh"]
-
 
 def while_in_mesh(mechanism: Mechanism, system: System, record: Record) -> Record:
     """The record up to where the last teeth of a gear let go: from there on nothing couples its shafts."""

@@ -21,8 +21,6 @@ from kinform.simulation.solver.run import Run
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stops import Contact
 
-__all__ = ["run_dynamic"]
-
 
 def run_dynamic(
     dynamics: Dynamics,

@@ -19,8 +19,6 @@ from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import states_at
 from kinform.simulation.settings import SolverSettings
 
-__all__ = ["Follower", "Led", "PathEnd"]
-
 
 @dataclass(frozen=True, eq=False)
 class Led:

@@ -17,19 +17,10 @@ from typing import Any
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation.constants import (
-    FAST_DECAY,
-    FIRST_IMPLICIT_STEP,
-    JACOBIAN_STEP,
-    REAL_ROOT,
-    STOP_HALVINGS,
-    STOP_PASSED,
-)
+from kinform.simulation import constants
 from kinform.simulation.kernel import layout
 from kinform.simulation.solver.run import Run
 from kinform.simulation.solver.stops import Contact
-
-__all__ = ["is_stiff", "run_implicit"]
 
 
 def is_stiff(run: Run) -> bool:
@@ -41,7 +32,7 @@ def is_stiff(run: Run) -> bool:
     if not np.all(np.isfinite(matrix)):
         return False
     values = np.linalg.eigvals(matrix)
-    return bool(np.any((-values.real * step > FAST_DECAY) & (np.abs(values.imag) < -values.real)))
+    return bool(np.any((-values.real * step > constants.FAST_DECAY) & (np.abs(values.imag) < -values.real)))
 
 
 def _jacobian(run: Run, t: float, at: Array) -> Array:
@@ -50,7 +41,7 @@ def _jacobian(run: Run, t: float, at: Array) -> Array:
     out = np.zeros((size, size))
     ends = np.zeros((2, size))
     for k in range(size):
-        h = JACOBIAN_STEP * max(1.0, abs(at[k]))
+        h = constants.JACOBIAN_STEP * max(1.0, abs(at[k]))
         for side, sign in enumerate((1.0, -1.0)):
             y = at.copy()
             y[k] += sign * h
@@ -86,7 +77,7 @@ def _until_change(run: Run, contact: Contact, report: Callable[[], None]) -> str
     start = float(run.clock[layout.NOW])
     solver: Any = Radau(
         rates, start, run.y.copy(), end, rtol=settings.implicit_rtol, atol=settings.implicit_atol,
-        first_step=min(FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(),
+        first_step=min(constants.FIRST_IMPLICIT_STEP, end - start), max_step=contact.longest(),
         jac=lambda t, y: _jacobian(run, t, y),
     )  # fmt: skip
     while solver.status == "running":
@@ -133,11 +124,11 @@ def _passed(run: Run, solver: Any, before: float) -> tuple[int, float]:
             continue
         # The curve over the step is a cubic: where it turns, and its ends, are where it reaches farthest.
         beyond = _Beyond(dense, int(at), int(sense), float(tables.nums[layout.STOPS][k, 0]))
-        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > STOP_PASSED), None)
+        past = next((t for t in (*beyond.turns(before, end), end) if beyond(t) > constants.STOP_PASSED), None)
         if past is None:
             continue
         low, high = before, past
-        for _ in range(STOP_HALVINGS):
+        for _ in range(constants.STOP_HALVINGS):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if beyond(middle) > 0.0 else (middle, high)
         hit, end = k, high
@@ -161,7 +152,7 @@ class _Beyond:
         share = np.linspace(0.0, 1.0, 4)
         cubic = np.linalg.solve(np.vander(share), [self(begin + x * (end - begin)) for x in share])
         roots = np.roots(np.polyder(cubic))
-        real = np.sort(roots[np.abs(roots.imag) < REAL_ROOT].real)
+        real = np.sort(roots[np.abs(roots.imag) < constants.REAL_ROOT].real)
         return [float(begin + x * (end - begin)) for x in real if 0.0 < x < 1.0]
 
 

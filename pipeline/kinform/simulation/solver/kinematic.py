@@ -13,8 +13,6 @@ from kinform.simulation.solver.follow import Follower, Led
 from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.start import Start
 
-__all__ = ["notes_of_rest", "run_kinematic"]
-
 
 def _follower(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> Follower:
     led = Led(actuation.led_q, actuation.led, actuation.led_values, actuation.led_rates)

@@ -6,8 +6,6 @@ from dataclasses import dataclass, fields, replace
 
 from kinform.model.arrays import Array
 
-__all__ = ["Record"]
-
 
 @dataclass(frozen=True, eq=False)
 class Record:

@@ -14,8 +14,6 @@ from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.start import Start
 
-__all__ = ["Run"]
-
 
 class Run:
     """One run: `y` at clock[NOW], and the outputs so far."""

@@ -9,22 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array
-from kinform.simulation.constants import (
-    CONTRADICTION,
-    CONTRADICTION_LEAST,
-    LEAST_MOTION,
-    START_GAP,
-    START_NAMED,
-    START_SHARE,
-)
+from kinform.simulation import constants
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.closure import factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.follow import Follower, Led
-
-__all__ = ["Start", "Stated", "begin", "loop_rank", "torn_at_start"]
-
 
 OVERDRIVEN = (
     "drives and initial values state more than the loops leave free and contradict each other, "
@@ -144,7 +134,7 @@ def _opens(follower: Follower, v: Array) -> bool:
 def _notes_of_least(mechanism: Mechanism, follower: Follower, v: Array) -> tuple[str, ...]:
     """What loops share out between joints, and nothing that is stated decides how: a loose pin turns with either."""
     rates = np.abs(v[follower.undetermined])
-    moving = follower.undetermined[rates > LEAST_MOTION * float(rates.max(initial=0.0))]
+    moving = follower.undetermined[rates > constants.LEAST_MOTION * float(rates.max(initial=0.0))]
     if not len(moving):
         return ()
     return (
@@ -160,7 +150,7 @@ def _contradictions(actuation: Actuation, stated: tuple[Stated, ...]) -> tuple[s
     for value in stated:
         for k in np.flatnonzero(actuation.led == value.v):
             wanted, law = (value.position, value.velocity), (values[k], rates[k])
-            if not np.allclose(wanted, law, rtol=CONTRADICTION, atol=CONTRADICTION_LEAST):
+            if not np.allclose(wanted, law, rtol=constants.CONTRADICTION, atol=constants.CONTRADICTION_LEAST):
                 notes.append(f"{value.name} starts where its motion law puts it, not at its initial value")
     return tuple(notes)
 
@@ -190,9 +180,9 @@ def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank
     # Each motion alone, and all at once: where branches meet, their sum lies on none.
     for motion in (*null.T, null.sum(axis=1)):
         step = np.zeros(mechanism.rates)
-        step[free] = START_SHARE * motion / np.abs(motion / mechanism.scale[free]).max()
+        step[free] = constants.START_SHARE * motion / np.abs(motion / mechanism.scale[free]).max()
         _, gap, _ = settle(mechanism, mechanism.advance(start.q, step), free, rank, settings)
-        if gap > START_GAP * START_SHARE**2:
-            moving = free[np.abs(motion) > START_NAMED * np.abs(motion).max()]
+        if gap > constants.START_GAP * constants.START_SHARE**2:
+            moving = free[np.abs(motion) > constants.START_NAMED * np.abs(motion).max()]
             return ", ".join(mechanism.joints_of(moving))
     return ""

@@ -14,8 +14,6 @@ from kinform.model.arrays import Array
 from kinform.surfaces.constants import ON_AXIS
 from kinform.surfaces.kinds.kind import Batch, Params
 
-__all__ = ["Cylindrical", "angular_widths", "azimuths", "cylindrical", "frames"]
-
 
 def frames(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors across each axis (N, 3), without branches (Duff and others, Building an orthonormal basis,

@@ -20,8 +20,6 @@ from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled
 from kinform.surfaces.polygons.noise import Scale
 
-__all__ = ["Cone"]
-
 
 class Cone(Ruled):
     """Axis from the small circle of the normals, then radius linear along the axis, then least squares."""

@@ -13,8 +13,6 @@ from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled, generators
 from kinform.surfaces.polygons.noise import Scale
 
-__all__ = ["Cylinder"]
-
 
 class Cylinder(Ruled):
     """Axis from the ridges (or the normals, where ridges are short), then a circle, then least squares."""

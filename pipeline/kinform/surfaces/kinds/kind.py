@@ -18,8 +18,6 @@ from kinform.surfaces.groups import normal_equations, occurrences, solve_normal,
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 
-__all__ = ["Batch", "DoublyCurved", "Kind", "Params", "Probe", "distinct_angles", "widths"]
-
 Params = Array
 """(R, 8): axis, point, radius, half-angle."""
 

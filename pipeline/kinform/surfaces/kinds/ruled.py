@@ -13,25 +13,11 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    ALONG,
-    APEX,
-    BOW,
-    CONVERGED,
-    DAMPING,
-    LEAST_RADIUS,
-    RING_APART,
-    SECOND_STRIP,
-    SHIFT_LIMIT,
-    STEEPEST_CONE,
-    TILT_LIMIT,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.groups import distinct, normal_equations, quantile, solve_normal
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.kind import Batch, Kind, Params, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scale
-
-__all__ = ["Ruled", "generators", "with_apices"]
 
 
 class Ruled(Kind, Protocol):
@@ -57,12 +43,12 @@ class Ruled(Kind, Protocol):
             group, columns = region, self._columns(at, (x[region], y[region]), radius, angle)
             residual = (at.rho - radius) * np.cos(angle) - at.t * np.sin(angle) if self.tapers else at.rho - radius
             if self.tapers:
-                tips = np.flatnonzero(at.rho < APEX * radius)
+                tips = np.flatnonzero(at.rho < constants.APEX * radius)
                 group, columns, residual = with_apices(params[region], points, region, columns, residual, tips)
             matrix, right = normal_equations(group, columns, residual, count)
-            change = -solve_normal(matrix, right, DAMPING)
+            change = -solve_normal(matrix, right, constants.DAMPING)
             params = self.step(params, change)
-            if np.abs(change).max(initial=0.0) < CONVERGED:
+            if np.abs(change).max(initial=0.0) < constants.CONVERGED:
                 break
         return params
 
@@ -134,17 +120,19 @@ class Ruled(Kind, Protocol):
     def step(self, params: Params, change: Array) -> Params:
         """The surfaces with their free parameters changed, within bounds; as they were where that is not finite."""
         x, y = frames(params[:, :3])
-        limit = np.abs(params[:, 6])[:, None] + SHIFT_LIMIT
+        limit = np.abs(params[:, 6])[:, None] + constants.SHIFT_LIMIT
         shift = np.clip(change[:, :2], -limit, limit)
-        tilt = np.clip(change[:, 2:4], -TILT_LIMIT, TILT_LIMIT)
+        tilt = np.clip(change[:, 2:4], -constants.TILT_LIMIT, constants.TILT_LIMIT)
         out = params.copy()
         out[:, 3:6] += shift[:, :1] * x + shift[:, 1:] * y
         axis = params[:, :3] + tilt[:, :1] * x + tilt[:, 1:] * y
         out[:, :3] = axis / np.maximum(np.linalg.norm(axis, axis=1), 1e-300)[:, None]
-        out[:, 6] = np.maximum(params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), LEAST_RADIUS)
+        out[:, 6] = np.maximum(
+            params[:, 6] + np.clip(change[:, 4], -limit[:, 0] / 2, limit[:, 0]), constants.LEAST_RADIUS
+        )
         if self.tapers:
-            taper = params[:, 7] + np.clip(change[:, 5], -TILT_LIMIT, TILT_LIMIT)
-            out[:, 7] = np.clip(taper, -STEEPEST_CONE, STEEPEST_CONE)
+            taper = params[:, 7] + np.clip(change[:, 5], -constants.TILT_LIMIT, constants.TILT_LIMIT)
+            out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
         return np.where(np.isfinite(out).all(axis=1, keepdims=True), out, params)
 
     def evident(self, batch: Batch, params: Params, scale: Scale) -> tuple[Ints, Array, Flags]:
@@ -159,13 +147,13 @@ class Ruled(Kind, Protocol):
         even = np.zeros(count, bool)
         several = np.diff(start) >= 2
         first = start[:-1][several]
-        even[several] = width[order[first + 1]] >= SECOND_STRIP * width[order[first]]
+        even[several] = width[order[first + 1]] >= constants.SECOND_STRIP * width[order[first]]
         region, vertex = self.defining(batch, params, np.full(count, scale.fit))
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
         mine = params[region]
         angle = azimuths(mine, cylindrical(mine, batch.patchwork.vertices[vertex]).radial)
-        step = RING_APART * quantile(batch.region, width, count, 0.75)
+        step = constants.RING_APART * quantile(batch.region, width, count, 0.75)
         return distinct_angles(region, angle, step, count), sweep, even
 
 
@@ -180,8 +168,8 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
     length = work.length[edge]
     forward = np.abs(dot(end - start, direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
-    straight = aside < 8 * BOW * np.maximum(np.abs(mine[:, 6]), 1e-12)
-    use = (forward > ALONG * length) & straight & (length > 0)
+    straight = aside < 8 * constants.BOW * np.maximum(np.abs(mine[:, 6]), 1e-12)
+    use = (forward > constants.ALONG * length) & straight & (length > 0)
     return region[use], edge[use], inner[use], work.smooth[edge[use]]
 
 

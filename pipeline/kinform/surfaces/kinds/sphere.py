@@ -11,8 +11,6 @@ from kinform.surfaces.groups import group_mean, group_sum, spheres_through
 from kinform.surfaces.kinds.kind import Batch, DoublyCurved, Params, Probe
 from kinform.surfaces.polygons.noise import Scale
 
-__all__ = ["Sphere"]
-
 
 class Sphere(DoublyCurved):
     """Centre and radius are linear in the squares of the distances; then least squares."""

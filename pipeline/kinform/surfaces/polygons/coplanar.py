@@ -12,25 +12,10 @@ from kinform.foundation.algebra.vectors import dot, normalised
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import (
-    COPLANAR_ANGLE,
-    COPLANAR_ROUNDINGS,
-    COPLANAR_SIGMAS,
-    FACING,
-    JOININGS,
-    MOST_TURNED,
-    OUTWARD,
-    PEEL_STEPS,
-    PEELS,
-    SLIVER_PASSES,
-    THIN_NOISES,
-    TURNED_SIGMAS,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.groups import group_mean, group_sum
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale, departures
-
-__all__ = ["coplanar_facets", "fit_planes", "moments"]
 
 
 def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> Ints:
@@ -38,20 +23,20 @@ def coplanar_facets(mesh: Facets, scale: Scale, tolerances: Tolerances) -> Ints:
     inner = np.flatnonzero(mesh.inner)
     f0, f1, length = mesh.f0[inner], mesh.f1[inner], mesh.length[inner]
     base = mesh.vertices[mesh.ends[inner, 0]]
-    thin = mesh.altitude < THIN_NOISES * scale.noise
+    thin = mesh.altitude < constants.THIN_NOISES * scale.noise
     strict, flat = _flat_edges(mesh, inner, thin, scale, tolerances)
     label = components(f0[flat], f1[flat], len(mesh.faces))
     if scale.scatter > 0:
         label = _peel(mesh, label, f0[flat], f1[flat], scale)
         flat = flat & (label[f0] == label[f1])
-    for stricter, limit in ((strict, THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
+    for stricter, limit in ((strict, constants.THIN_NOISES * scale.noise), (np.zeros_like(strict), scale.fit)):
         bent = _flatness(mesh, label) > limit
         if not bent.any():
             break
         flat = np.where(bent[label[f0]], flat & stricter, flat)
         label = components(f0[flat], f1[flat], len(mesh.faces))
     label = _with_slivers(label, thin, f0, f1, length)
-    for _ in range(JOININGS):
+    for _ in range(constants.JOININGS):
         _, mean, centre = moments(mesh, label)
         a, b = label[f0], label[f1]
         gap = np.maximum(np.abs(dot(mean[a], centre[b] - base)), np.abs(dot(mean[b], centre[a] - base)))
@@ -73,17 +58,17 @@ def _flat_edges(
     height = np.maximum(np.abs(dot(mesh.normal[f0], beyond1)), np.abs(dot(mesh.normal[f1], beyond0)))
     solid = ~(thin[f0] | thin[f1])
     strict = solid & (angle < tolerances.coplanar) & (height < scale.fit)
-    flat = strict | (solid & (height < scale.noise) & (angle < COPLANAR_ANGLE))
-    lost = max(COPLANAR_SIGMAS * scale.scatter, COPLANAR_ROUNDINGS * scale.rounding)
+    flat = strict | (solid & (height < scale.noise) & (angle < constants.COPLANAR_ANGLE))
+    lost = max(constants.COPLANAR_SIGMAS * scale.scatter, constants.COPLANAR_ROUNDINGS * scale.rounding)
     narrow0, narrow1 = (1 / np.maximum(mesh.altitude[f], 1e-300) for f in (f0, f1))
-    turned = COPLANAR_ANGLE + TURNED_SIGMAS * lost / COPLANAR_SIGMAS * (narrow0 + narrow1)
-    flat |= solid & (np.abs(departures(mesh, inner)) < lost) & (angle < np.minimum(turned, MOST_TURNED))
+    turned = constants.COPLANAR_ANGLE + constants.TURNED_SIGMAS * lost / constants.COPLANAR_SIGMAS * (narrow0 + narrow1)
+    flat |= solid & (np.abs(departures(mesh, inner)) < lost) & (angle < np.minimum(turned, constants.MOST_TURNED))
     return strict, flat
 
 
 def _with_slivers(label: Ints, thin: Flags, f0: Ints, f1: Ints, length: Array) -> Ints:
     """The labels of facets, with every polygon of slivers given to a neighbour across its longest edge."""
-    for _ in range(SLIVER_PASSES):
+    for _ in range(constants.SLIVER_PASSES):
         count = int(label.max()) + 1 if len(label) else 0
         solid = np.bincount(label, ~thin, count) > 0
         a, b = label[f0], label[f1]
@@ -123,7 +108,7 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
     corners = mesh.vertices[mesh.faces]
     label = np.unique(label, return_inverse=True)[1].astype(np.int64)
     whole = np.zeros(int(label.max()) + 1, bool)
-    for _ in range(PEELS):
+    for _ in range(constants.PEELS):
         count = len(whole)
         open_ = np.flatnonzero(~whole[label])
         if not len(open_):
@@ -134,14 +119,14 @@ def _peel(mesh: Facets, label: Ints, f0: Ints, f1: Ints, scale: Scale) -> Ints:
         normal[label[first]], point[label[first]] = mesh.normal[first], corners[first].mean(axis=1)
         reach[label[first]] = np.maximum(mesh.altitude[first], 1e-300)
         mine, group = corners[open_], label[open_]
-        for step in range(PEEL_STEPS):
+        for step in range(constants.PEEL_STEPS):
             offset = mine - point[group][:, None, :]
             height = np.abs(np.einsum("ijk,ik->ij", offset, normal[group]))
             allowed = scale.noise + 0.0 * height
             if step == 0:
                 far = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset))
                 allowed = scale.noise * (1 + far / reach[group][:, None])
-            on = (height < allowed).all(axis=1) & (dot(mesh.normal[open_], normal[group]) > FACING)
+            on = (height < allowed).all(axis=1) & (dot(mesh.normal[open_], normal[group]) > constants.FACING)
             fitted, centre, _ = fit_planes(np.repeat(group[on], 3), mine[on].reshape(-1, 3), normal)
             normal, point = fitted, np.where(np.bincount(group[on], minlength=count)[:, None] > 0, centre, point)
         member = np.zeros(len(label), bool)
@@ -169,5 +154,5 @@ def fit_planes(group: Ints, points: Array, outward: Array) -> tuple[Array, Array
     covariance = group_sum(group, offset[:, :, None] * offset[:, None, :], count) / size[:, None, None]
     values, vectors = np.linalg.eigh(covariance)
     normal = vectors[:, :, 0] * np.sign(dot(vectors[:, :, 0], outward))[:, None]
-    vague = np.abs(dot(normal, outward)) < OUTWARD
+    vague = np.abs(dot(normal, outward)) < constants.OUTWARD
     return np.where(vague[:, None], outward, normal), centre, np.maximum(values, 0.0)

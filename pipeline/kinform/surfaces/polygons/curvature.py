@@ -14,17 +14,8 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    ALIKE_STRONG,
-    ALIKE_WEAK,
-    ALIKE_WIDTHS,
-    GOING_ALONG,
-    SIMPLE_RATIO,
-    TURNED_ALONG,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.polygons.patchwork import Patchwork
-
-__all__ = ["Curvature", "Links", "continues", "curvature", "links"]
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -70,7 +61,7 @@ def links(work: Patchwork, free: Flags) -> Links:
     shared = np.maximum(np.bincount(number, work.length[edge])[number] if len(key) else np.zeros(0), 1e-300)
     wide = np.maximum(work.area[a], work.area[b]) / shared
     narrow = np.minimum(work.area[a], work.area[b]) / shared
-    return Links(edge, a, b, wide < ALIKE_WIDTHS * narrow)
+    return Links(edge, a, b, wide < constants.ALIKE_WIDTHS * narrow)
 
 
 def curvature(work: Patchwork, link: Links) -> Curvature:
@@ -106,13 +97,15 @@ def continues(work: Patchwork, bent: Curvature, link: Links) -> Flags:
     a, b = link.a, link.b
     strong_a, strong_b = bent.strong[a], bent.strong[b]
     larger = np.maximum(np.abs(strong_a), np.abs(strong_b))
-    like = np.abs(strong_a - strong_b) <= ALIKE_STRONG * larger
-    like &= np.abs(bent.weak[a] - bent.weak[b]) <= ALIKE_WEAK * larger
-    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < SIMPLE_RATIO
+    like = np.abs(strong_a - strong_b) <= constants.ALIKE_STRONG * larger
+    like &= np.abs(bent.weak[a] - bent.weak[b]) <= constants.ALIKE_WEAK * larger
+    simple = np.maximum(bent.ratio[a], bent.ratio[b]) < constants.SIMPLE_RATIO
     cosine = dot(bent.along[a], bent.along[b])
     step = work.centre[b] - work.centre[a]
     size = np.maximum(np.linalg.norm(step, axis=1), 1e-300)
     going = np.abs(dot(step, bent.along[a] + bent.along[b] * np.sign(cosine)[:, None])) / 2 / size
     turn = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
-    allowed = np.where(going > GOING_ALONG, TURNED_ALONG, TURNED_ALONG + work.angle[link.edge])
+    allowed = np.where(
+        going > constants.GOING_ALONG, constants.TURNED_ALONG, constants.TURNED_ALONG + work.angle[link.edge]
+    )
     return np.asarray(like & (~simple | (turn <= allowed)))

@@ -10,8 +10,6 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.meshes.edges import edge_table
 from kinform.model.arrays import Array, Flags, Ints
 
-__all__ = ["Facets", "angles"]
-
 
 @dataclass(frozen=True, eq=False)
 class Facets:

@@ -17,25 +17,8 @@ from kinform.foundation.algebra.vectors import cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.tolerances import Tolerances
-from kinform.surfaces.constants import (
-    CALM_SHARE,
-    CALM_SHARE_OF_RIPPLE,
-    FIT_SIGMAS,
-    FITS_PER_NOISE,
-    LEAST_EDGES,
-    LEAST_SPOKES,
-    MIXED_PER_SIGMA,
-    NOISE_ROUNDINGS,
-    NOISE_SIGMAS,
-    REPEATED,
-    REPEATED_ROW,
-    RIPPLE,
-    RUN_OF_EDGES,
-    SCATTER_SHOWS,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.polygons.facets import Facets
-
-__all__ = ["Scale", "departures", "scatter"]
 
 
 @dataclass(frozen=True)
@@ -56,10 +39,15 @@ class Scale:
         """Those of a mesh that was stored with this rounding: vertices that scatter more widen everything to four
         standard deviations."""
         sigma = scatter(mesh, tolerances.smooth_edge)
-        noise = max(tolerances.fit / FITS_PER_NOISE, NOISE_ROUNDINGS * rounding)
-        fit = max(tolerances.fit, FITS_PER_NOISE * noise)
-        if SCATTER_SHOWS * sigma > noise:
-            return cls(max(rounding, sigma), sigma, noise=NOISE_SIGMAS * sigma, fit=max(fit, FIT_SIGMAS * sigma))
+        noise = max(tolerances.fit / constants.FITS_PER_NOISE, constants.NOISE_ROUNDINGS * rounding)
+        fit = max(tolerances.fit, constants.FITS_PER_NOISE * noise)
+        if constants.SCATTER_SHOWS * sigma > noise:
+            return cls(
+                max(rounding, sigma),
+                sigma,
+                noise=constants.NOISE_SIGMAS * sigma,
+                fit=max(fit, constants.FIT_SIGMAS * sigma),
+            )
         return cls(rounding, 0.0, noise=noise, fit=fit)
 
 
@@ -70,8 +58,8 @@ def departures(mesh: Facets, edges: Ints) -> Array:
     scatter it by σ, whatever the shape of the two facets.
     """
     out = np.empty(len(edges))
-    for start in range(0, len(edges), RUN_OF_EDGES):
-        run = slice(start, start + RUN_OF_EDGES)
+    for start in range(0, len(edges), constants.RUN_OF_EDGES):
+        run = slice(start, start + constants.RUN_OF_EDGES)
         a, b, c, d = mesh.vertices[_corners(mesh, edges[run])]
         u, v, w = b - a, c - a, d - a
         uv = cross(u, v)
@@ -105,16 +93,16 @@ def scatter(mesh: Facets, smooth_edge: float) -> float:
         np.maximum.at(above, row, off)
         np.maximum.at(below, row, -off)
         seen += np.bincount(row, minlength=count)
-    mixed = _calmest(mesh, np.minimum(above, below), seen >= LEAST_EDGES, CALM_SHARE)
+    mixed = _calmest(mesh, np.minimum(above, below), seen >= constants.LEAST_EDGES, constants.CALM_SHARE)
     a, b = mesh.ends[near].T
     spokes = np.maximum(np.bincount(a, minlength=count) + np.bincount(b, minlength=count), 1)
     mean = (np.bincount(a, off, count) + np.bincount(b, off, count)) / spokes
     around = (np.bincount(a, mean[b], count) + np.bincount(b, mean[a], count)) / spokes
-    ripple = _calmest(mesh, np.abs(mean - around), spokes >= LEAST_SPOKES, CALM_SHARE_OF_RIPPLE)
-    if mixed <= 0.0 or ripple <= RIPPLE * mixed:
+    ripple = _calmest(mesh, np.abs(mean - around), spokes >= constants.LEAST_SPOKES, constants.CALM_SHARE_OF_RIPPLE)
+    if mixed <= 0.0 or ripple <= constants.RIPPLE * mixed:
         return 0.0
     irregular = _irregular(mesh, inner, above, below)
-    return _calmest(mesh, irregular, seen >= LEAST_EDGES, CALM_SHARE) / MIXED_PER_SIGMA
+    return _calmest(mesh, irregular, seen >= constants.LEAST_EDGES, constants.CALM_SHARE) / constants.MIXED_PER_SIGMA
 
 
 def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
@@ -123,10 +111,10 @@ def _irregular(mesh: Facets, inner: Ints, above: Array, below: Array) -> Array:
     a, b = mesh.ends[inner].T
     alike = np.ones(len(a), bool)
     for value in (above, below):
-        alike &= np.abs(value[a] - value[b]) <= REPEATED * np.maximum(value[a], value[b])
+        alike &= np.abs(value[a] - value[b]) <= constants.REPEATED * np.maximum(value[a], value[b])
     # an edge shows at its four vertices: so few are alike anyway
     label = components(a[alike], b[alike], len(above))
-    return np.where(np.bincount(label)[label] >= REPEATED_ROW, 0.0, np.minimum(above, below))
+    return np.where(np.bincount(label)[label] >= constants.REPEATED_ROW, 0.0, np.minimum(above, below))
 
 
 def _calmest(mesh: Facets, value: Array, readable: Flags, share: float) -> float:

@@ -20,8 +20,6 @@ from kinform.surfaces.polygons.coplanar import coplanar_facets, moments
 from kinform.surfaces.polygons.facets import Facets, angles
 from kinform.surfaces.polygons.noise import Scale
 
-__all__ = ["Patchwork"]
-
 
 @dataclass(frozen=True, eq=False)
 class Patchwork:

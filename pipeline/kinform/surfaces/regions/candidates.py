@@ -13,8 +13,6 @@ from kinform.surfaces.groups import ordered_quantile, quantile
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
 
-__all__ = ["Candidates"]
-
 
 @dataclass(frozen=True, eq=False)
 class Candidates:

@@ -14,8 +14,6 @@ from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
-__all__ = ["Ground", "among"]
-
 
 @dataclass(frozen=True, eq=False)
 class Ground:

@@ -12,25 +12,11 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    ABSORPTIONS,
-    FACET_ROUNDING,
-    FIRST_LAYERS,
-    LAYERS_OF_WHOLE,
-    LOOSE,
-    MAJORITY,
-    MOST_LAYERS,
-    STAGES,
-    TOLERANCE_MEDIANS,
-    UNSHARED,
-    WIDEST,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.ground import Ground, among
-
-__all__ = ["Growth", "absorb", "pursue", "whole"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,10 +36,10 @@ def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
     pieces = batch.select(usable[batch.region])
     side = _facing(kind, pieces, params) if kind.saddle else side
     fit = np.full(batch.count, ground.scale.fit)
-    surfaces = Candidates(kind, params, side, LOOSE * fit).refine(pieces, 2)
+    surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
     share = np.bincount(pieces.region, fits, batch.count) / np.maximum(batch.size, 1)
-    pieces, number = _compact(pieces.select(fits & (share >= MAJORITY)[pieces.region]))
+    pieces, number = _compact(pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]))
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
     kept = kept.within(_justify(kept, pieces, ground.scale))
     pieces = _large(kind, ground.connected(_conforming(kept, pieces)))
@@ -69,10 +55,10 @@ def absorb(ground: Ground, growth: Growth) -> Growth:
     batch, kept = _compact(batch.select(hopeful[batch.region]))
     number = number[kept]
     surfaces = growth.surfaces.of(number)
-    for _ in range(ABSORPTIONS):
+    for _ in range(constants.ABSORPTIONS):
         if not len(batch.region):
             break
-        larger = ground.spread(surfaces, batch, surfaces.reach(batch), LAYERS_OF_WHOLE)
+        larger = ground.spread(surfaces, batch, surfaces.reach(batch), constants.LAYERS_OF_WHOLE)
         gained = larger.size > batch.size
         finished.append(_keys(batch.select(~gained[batch.region]), number))
         batch, kept = _compact(larger.select(gained[larger.region]))
@@ -93,7 +79,7 @@ def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
     fit = np.full(batch.count, ground.scale.fit)
     params, usable = kind.propose(batch)
     batch = batch.select(usable[batch.region])
-    surfaces = Candidates(kind, params, side, LOOSE * fit).refine(batch, 2)
+    surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(ground, surfaces, _settle(ground, surfaces, batch))
     batch, number = _compact(batch)
     kept = surfaces.of(number).refine(batch, 2)
@@ -110,13 +96,15 @@ def _grow(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Ca
     finished = []
     batch, number = _compact(batch)
     growing = surfaces.of(number)
-    for stage in range(STAGES):
+    for stage in range(constants.STAGES):
         if not len(batch.region):
             break
         before = batch.size
         growing = growing.refine(batch, 2).within(fit[number])
         batch = _drop_shared(_settle(ground, growing, batch))
-        batch = ground.spread(growing, batch, growing.reach(batch), min(FIRST_LAYERS << stage, MOST_LAYERS))
+        batch = ground.spread(
+            growing, batch, growing.reach(batch), min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
+        )
         params[number] = growing.params
         still = batch.size == before if stage else np.zeros(batch.count, bool)
         finished.append(_keys(batch.select(still[batch.region]), number))
@@ -139,7 +127,7 @@ def _hopeful(ground: Ground, surfaces: Candidates, batch: Batch) -> Flags:
     """Which regions have a neighbour that would conform if facets were as wide as they may ever be."""
     keys = ground.neighbours(batch.keys)
     beside = Batch.of_keys(ground.patchwork, keys[~among(keys, batch.keys)], batch.count)
-    fits = surfaces.conforms(beside, np.full(batch.count, WIDEST + FACET_ROUNDING))
+    fits = surfaces.conforms(beside, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
     return np.asarray(np.bincount(beside.region[fits], minlength=batch.count) > 0)
 
 
@@ -164,7 +152,7 @@ def _drop_shared(batch: Batch) -> Batch:
     polygon = batch.polygon[order]
     head = np.r_[True, polygon[1:] != polygon[:-1]]
     unshared = np.bincount(batch.region[order][head], minlength=batch.count)
-    return batch.select((unshared > UNSHARED * batch.size)[batch.region])
+    return batch.select((unshared > constants.UNSHARED * batch.size)[batch.region])
 
 
 def _conforming(surfaces: Candidates, batch: Batch) -> Batch:
@@ -189,7 +177,7 @@ def _settle(ground: Ground, surfaces: Candidates, batch: Batch) -> Batch:
 
 def _justify(surfaces: Candidates, batch: Batch, scale: Scale) -> Array:
     """The tolerance that each region's own vertices justify, between the noise and the fit."""
-    return np.clip(TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
+    return np.clip(constants.TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 
 
 def _credible(ground: Ground, surfaces: Candidates, batch: Batch, kept: Candidates, number: Ints) -> Growth:

@@ -11,23 +11,12 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.near import Near
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    FACET_ROUNDING,
-    MERGED_REACH,
-    MERGED_SHAPE,
-    MERGED_SHAPE_FITS,
-    MERGING_FITS,
-    PARALLEL_PLANES,
-    PARTNERS,
-    SAMPLES,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.kind import Batch, widths
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
-
-__all__ = ["coincident_planes", "coincident_regions"]
 
 
 def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
@@ -41,7 +30,7 @@ def coincident_planes(work: Patchwork, number: Ints, scale: Scale) -> Ints:
     normal, centre = np.zeros((count, 3)), np.zeros((count, 3))
     normal[number[member]], centre[number[member]] = work.normal[member], work.centre[member]
     offset = dot(normal, centre)
-    pairs = Near(np.c_[normal, offset], PARALLEL_PLANES).pairs
+    pairs = Near(np.c_[normal, offset], constants.PARALLEL_PLANES).pairs
     if not len(pairs):
         return number
     larger, smaller = _by_size(pairs, area)
@@ -116,7 +105,7 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     as far as a few of its vertices lie near them."""
     kind, params, work = surfaces.kind, surfaces.params, batch.patchwork
     shape = np.c_[np.where(params[:, 7] == 0, params[:, 6], 0.0), params[:, 7], 4.0 * surfaces.side]
-    pairs = Near(shape, max(MERGED_SHAPE, MERGED_SHAPE_FITS * scale.fit)).pairs
+    pairs = Near(shape, max(constants.MERGED_SHAPE, constants.MERGED_SHAPE_FITS * scale.fit)).pairs
     if not len(pairs):
         return pairs[:, 0], pairs[:, 1]
     larger, smaller = _by_size(pairs, size)
@@ -126,16 +115,16 @@ def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Sca
     starts = np.searchsorted(region, np.arange(batch.count + 1))
     alive = np.arange(len(larger))
     distance = np.zeros(len(larger))
-    for k in range(SAMPLES):
+    for k in range(constants.SAMPLES):
         first, last = starts[smaller[alive]], starts[smaller[alive] + 1] - 1
-        at = first + (k * np.maximum(last - first, 0)) // (SAMPLES - 1)
+        at = first + (k * np.maximum(last - first, 0)) // (constants.SAMPLES - 1)
         point = work.vertices[vertex[np.minimum(at, len(vertex) - 1)]]
         distance[alive] = np.maximum(distance[alive], np.abs(kind.probe(params[larger[alive]], point).distance))
-        alive = alive[distance[alive] < MERGING_FITS * scale.fit]
-    distance = np.where(distance < MERGING_FITS * scale.fit, distance, np.inf)
+        alive = alive[distance[alive] < constants.MERGING_FITS * scale.fit]
+    distance = np.where(distance < constants.MERGING_FITS * scale.fit, distance, np.inf)
     order = np.lexsort((larger, distance, smaller))
     place = np.arange(len(order)) - np.searchsorted(smaller[order], smaller[order])
-    close = order[(place < PARTNERS) & np.isfinite(distance[order])]
+    close = order[(place < constants.PARTNERS) & np.isfinite(distance[order])]
     return larger[close], smaller[close]
 
 
@@ -144,8 +133,8 @@ def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Fla
     if not families:
         return np.zeros(0, bool)
     batch, fit = _batch(work, families), surfaces.tolerance
-    fitted = surfaces.within(MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
+    fitted = surfaces.within(constants.MERGING_FITS * fit).refine(batch, 2).within(fit).refine(batch, 3)
     reach = np.zeros(batch.count)
     np.maximum.at(reach, batch.region, widths(fitted.kind, batch, fitted.params))
-    good = fitted.conforms(batch, MERGED_REACH * reach + FACET_ROUNDING)
+    good = fitted.conforms(batch, constants.MERGED_REACH * reach + constants.FACET_ROUNDING)
     return np.asarray(np.bincount(batch.region, ~good, batch.count) == 0)

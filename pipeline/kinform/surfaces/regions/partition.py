@@ -13,20 +13,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    BEND_SLACK,
-    BROAD,
-    DOMINANT,
-    EXPLAINED,
-    FRESH,
-    GRAIN,
-    LEAST_BLEND,
-    LEAST_FREEFORM,
-    LEAST_TURNING_POLYGONS,
-    ROUNDS,
-    STRAIGHT,
-    WORTH,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.groups import distinct, quantile
 from kinform.surfaces.kinds.cone import Cone
 from kinform.surfaces.kinds.cylinder import Cylinder
@@ -38,8 +25,6 @@ from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.ground import Ground
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
-
-__all__ = ["CURVED", "Partition", "Region", "partition"]
 
 CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere(), Torus())
 """The curved kinds, simplest first. A new kind is one more entry."""
@@ -85,11 +70,11 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
     tried = np.zeros(len(work.a), bool)
     total = work.area.sum()
     inner = work.b >= 0
-    tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < GRAIN * total
-    for _ in range(ROUNDS):
+    tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < constants.GRAIN * total
+    for _ in range(constants.ROUNDS):
         chosen = _choose(_search(ground, tried, bent), ground)
         regions += chosen
-        if sum(work.area[region.polygons].sum() for region in chosen) < WORTH * total:
+        if sum(work.area[region.polygons].sum() for region in chosen) < constants.WORTH * total:
             break
     return Partition(tuple(regions), *_remainder(ground))
 
@@ -107,7 +92,9 @@ def _pieces(ground: Ground, link: Links, joined: Flags) -> tuple[Batch, Ints]:
         turning = np.zeros(work.count, bool)
         mark = use & (sign == side)
         turning[link.a[mark]] = turning[link.b[mark]] = True
-        present = np.flatnonzero(free & (np.bincount(label, turning, work.count)[label] >= LEAST_TURNING_POLYGONS))
+        present = np.flatnonzero(
+            free & (np.bincount(label, turning, work.count)[label] >= constants.LEAST_TURNING_POLYGONS)
+        )
         names, number = np.unique(label[present], return_inverse=True)
         keys.append((number + count) * np.int64(work.count) + present)
         sides.append(np.full(len(names), side))
@@ -121,7 +108,7 @@ def _blends(ground: Ground, link: Links, joined: Flags, bent: Curvature) -> tupl
     use = joined & free[link.a] & free[link.b]
     label = components(link.a[use], link.b[use], work.count)
     size = np.bincount(label[free], minlength=work.count)
-    present = np.flatnonzero(free & (size[label] >= LEAST_BLEND))
+    present = np.flatnonzero(free & (size[label] >= constants.LEAST_BLEND))
     names, number = np.unique(label[present], return_inverse=True)
     lean = np.bincount(number, work.area[present] * np.sign(bent.strong[present]), len(names))
     keys = np.sort(number * np.int64(work.count) + present)
@@ -140,7 +127,7 @@ def _whole_pieces(
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
         growths.append(whole(ground, kind, batch.select(suits[batch.region]), side))
-        explained = growths[-1].batch.size >= EXPLAINED * batch.size
+        explained = growths[-1].batch.size >= constants.EXPLAINED * batch.size
         batch = batch.select(~explained[batch.region])
     return growths
 
@@ -159,7 +146,7 @@ def _choose(growths: list[Growth], ground: Ground) -> list[Region]:
     for _, order, _, number, polygons in entries:
         surfaces = growths[order].surfaces
         fresh = polygons[ground.free[polygons]]
-        if len(fresh) < max(surfaces.kind.least, FRESH * len(polygons)):
+        if len(fresh) < max(surfaces.kind.least, constants.FRESH * len(polygons)):
             continue
         ground.free[fresh] = False
         side, tolerance = int(surfaces.side[number]), float(surfaces.tolerance[number])
@@ -180,8 +167,10 @@ def _search(ground: Ground, tried: Flags, bent: Curvature) -> list[Growth]:
     least = np.minimum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
     most = np.maximum(bent.ratio[work.a[seeds]], bent.ratio[work.b[seeds]])
     for kind in SIMPLE:
-        suits = np.flatnonzero((least <= kind.bends[1] + BEND_SLACK) & (most >= kind.bends[0] - BEND_SLACK))
-        batch = _around(ground, seeds[suits], side[suits], STRAIGHT[kind.name])
+        suits = np.flatnonzero(
+            (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
+        )
+        batch = _around(ground, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
         batch = batch.select((batch.size >= kind.least)[batch.region])
         if len(batch.region):
             growths.append(pursue(ground, kind, batch, side[suits]))
@@ -228,11 +217,11 @@ def _remainder(ground: Ground) -> tuple[Ints, Ints]:
     a, b = work.a[edges], work.b[edges]
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
-    dominant = work.area > DOMINANT * nearby / np.maximum(neighbours, 1)
-    dominant |= work.area > BROAD * work.area.sum()
+    dominant = work.area > constants.DOMINANT * nearby / np.maximum(neighbours, 1)
+    dominant |= work.area > constants.BROAD * work.area.sum()
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
-    loose = left & (size >= LEAST_FREEFORM) & (neighbours >= 1) & ~dominant
+    loose = left & (size >= constants.LEAST_FREEFORM) & (neighbours >= 1) & ~dominant
     planes = np.full(work.count, -1)
     planes[left & ~loose] = np.arange(int((left & ~loose).sum()))
     inside = loose[a] & loose[b]

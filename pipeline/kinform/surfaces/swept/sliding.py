@@ -11,30 +11,19 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Ints
-from kinform.surfaces.constants import (
-    ACROSS,
-    BOXES_AGREE,
-    COVERAGE,
-    SCREW_ADVANCE,
-    SLIDING_POLYGONS,
-    STILL,
-    TURNS,
-    UNIQUE,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.describe import Description
 from kinform.surfaces.groups import members
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.slippage import Slippage, slippage
 
-__all__ = ["sliding"]
-
 
 def sliding(work: Patchwork, number: Ints, scale: Scale) -> list[Description]:
     """Patches of polygons (P,), -1 for none, that slide on themselves in one way; the others are left out."""
     out, left = [], []
     for patch in members(number):
-        if len(patch) >= SLIDING_POLYGONS:
+        if len(patch) >= constants.SLIDING_POLYGONS:
             extrusion = _extrusion(work, patch, scale)
             out += [extrusion] if extrusion else []
             left += [] if extrusion else [patch]
@@ -51,14 +40,14 @@ def _extrusion(work: Patchwork, polygons: Ints, scale: Scale) -> Description | N
     normal, weight = work.normal[polygons], work.area[polygons]
     values, vectors = np.linalg.eigh((normal * weight[:, None]).T @ normal / weight.sum())
     speed, spread, _ = np.sqrt(np.maximum(values, 0.0)).tolist()
-    if speed >= STILL or spread <= ACROSS:
+    if speed >= constants.STILL or spread <= constants.ACROSS:
         return None
     axis = vectors[:, 0] * canonical_sign(vectors[:, 0])
     middle = weight @ work.centre[polygons] / weight.sum()
     _, vertex = work.corners.expand(polygons)
     span = (work.vertices[vertex] - middle) @ axis
     length = max(float(np.ptp(span)), 1e-12)
-    angular = float(min(COVERAGE * (speed + scale.rounding / length) / spread, np.pi / 2))
+    angular = float(min(constants.COVERAGE * (speed + scale.rounding / length) / spread, np.pi / 2))
     return Description(
         "extrusion", polygons, axis, middle, extent=(float(span.min()), float(span.max())),
         axis_uncertainty=angular, point_uncertainty=angular * length,
@@ -71,7 +60,9 @@ def _turning(work: Patchwork, patches: list[Ints], scale: Scale) -> list[Descrip
         return []
     patch = np.repeat(np.arange(len(patches)), [len(polygons) for polygons in patches])
     motion = slippage(work, patch, np.concatenate(patches), len(patches))
-    unique = (motion.speed < STILL) & (motion.next_speed > UNIQUE * np.maximum(motion.speed, STILL / 2))
+    unique = (motion.speed < constants.STILL) & (
+        motion.next_speed > constants.UNIQUE * np.maximum(motion.speed, constants.STILL / 2)
+    )
     return [
         _surface_of_turn(work, polygons, motion, k, scale) if unique[k] else None for k, polygons in enumerate(patches)
     ]
@@ -85,7 +76,7 @@ def _together(work: Patchwork, patches: list[Ints]) -> list[list[int]]:
     high = np.array([work.centre[polygons].max(axis=0) for polygons in patches])
     shared = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
     joint = np.maximum(high[:, None], high[None]) - np.minimum(low[:, None], low[None])
-    agree = (shared > BOXES_AGREE * joint).all(axis=2)
+    agree = (shared > constants.BOXES_AGREE * joint).all(axis=2)
     a, b = np.nonzero(np.triu(agree, 1))
     return [group.tolist() for group in members(components(a, b, len(patches))) if len(group) > 1]
 
@@ -93,10 +84,10 @@ def _together(work: Patchwork, patches: list[Ints]) -> list[list[int]]:
 def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, scale: Scale) -> Description | None:
     """What the k-th motion makes of its patch: its kind with axis, point, pitch, and uncertainty."""
     turning, size = float(np.linalg.norm(motion.angular[k])), float(motion.size[k])
-    if turning < TURNS:
+    if turning < constants.TURNS:
         return None
     gained = max(float(motion.next_speed[k]), 1e-12)
-    angular = float(min(COVERAGE * (motion.speed[k] + scale.rounding / size) / gained, np.pi / 2))
+    angular = float(min(constants.COVERAGE * (motion.speed[k] + scale.rounding / size) / gained, np.pi / 2))
     axis, moment = motion.angular[k] / turning, motion.linear[k] / turning
     point = motion.middle[k] + cross(axis, moment) * size
     advance = float(axis @ moment) * size
@@ -107,7 +98,7 @@ def _surface_of_turn(work: Patchwork, polygons: Ints, motion: Slippage, k: int, 
     rho = np.linalg.norm(radial, axis=1)
     radius = float(np.average(rho, weights=work.area[polygons]))
     outward = np.average(dot(work.normal[polygons], radial) / np.maximum(rho, 1e-300), weights=work.area[polygons])
-    screws = abs(advance) > SCREW_ADVANCE * radius
+    screws = abs(advance) > constants.SCREW_ADVANCE * radius
     return Description(
         "helicoid" if screws else "revolution", polygons, axis, point, radius=radius, side=1 if outward >= 0 else -1,
         extent=(float(span.min()), float(span.max())), axis_uncertainty=angular, point_uncertainty=angular * size,

@@ -17,44 +17,10 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, cross, dot, perpendicular
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.constants import (
-    ADVANCE_NOISES,
-    ADVANCE_SHOWS,
-    ADVANCE_STEP,
-    ALIKE_ADVANCE,
-    BENT,
-    COVERAGE,
-    HELIX_MEDIANS,
-    HELIX_SIGMAS,
-    HELIX_STEP,
-    LEAN,
-    LEAST_ARC,
-    LEVEL,
-    LEVEL_NOISES,
-    LONGEST,
-    LOPSIDED,
-    MOST_ADVANCES,
-    MOST_LINES,
-    MOST_PIECES,
-    PIECE_TURNS,
-    REWEIGHINGS,
-    ROUNDED_SCATTER,
-    SAME_LINE,
-    SHORTEST,
-    STEEP,
-    THREAD_POLYGONS,
-    TILT,
-    TILTS,
-    TOUCHING,
-    TURNED,
-    VAGUE_HELIX,
-    WIDE,
-)
+from kinform.surfaces import constants
 from kinform.surfaces.describe import Description, freeform
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
-
-__all__ = ["threads"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,10 +65,10 @@ def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale:
     """Helicoids among the loose polygons (P,), each with all its flanks; `others` suggest axes."""
     free = loose.copy()
     out: list[Description] = []
-    if int(free.sum()) < THREAD_POLYGONS:
+    if int(free.sum()) < constants.THREAD_POLYGONS:
         return out
     for axis, point in _lines(work, free, others):
-        if int(free.sum()) < THREAD_POLYGONS:
+        if int(free.sum()) < constants.THREAD_POLYGONS:
             break
         thread = _about(work, free, axis, point, scale)
         if thread is not None:
@@ -114,8 +80,8 @@ def threads(work: Patchwork, loose: Flags, others: Sequence[Description], scale:
 def _lines(work: Patchwork, free: Flags, others: Sequence[Description]) -> list[tuple[Array, Array]]:
     """Axes and points on them: of cylinders, the largest first, and those about which pieces of what is free turn."""
     cylinders = [(float(work.area[item.polygons].sum()), k) for k, item in enumerate(others) if item.kind == "cylinder"]
-    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * MOST_LINES]
-    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest])[:MOST_LINES]
+    largest = sorted(cylinders, key=lambda c: (-c[0], c[1]))[: 4 * constants.MOST_LINES]
+    lines = _distinct([(others[k].axis, others[k].point) for _, k in largest])[: constants.MOST_LINES]
     return _distinct([*lines, *_turning(work, free)])
 
 
@@ -125,8 +91,8 @@ def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Ar
     for axis, point in candidates:
         for other, through in lines:
             if (
-                np.linalg.norm(cross(axis, other)) < SAME_LINE
-                and np.linalg.norm(cross(point - through, other)) < SAME_LINE
+                np.linalg.norm(cross(axis, other)) < constants.SAME_LINE
+                and np.linalg.norm(cross(point - through, other)) < constants.SAME_LINE
             ):
                 break
         else:
@@ -141,12 +107,12 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
     label = components(work.a[use], work.b[use], work.count)
     area, size = np.bincount(label, work.area * free), np.bincount(label, free)
     out = []
-    for piece in np.argsort(-area, kind="stable")[:MOST_PIECES]:
-        if size[piece] < THREAD_POLYGONS:
+    for piece in np.argsort(-area, kind="stable")[: constants.MOST_PIECES]:
+        if size[piece] < constants.THREAD_POLYGONS:
             continue
         members = np.flatnonzero(free & (label == piece))
         weight = work.area[members]
-        for _ in range(REWEIGHINGS):
+        for _ in range(constants.REWEIGHINGS):
             middle = weight @ work.centre[members] / weight.sum()
             arm = work.centre[members] - middle
             reach = max(float(np.sqrt(weight @ dot(arm, arm) / weight.sum())), 1e-12)
@@ -155,7 +121,7 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
             speed = np.abs(rows @ twist)
             weight = work.area[members] / (1 + (speed / max(float(np.median(speed)), 1e-6)) ** 2)
         turn = float(np.linalg.norm(twist[:3]))
-        if turn > PIECE_TURNS:
+        if turn > constants.PIECE_TURNS:
             axis = twist[:3] / turn
             out.append((axis, middle + cross(axis, twist[3:] / turn) * reach))
     return out
@@ -164,7 +130,7 @@ def _turning(work: Patchwork, free: Flags) -> list[tuple[Array, Array]]:
 def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale) -> Description | None:
     """The thread about a line, if there is one."""
     edges = np.flatnonzero(free[work.a] | ((work.b >= 0) & free[work.b]))
-    if len(edges) < THREAD_POLYGONS:
+    if len(edges) < constants.THREAD_POLYGONS:
         return None
     start = _Screw(axis, point, 0.0)
     best: tuple[float, _Screw, Ints] | None = None
@@ -174,7 +140,7 @@ def _about(work: Patchwork, free: Flags, axis: Array, point: Array, scale: Scale
             continue
         helices = _helices(work, edges, screw, scale)
         members = np.zeros(0, np.int64) if helices is None else _members(work, free, helices, screw)
-        if helices is None or len(members) < THREAD_POLYGONS:
+        if helices is None or len(members) < constants.THREAD_POLYGONS:
             continue
         # diagonals of a regular mesh make short helices of another pitch
         score = float((np.bincount(helices.polyline, helices.turn) ** 2).sum())
@@ -195,31 +161,35 @@ def _slopes(
     mean = distance.reshape(-1, 2).mean(axis=1)
     turn -= 2 * np.pi * np.round(turn / (2 * np.pi))
     length = np.hypot(rise, mean * turn)
-    level = np.abs(widening) <= wide * LEVEL * length + LEVEL_NOISES * scale.noise
-    turning = (np.abs(turn) < HELIX_STEP) & (np.abs(turn) * mean > LEAST_ARC * np.abs(rise)) & (np.abs(turn) > 1e-6)
+    level = np.abs(widening) <= wide * constants.LEVEL * length + constants.LEVEL_NOISES * scale.noise
+    turning = (
+        (np.abs(turn) < constants.HELIX_STEP)
+        & (np.abs(turn) * mean > constants.LEAST_ARC * np.abs(rise))
+        & (np.abs(turn) > 1e-6)
+    )
     advance = np.where(turning, rise / np.where(turning, turn, 1.0), 0.0)
-    doubt = ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
-    steep = (np.abs(advance) > STEEP[0] * mean + doubt) & (np.abs(advance) < STEEP[1] * mean)
+    doubt = constants.ADVANCE_NOISES * scale.noise / np.maximum(np.abs(turn), 1e-9)
+    steep = (np.abs(advance) > constants.STEEP[0] * mean + doubt) & (np.abs(advance) < constants.STEEP[1] * mean)
     return advance, doubt, turn, level & turning & steep
 
 
 def _advances(work: Patchwork, edges: Ints, start: _Screw, scale: Scale) -> list[float]:
     """Advances that many edges have in common, the most turned first."""
-    advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, WIDE[0])
-    rows = np.flatnonzero(usable & (doubt < ADVANCE_SHOWS * np.abs(advance)))
+    advance, doubt, turn, usable = _slopes(work, work.ends[edges], start, scale, constants.WIDE[0])
+    rows = np.flatnonzero(usable & (doubt < constants.ADVANCE_SHOWS * np.abs(advance)))
     out: list[float] = []
-    for _ in range(MOST_ADVANCES):
-        if len(rows) < THREAD_POLYGONS // 2:
+    for _ in range(constants.MOST_ADVANCES):
+        if len(rows) < constants.THREAD_POLYGONS // 2:
             break
         order = rows[np.argsort(advance[rows], kind="stable")]
         values, weight = advance[order], np.abs(turn[order])
-        reach = ALIKE_ADVANCE * np.abs(values) + np.median(doubt[order])
+        reach = constants.ALIKE_ADVANCE * np.abs(values) + np.median(doubt[order])
         total = np.r_[0.0, np.cumsum(weight)]
         low = np.searchsorted(values, values - reach)
         high = np.searchsorted(values, values + reach, side="right")
         held = total[high] - total[low]
         best = int(np.argmax(held))
-        if held[best] < 2 * np.pi * TURNED:
+        if held[best] < 2 * np.pi * constants.TURNED:
             break
         inside = order[low[best] : high[best]]
         out.append(float(np.median(advance[inside])))
@@ -231,16 +201,16 @@ def _helices(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale, wide: fl
     """The edges along the screw's helices, joined to polylines, if they make enough of a thread."""
     ends = work.ends[edges]
     advance, doubt, turn, usable = _slopes(work, ends, screw, scale, wide)
-    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * ALIKE_ADVANCE * abs(screw.advance) + doubt)
+    near = usable & (np.abs(advance - screw.advance) <= 2 * wide * constants.ALIKE_ADVANCE * abs(screw.advance) + doubt)
     if not near.any():
         return None
     ends, turn = ends[near], np.abs(turn[near])
     polyline = components(ends[:, 0], ends[:, 1], len(work.vertices))[ends[:, 0]]
     _, polyline = np.unique(polyline, return_inverse=True)
     turned = np.bincount(polyline, turn)
-    if turned.sum() < 2 * np.pi * TURNED or turned.max() < 2 * np.pi * LONGEST:
+    if turned.sum() < 2 * np.pi * constants.TURNED or turned.max() < 2 * np.pi * constants.LONGEST:
         return None
-    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > SHORTEST * turned.max())
+    keep = (np.bincount(polyline)[polyline] >= 2) & (turned[polyline] > constants.SHORTEST * turned.max())
     return _Helices(ends[keep], np.unique(polyline[keep], return_inverse=True)[1], turn[keep])
 
 
@@ -278,23 +248,27 @@ def _solve(work: Patchwork, helices: _Helices, screw: _Screw, scale: Scale) -> t
     columns = np.stack(
         [(_residuals(work, helices, _step(screw, step * e), vertex, group) - base) / step for e in np.eye(5)], axis=1
     )
-    scatter = max(HELIX_MEDIANS * float(np.median(np.abs(base))), scale.rounding)
-    weight = 1.0 / np.maximum(np.abs(base) / (HELIX_SIGMAS * scatter), 1.0) ** 2
+    scatter = max(constants.HELIX_MEDIANS * float(np.median(np.abs(base))), scale.rounding)
+    weight = 1.0 / np.maximum(np.abs(base) / (constants.HELIX_SIGMAS * scatter), 1.0) ** 2
     matrix = (columns * weight[:, None]).T @ columns
     size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=VAGUE_HELIX) / np.outer(size, size)
+    inverse = np.linalg.pinv(matrix / np.outer(size, size), hermitian=True, rcond=constants.VAGUE_HELIX) / np.outer(
+        size, size
+    )
     change = -inverse @ (columns.T @ (weight * base))
     return _step(screw, change), inverse, scatter, float(np.ptp(height))
 
 
 def _refine(work: Patchwork, edges: Ints, screw: _Screw, scale: Scale) -> _Screw | None:
     """The screw through the polylines of its helices."""
-    for wide in WIDE:
+    for wide in constants.WIDE:
         helices = _helices(work, edges, screw, scale, wide)
         if helices is None:
             return None
         moved = _solve(work, helices, screw, scale)[0]
-        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > ADVANCE_STEP * abs(screw.advance):
+        if not np.isfinite(moved.advance) or abs(moved.advance - screw.advance) > constants.ADVANCE_STEP * abs(
+            screw.advance
+        ):
             return None
         screw = moved
     return screw
@@ -314,8 +288,13 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     off = np.bincount(owner, line[vertex] < 0, work.count)
     along = _are_edges(work, helices)
     sided = np.bincount(np.r_[work.a[along], work.b[along & (work.b >= 0)]], minlength=work.count) > 0
-    between = free & sided & (lines <= 2) & (((off == 0) & (np.abs(share) < LOPSIDED)) | (np.abs(share) < TILT))
-    fitting = free & (np.abs(share) < TILTS * TILT)
+    between = (
+        free
+        & sided
+        & (lines <= 2)
+        & (((off == 0) & (np.abs(share) < constants.LOPSIDED)) | (np.abs(share) < constants.TILT))
+    )
+    fitting = free & (np.abs(share) < constants.TILTS * constants.TILT)
     use = work.smooth & fitting[work.a] & (work.b >= 0)
     use[use] &= fitting[work.b[use]]
     label = components(work.a[use], work.b[use], work.count)
@@ -324,8 +303,8 @@ def _members(work: Patchwork, free: Flags, helices: _Helices, screw: _Screw) -> 
     mean = np.bincount(label, area * share, work.count) / whole
     square = np.sqrt(np.bincount(label, area * share**2, work.count) / whole)
     steep = np.bincount(label, area * slope, work.count) / whole
-    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= TOUCHING
-    good = touched & (square < TILT) & (np.abs(mean) < LEAN * steep)
+    touched = np.bincount(label[owner], (line[vertex] >= 0) & fitting[owner], work.count) >= constants.TOUCHING
+    good = touched & (square < constants.TILT) & (np.abs(mean) < constants.LEAN * steep)
     return np.flatnonzero(between | (fitting & good[label]))
 
 
@@ -340,7 +319,7 @@ def _chord(work: Patchwork, helices: _Helices, members: Ints) -> float:
     """How far facets may stand off the thread, from the angles between them where they are not its corners."""
     inside = np.zeros(work.count, bool)
     inside[members] = True
-    use = (work.b >= 0) & inside[work.a] & (work.angle < BENT)
+    use = (work.b >= 0) & inside[work.a] & (work.angle < constants.BENT)
     use[use] &= inside[work.b[use]]
     use &= ~_are_edges(work, helices)
     return freeform(work, members, np.flatnonzero(use)).chord
@@ -352,7 +331,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
     if helices is None:
         return None
     _, inverse, scatter, _ = _solve(work, helices, screw, scale)
-    spread = COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    spread = constants.COVERAGE * scatter * np.sqrt(np.maximum(np.diag(inverse), 0.0))
     weight, normal = work.area[members], work.normal[members]
     height, _, _ = screw.polar(work.vertices[helices.ends.ravel()])
     middle = 0.5 * float(height.min() + height.max())
@@ -368,7 +347,7 @@ def _description(work: Patchwork, edges: Ints, screw: _Screw, members: Ints, sca
         "helicoid", members, axis, point, radius=float(distance @ weight / weight.sum()),
         side=1 if outward >= 0 else -1, extent=(float(span.min()), float(span.max())), residual=scatter,
         axis_uncertainty=float(min(np.hypot(spread[0], spread[1]), np.pi / 2)),
-        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), ROUNDED_SCATTER * scale.rounding)),
+        point_uncertainty=float(max(np.hypot(spread[2], spread[3]), constants.ROUNDED_SCATTER * scale.rounding)),
         pitch=2 * np.pi * screw.advance,
         chord=_chord(work, helices, members),
     )  # fmt: skip
