@@ -32,6 +32,7 @@ def run(
     units: str | None = None,
     say: Callable[[str], None] | None = None,
     ranges: bool | None = None,
+    changed: bool = False,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
@@ -39,11 +40,13 @@ def run(
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
-    each joint goes; None: where the function states ranges or requirements.
+    each joint goes; None: where the function states ranges or requirements. `changed`: whether it is known that an earlier
+    file is not what a run would give, and need not be asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
-    if output is not None and units is None and ranges is None and isinstance(manifest, str | Path):
+    plain = units is None and ranges is None and not changed
+    if output is not None and plain and isinstance(manifest, str | Path):
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
             return unchanged

@@ -88,7 +88,8 @@ def graph_svg(kinematics: Kinematics) -> str:
     width = max(float(extent[0]), constants.LETTER_WIDTH * max(map(len, legend)) + 2 * constants.MARGIN)
     height = float(extent[1]) + constants.LINE_HEIGHT * len(legend) + constants.MARGIN
     texts = [
-        f'<text x="{constants.MARGIN:.0f}" y="{extent[1] + constants.LINE_HEIGHT * (n + 1):.1f}" class="legend">{escape(text)}</text>'
+        f'<text x="{constants.MARGIN:.0f}" y="{extent[1] + constants.LINE_HEIGHT * (n + 1):.1f}" class="legend">'
+        f"{escape(text)}</text>"
         for n, text in enumerate(legend)
     ]
     head = (
@@ -256,8 +257,8 @@ def _symbol(centre: Array, joint: Joint, drives: bool) -> str:
     dash = f' stroke-dasharray="{DASHES[joint.status]}"' if joint.status in DASHES else ""
     return (
         f'<g><title>{escape(one_line(_about(joint)))}</title><circle class="symbol{" drives" if drives else ""}" '
-        f'cx="{x:.1f}" cy="{y:.1f}" r="{constants.SYMBOL_RADIUS}"{dash}/><text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" '
-        f'text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
+        f'cx="{x:.1f}" cy="{y:.1f}" r="{constants.SYMBOL_RADIUS}"{dash}/>'
+        f'<text class="letter" x="{x:.1f}" y="{y + 4.3:.1f}" text-anchor="middle">{SYMBOLS[joint.type]}</text></g>'
     )
 
 

@@ -208,13 +208,14 @@ def plot_svg(plot: Plot, time: Array, events: Sequence[tuple[float, str]] = ()) 
         parts.append(_line(f"curve curve-{k}", (at, at + 18), (below, below)))
         parts.append(_text(at + 23, constants.PLOT_HEIGHT + 12, escape(series.label)))
     parts.append(
-        f'<line class="cursor" visibility="hidden" x1="0" x2="0" y1="{constants.PLOT_TOP}" y2="{constants.PLOT_BOTTOM}"/>'
+        f'<line class="cursor" visibility="hidden" x1="0" x2="0" '
+        f'y1="{constants.PLOT_TOP}" y2="{constants.PLOT_BOTTOM}"/>'
     )
     spoken = escape(_spoken_text(plot, start, end, events), quote=True)
     return (
         f'<figure class="plot"><figcaption>{escape(plot.title)} <span>{escape(plot.unit)}</span></figcaption>'
-        f'<svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} {constants.PLOT_HEIGHT + (18 if several else 0):.0f}" role="img" '
-        f'aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{constants.PLOT_LEFT}" '
+        f'<svg viewBox="0 0 {constants.PLOT_WIDTH:.0f} {constants.PLOT_HEIGHT + (18 if several else 0):.0f}" '
+        f'role="img" aria-label="{spoken}" data-from="{start!r}" data-to="{end!r}" data-left="{constants.PLOT_LEFT}" '
         f'data-right="{constants.PLOT_RIGHT}">{"".join(parts)}</svg></figure>'
     )
 
