@@ -40,8 +40,8 @@ def run(
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
-    each joint goes; None: where the function states ranges or requirements. `changed`: an earlier file is known not to be
-    what a run would give, and is not asked.
+    each joint goes; None: where the function states ranges or requirements. `changed`: an earlier file is known not to
+    be what a run would give, and is not asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
