@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinform.kinematics.pair.joint import FREEDOMS, twists_of
+from kinform.kinematics.pair.joint import twists_of
 from kinform.mass import compile_mass
 from kinform.model.assembly import Assembly, MassOverride, Part, Source
 from kinform.model.function import Drive, Function, InitialValue, IntendedJoint, Law, SimulationRequest
-from kinform.model.kinematics import Body, ConstraintMatrix, Joint, Kinematics, Misfit, Mobility
+from kinform.model.kinematics import FREEDOMS, Body, ConstraintMatrix, Joint, Kinematics, Misfit, Mobility
 from kinform.model.tolerances import Tolerances
 
 HERE = Source("device.toml", 1)

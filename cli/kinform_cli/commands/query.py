@@ -217,6 +217,7 @@ def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) ->
 
 
 def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> RenderableType:
+    """The answer for each intended joint, and for what is not free the contacts that block it."""
     from rich.console import Group
     from rich.text import Text
 

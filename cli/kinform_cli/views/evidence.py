@@ -38,6 +38,7 @@ def render(design: Design, name: str) -> RenderableType:
 
 
 def _patches(evidence: Insight, lengths: Lengths) -> Rows:
+    """A row for each patch of the joint, with its weight in the decision."""
     unit = lengths.unit
     headings = (
         "patch",

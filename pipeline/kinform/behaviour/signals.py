@@ -114,6 +114,7 @@ class Spline:
     """
 
     def __init__(self, table: Table):
+        """The cubic spline through the rows, at rest at both ends; where it would leave the rows, the monotone one."""
         from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator
 
         self.knots = table.knots

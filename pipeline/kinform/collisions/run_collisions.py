@@ -145,6 +145,7 @@ def _displacements(simulation: Simulation) -> Array:
 
 
 def _nodes(simulation: Simulation) -> Nodes:
+    """The displacements of all bodies at the output times, and between them along screws of constant rotation."""
     from scipy.spatial.transform import Rotation
 
     displacements, time = _displacements(simulation), simulation.time

@@ -144,6 +144,7 @@ class Writer:
     """Collects the entities of the scopes as components are added."""
 
     def __init__(self, equations: Equations):
+        """An architecture without statements: names, scopes and nodes of all components are settled here."""
         self.equations = equations
         model = self.model = equations.model
         system = model.system

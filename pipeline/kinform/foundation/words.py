@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-IN_METRES = {"um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+from kinform.foundation.units import METRES_PER_UNIT
 
 
 def number(value: float, digits: int = 4) -> str:
@@ -29,27 +29,27 @@ def _unit(size: float, units: str) -> str:
 def length(value: float, units: str, digits: int = 4) -> str:
     """A length (m) with a unit that suits the assembly: "0.25 mm"."""
     unit = _unit(abs(value), units)
-    return f"{number(value / IN_METRES[unit], digits)} {unit}"
+    return f"{number(value / METRES_PER_UNIT[unit], digits)} {unit}"
 
 
 def place(point: Iterable[float], units: str) -> str:
     """A point (m) as "(12.3, 0, -4) mm"."""
     values = [float(v) for v in point]
     unit = _unit(max(abs(v) for v in values), units)
-    rounded = (number(round(v / IN_METRES[unit], 4), 6) for v in values)
+    rounded = (number(round(v / METRES_PER_UNIT[unit], 4), 6) for v in values)
     return f"({', '.join(rounded)}) {unit}"
 
 
 def area(value: float, units: str) -> str:
     """An area (m²): "12.5 mm²"."""
     unit = _unit(math.sqrt(abs(value)), units)
-    return f"{number(value / IN_METRES[unit] ** 2)} {unit}²"
+    return f"{number(value / METRES_PER_UNIT[unit] ** 2)} {unit}²"
 
 
 def volume(value: float, units: str) -> str:
     """A volume (m³): "3.2 mm³"."""
     unit = _unit(abs(value) ** (1.0 / 3.0), units)
-    return f"{number(value / IN_METRES[unit] ** 3)} {unit}³"
+    return f"{number(value / METRES_PER_UNIT[unit] ** 3)} {unit}³"
 
 
 def mass(value: float, digits: int = 4) -> str:
@@ -64,7 +64,7 @@ def angle(value: float, digits: int = 3) -> str:
 
 def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
     """A rate of one joint value by another (rad or m) as manifests have them, in degrees and lengths: "0.02 mm/°"."""
-    own, per = (IN_METRES[units] if slide else math.radians(1.0) for slide in (slides, per_slides))
+    own, per = (METRES_PER_UNIT[units] if slide else math.radians(1.0) for slide in (slides, per_slides))
     unit = "" if slides == per_slides else f" {units}/°" if slides else f" °/{units}"
     return f"{number(value * per / own, 6)}{unit}"
 

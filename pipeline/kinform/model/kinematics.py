@@ -37,6 +37,13 @@ ValueRatio = Annotated[float, "rad or m over rad or m"]
 RateRatio = Annotated[float, "rad/s or m/s, or their ratio"]
 
 
+FREEDOMS = {
+    "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
+    "spherical": 3, "planar": 3,
+}  # fmt: skip
+"""Freedoms of each type of joint but `general`."""
+
+
 @dataclass(frozen=True)
 class Body:
     """Parts that move as one. Named after its alphabetically first group, else its first part."""

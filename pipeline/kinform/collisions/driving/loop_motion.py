@@ -38,6 +38,8 @@ class Linkage:
         idle: Sequence[Freedom] = (),
         size: float = 1.0,
     ):
+        """`edges` are the bodies of all joints, `block` the joints of this one; `idle` freedoms are held; `size` (m) is
+        that of the assembly, a share of which a block counts at least."""
         joints = [kinematics.joints[k] for k in block]
         placed = [j.point for j in joints if j.point is not None]
         centre, length = np.zeros(3), size

@@ -51,6 +51,7 @@ class PairTest:
     """Parts `names`, with the facets that a motion may bring together; poses are of the second in the first."""
 
     def __init__(self, shapes: Shapes, first: str, second: str, facets: tuple[Ints, Ints], mates: Sequence[Patch]):
+        """`facets` of each part count; `mates` are the patches by which the two mate."""
         self.names = (first, second)
         self._shapes = shapes
         self.overlapping = shapes.overlapping(first, second)

@@ -59,6 +59,7 @@ def extent(assembly: Assembly) -> float | None:
 
 
 def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
+    """What is doubtful about an assembly of this size (m): too large, too heavy or too small for its units."""
     units = assembly.units
     tiny = TINY.get(units, TINY_ELSE)
     material = sum(_material(part) for part in assembly.parts)

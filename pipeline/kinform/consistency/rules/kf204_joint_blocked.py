@@ -27,6 +27,7 @@ def check(context: Context) -> Findings:
 
 
 def _finding(context: Context, joint: Joint) -> Finding:
+    """The finding of one blocked joint, with the largest of the contacts that block it."""
     units = context.units
     largest = max(joint.blockers, key=lambda b: (b.area, b.parts, b.patch), default=None)
     wanted = next((i for i in context.function.joints if _joins(context, joint, i.between)), None)

@@ -21,11 +21,7 @@ from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, direction, quoted
 from kinform.model.findings import Finding
-
-FREEDOMS = {
-    "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
-    "spherical": 3, "planar": 3,
-}  # fmt: skip
+from kinform.model.kinematics import FREEDOMS
 
 
 def check(context: Context) -> Outcome:

@@ -13,13 +13,8 @@ from kinform.kinematics.pair.hypotheses import motion_words
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.wording import motions_in_words
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Blocker, Joint
+from kinform.model.kinematics import FREEDOMS, Blocker, Joint
 from kinform.model.names import BodyName, JointName
-
-FREEDOMS = {
-    "fixed": 0, "revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2,
-    "spherical": 3, "planar": 3,
-}  # fmt: skip
 
 
 def twists_of(

@@ -149,6 +149,7 @@ class Network:
     """Bodies joined by all joints, fixed ones too: a tree, and joints left over."""
 
     def __init__(self, dynamics: Dynamics):
+        """What the tree of joints says once for all times: which bodies each joint carries, and which loops pass it."""
         mechanism, system = dynamics.mechanism, dynamics.system
         index = {body.name: k for k, body in enumerate(system.bodies)}
         ends = [[index[system.body_at(j.name, port).name] for j in system.joints] for port in ("a", "b")]

@@ -19,6 +19,7 @@ class Run:
     """One run: `y` at clock[NOW], and the outputs so far."""
 
     def __init__(self, dynamics: Dynamics, start: Start, times: Array, settings: SolverSettings):
+        """A run from its start, with outputs at `times` (t,) s; nothing is compiled yet."""
         self.dynamics, self.settings = dynamics, settings
         self.engine: Engine = engine(compiled=False)
         self.times = np.ascontiguousarray(times, dtype=np.float64)
