@@ -26,7 +26,7 @@ from support.linkages import (
 
 from kinform import stages
 from kinform.foundation.algebra.screws import Frame
-from kinform.kinematics.loops.closure import close
+from kinform.kinematics.loops.assembly_closure import close
 from kinform.kinematics.loops.loop_kinematics import loop_system
 from kinform.kinematics.mobility.finite_motion import finite_mobility
 

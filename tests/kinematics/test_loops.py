@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinform.foundation.graphs.cycles import short_cycles
-from kinform.kinematics.loops.closure import body_twists, close
+from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.joint import twists_of
 
 Z = np.array([0.0, 0.0, 1.0])

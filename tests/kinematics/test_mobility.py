@@ -7,7 +7,7 @@ import pytest
 from support.linkages import CLOSED, bennett
 
 from kinform.foundation.graphs.graph import UnionFind, blocks, forest
-from kinform.kinematics.loops.closure import body_twists, close
+from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.joint import twists_of
 
 X, Y, Z = np.eye(3)

@@ -24,7 +24,7 @@ DRIFT = 0.02
 EVEN = 1e-6
 """Advance a radian, relative to a surface's radius, that is rounding."""
 
-# pair/wholes: two parts with all their facets
+# pair/distance_bounds: two parts with all their facets
 
 SHORT_STEP = 0.01
 """Steps below this are short."""
@@ -37,7 +37,7 @@ CERTAIN = 1.0 - 1e-6
 WHOLES_TOUCH = 1e-6
 """Wholes nearer to each other than this share of a short step touch."""
 
-# pair/surface_points, deep_points: points of one part inside the other
+# pair/flush_entry, deep_entry: points of one part inside the other
 
 POINTS_SURFACE = 24
 """Points on one surface."""
@@ -55,7 +55,7 @@ SPARSE = 0.016
 """So far points near the other part may travel between two questions: to ask whether they are inside is dear, and what
 came in is found by halving anyhow."""
 
-# pair/pair_test: crossings, depths
+# pair/prepared_pair: crossings, depths
 
 DEPTH_ENDS = 32
 """Ends of crossing segments between which the depth is looked for."""

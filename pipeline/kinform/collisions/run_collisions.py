@@ -12,8 +12,8 @@ from kinform.collisions import constants
 from kinform.collisions.joint_ranges import shapes_of
 from kinform.collisions.pair.advancement import first_crossing
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.pair_test import PairTest
 from kinform.collisions.pair.posed_pairs import Nodes, moving_pairs
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array

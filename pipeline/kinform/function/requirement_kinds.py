@@ -1,8 +1,8 @@
 """Kinds of requirements: what each asks for, typed, SI and radians, world frame at the pose of the meshes.
 
-The manifest's tables are in `form/manifest/require.py`, which also says what every key means. A stored requirement has
-their values by key (`kinform.model.function.Requirement`); `Kind.read` makes them what a judge reads. Keys that a newer
-table has besides are left aside.
+The manifest's tables are in `form/manifest/requirements.py`, which also says what every key means. A stored requirement
+has their values by key (`kinform.model.function.Requirement`); `Kind.read` makes them what a judge reads. Keys that a
+newer table has besides are left aside.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import numpy as np
 
 from kinform.model.arrays import Array
 
-VECTORS = ("X_WF", "axis", "direction", "directions", "lower", "point", "points", "rows", "upper")
-"""Keys whose values are arrays."""
-
 
 def _values_of(record: type, values: Mapping[str, Any]) -> dict[str, Any]:
     """Of the stored values those that the record has, lists of numbers as arrays."""
-    keys = [f.name for f in fields(record) if values.get(f.name) is not None]
-    return {key: np.array(values[key], dtype=np.float64) if key in VECTORS else values[key] for key in keys}
+    stored = {f: values[f.name] for f in fields(record) if values.get(f.name) is not None}
+    return {
+        f.name: np.array(value, dtype=np.float64) if str(f.type).startswith("Array") else value
+        for f, value in stored.items()
+    }
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,8 @@
 """Numbers that decide in the kinematics: of each what it is, and the reason or the measurement that chose it.
 
-Grouped by the module that uses them. What a user may set is in `model.tolerances`. Where no reason is given the number
-is a choice that was not measured. "Relative" is to what the sentence names, else to 1.
+Grouped by the module that uses them. What a user may set is in `model.tolerances`, above all from which singular value
+on a motion counts as free or held: `Tolerances.free` and `held`. Where no reason is given the number is a choice that
+was not measured. "Relative" is to what the sentence names, else to 1.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from kinform.kinematics.bodies.fasteners import fasten, label_inferred, turn_abo
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import intended_joints, stated_joints
 from kinform.kinematics.constants import MOST_BASIS_NUMBERS
-from kinform.kinematics.loops.closure import Closure, body_twists
+from kinform.kinematics.loops.assembly_closure import Closure, body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.mobility.couplings import couplings_between
 from kinform.kinematics.mobility.finite_motion import finite_mobility

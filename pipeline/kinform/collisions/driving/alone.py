@@ -13,8 +13,8 @@ from kinform.collisions.constants import MEETING_MARGIN, SCREW_TURNS, SCREW_TURN
 from kinform.collisions.driving.swept_profiles import Profile, meeting
 from kinform.collisions.pair.advancement import first_crossing
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.pair_test import PairTest
-from kinform.collisions.pair.wholes import Wholes
+from kinform.collisions.pair.distance_bounds import Wholes
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import displacement
 from kinform.kinematics.mobility.guides import guide, joint_twist, preserved

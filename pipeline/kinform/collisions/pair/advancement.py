@@ -15,9 +15,9 @@ import numpy as np
 
 from kinform.collisions import constants
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.deep_points import Inside
+from kinform.collisions.pair.deep_entry import Inside
 from kinform.collisions.pair.mate_surfaces import SurfacePair
-from kinform.collisions.pair.pair_test import NONE, Crossing, PairTest
+from kinform.collisions.pair.prepared_pair import NONE, Crossing, PairTest
 from kinform.model.arrays import Array
 
 

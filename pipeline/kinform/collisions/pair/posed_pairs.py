@@ -12,8 +12,8 @@ import numpy as np
 
 from kinform.collisions.constants import CHORD_SLACK, HIGHER_KINDS, LOWER_TYPES, REMEMBERED, STILL
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.pair_test import PairTest
-from kinform.collisions.pair.wholes import Wholes
+from kinform.collisions.pair.distance_bounds import Wholes
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.displacements import inverse
 from kinform.foundation.meshes.boxes import box_corners

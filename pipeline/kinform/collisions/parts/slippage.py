@@ -2,7 +2,7 @@
 
 A point keeps its distance from such a surface, so nothing ever comes to cross it but through its border, and there the
 surfaces that share the border are met as well. Where these cross nothing either, as flush and parallel faces do, points
-of them come to be inside (`deep_points`): a collision is not missed when it is left out. Journals in bores, thrust
+of them come to be inside (`deep_entry`): a collision is not missed when it is left out. Journals in bores, thrust
 faces, guides and flanks of threads are all of this kind, which is why mating surfaces, whose facets overlap by their
 chord errors, need not be told from collisions by any depth. The motions that a kind of surface admits are those of
 slippage analysis (Gelfand and Guibas 2004).

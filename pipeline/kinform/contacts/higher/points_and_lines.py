@@ -16,8 +16,8 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.higher.rounds import Meeting, meeting
 from kinform.contacts.higher.touch_patches import TouchSamples, touch_patch
+from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.contacts.search.probing import Probes, verify
 from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch

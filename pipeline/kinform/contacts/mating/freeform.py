@@ -16,8 +16,8 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.mating.mate import aligned, mean_axes, mean_direction
 from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView, SurfacePair
-from kinform.contacts.search.probing import Probes, verify
 from kinform.foundation.algebra.vectors import cross, dot, widest_gap
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch

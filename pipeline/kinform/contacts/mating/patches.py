@@ -10,8 +10,8 @@ import numpy as np
 from kinform.contacts import constants
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.mating.overlay import Cells, overlay
+from kinform.contacts.search.narrow_phase import Probes, verify
 from kinform.contacts.search.pair_view import PairView
-from kinform.contacts.search.probing import Probes, verify
 from kinform.model.arrays import Array, freeze
 from kinform.model.contacts import Patch
 

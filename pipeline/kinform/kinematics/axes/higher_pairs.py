@@ -17,7 +17,7 @@ from kinform.foundation.algebra.screws import Frame, scaled, span, twist_at_orig
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.constants import AT_REST, DOUBTFUL_MOTION, MOST_TURNED, SIGMAS
-from kinform.kinematics.loops.closure import body_twists
+from kinform.kinematics.loops.assembly_closure import body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.pair.certainty import TOUCHING, meets
 from kinform.model.arrays import Array

@@ -25,7 +25,7 @@ than once: stress that assembly may lock in.
 
 Configurations. Rates that close the loops at this pose need not be the beginning of a motion. `loop_kinematics` has
 the same loops in joint coordinates q: a product of exponentials exp(S q) round a loop must be the identity (Brockett
-1984). Its residual, its Jacobian (the equations above, at q) and its curvature are what `mobility.local_motions`
+1984). Its residual, its Jacobian (the equations above, at q) and its curvature are what `mobility.local_dimension`
 steps along with.
 
 A four-bar

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from kinform.kinematics.loops.closure import Closure, close
+from kinform.kinematics.loops.assembly_closure import Closure, close
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Body, Joint
 

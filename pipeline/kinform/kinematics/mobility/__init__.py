@@ -3,8 +3,8 @@
 The counts, relative to ground (`loops` tells how they are found, with a four-bar as example):
 
 - instantaneous: dimension of the joint rates that close all loops. `named_freedoms` is a readable basis of them.
-- finite: of these, how many are motions over a distance (`finite_motion`, block by block by `local_motions`, which
-  steps from a `closed_pose` and closes the loops again). None where it could not be decided.
+- finite: of these, how many are motions over a distance (`finite_motion`, block by block by `local_dimension`, which
+  steps from closed poses and closes the loops again). None where it could not be decided.
 - idle: turns of single bodies that change nothing, as of a bolt or a roller (`idle`); effective: all others.
 - redundant: equations of the loops that others say already; `loop_redundancy` and, for the contacts of a single
   joint, `joint_redundancy` say which joints hold what more than once.

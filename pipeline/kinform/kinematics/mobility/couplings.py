@@ -15,7 +15,7 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.meshes.edges import shared_edges
 from kinform.kinematics.axes.higher_pairs import is_higher
 from kinform.kinematics.constants import FIXED_RATIO, TOOTHED_TURNS
-from kinform.kinematics.loops.closure import Closure
+from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.mobility.teeth import Side, meshing
 from kinform.kinematics.pair.certainty import TOUCHING

@@ -1,6 +1,6 @@
 """Finite mobility of the assembly: which first-order freedoms are motions over a distance.
 
-Each block of the graph of bodies and joints is tried by itself (`local_motions`); a bridge closes no loop, so its
+Each block of the graph of bodies and joints is tried by itself (`local_dimension`); a bridge closes no loop, so its
 freedoms are motions. A `general` joint is known by its velocities alone, which say nothing of where they
 lead: its block counts only where its other joints, with the general ones held, move as freely.
 """
@@ -18,8 +18,8 @@ from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.foundation.words import counted, listed
 from kinform.kinematics.constants import LEAST_FRAME, MOST_BLOCK_WORK, MOST_STATEMENTS, MOVING_JOINT
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
-from kinform.kinematics.mobility.closed_pose import first_order
-from kinform.kinematics.mobility.local_motions import LocalMotions, local_motions
+from kinform.kinematics.mobility.local_dimension import LocalMotions, local_motions
+from kinform.kinematics.mobility.second_order import first_order
 from kinform.model.kinematics import Coupling, FiniteCertificate, Joint
 from kinform.model.names import JointName
 

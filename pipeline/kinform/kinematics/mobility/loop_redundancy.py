@@ -16,8 +16,8 @@ from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.cycles import Cycle
 from kinform.kinematics.constants import CLOSED, EXACT_WRENCH, FEW_RATES, MOST_NAMED, MOST_SORTED_LOOPS
+from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.block_closure import Block, axes_frame, loop_matrix
-from kinform.kinematics.loops.closure import Closure
 from kinform.kinematics.mobility.joint_redundancy import redundancy
 from kinform.kinematics.wording import Locked, axis_word, locked_text, locked_wrenches, rows_too_many
 from kinform.model.arrays import Array

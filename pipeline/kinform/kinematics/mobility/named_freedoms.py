@@ -15,8 +15,8 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical, cross, foot
 from kinform.foundation.graphs.graph import Forest, forest
 from kinform.kinematics.constants import AT_REST, EXCHANGED, NO_PITCH, NO_TURN, NO_TWIST, RATE_ROUNDING, SAME_RATES
+from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.block_closure import Solution
-from kinform.kinematics.loops.closure import Closure
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Kinematics

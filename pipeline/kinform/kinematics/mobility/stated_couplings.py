@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from kinform.kinematics.constants import INDEPENDENT_ROW
+from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.block_closure import Solution
-from kinform.kinematics.loops.closure import Closure
 from kinform.model.arrays import Array
 from kinform.model.function import Function, IntendedJoint
 from kinform.model.kinematics import Joint, Mobility

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, scaled, span
-from kinform.kinematics.loops.closure import body_twists, close
+from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
 from kinform.model.kinematics import Joint, Kinematics
 

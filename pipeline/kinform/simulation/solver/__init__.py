@@ -20,7 +20,8 @@ Differential Equations I, section II.5, and their program DOP853): twelve evalua
 within the step are wanted, which give a polynomial of order 7. Two estimates of the error, of orders 5 and 3, are
 combined as they do. Each component counts by atol + rtol·|y| and by what rounding of y does to its slope, which is
 measured every 20 steps: light bodies in heavy mechanisms lose more digits than the tolerances leave. A step is
-taken when the error over that is below 1. The next is 0.9·error^(−1/8) times as long, at most 2.5 times, and no
+taken when the error over that is below 1 (`kernel.steps.try_step` finds the error; `kernel.explicit.attempt` takes or
+shortens, `accept` goes on). The next is 0.9·error^(−1/8) times as long, at most 2.5 times, and no
 longer than before right after a failure.
 
 Closing the loops. Integrating accelerations lets loops drift apart. At the end of each step y is projected onto

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinform.collisions.constants import CERTAIN, SPARSE, SPECK, UNSEEN
 from kinform.collisions.pair.course import Course
-from kinform.collisions.pair.pair_test import PairTest
+from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.model.arrays import Array, Ints
 
 

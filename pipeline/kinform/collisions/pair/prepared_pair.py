@@ -16,8 +16,8 @@ import numpy as np
 
 from kinform.collisions import constants
 from kinform.collisions.pair.facet_crossings import crossings
+from kinform.collisions.pair.flush_entry import Probes, probes
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
-from kinform.collisions.pair.surface_points import Probes, probes
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose

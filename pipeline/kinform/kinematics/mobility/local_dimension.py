@@ -7,7 +7,7 @@ Three tests, none of which needs another's result:
   the same: then the configurations near the pose are a manifold of as many dimensions as there are freedoms
   (constant rank theorem). Elsewhere the full solve tells what remains of each step: nothing at a shaky
   structure, motion along a branch at a bifurcation. A generic step that is kept spans the tangent cone.
-- second order: the curvature of the closure (`closed_pose`).
+- second order: the curvature of the closure (`second_order`).
 - group: where the joints of a block generate a group of motions and each loop has its full rank in it, the
   closure is a submersion into that group and the pose regular (Hervé 1978), without any step.
 """
@@ -21,7 +21,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import bracket
 from kinform.kinematics import constants
 from kinform.kinematics.loops.loop_kinematics import LoopSystem
-from kinform.kinematics.mobility.closed_pose import Pose, complement, independent, second_order, units
+from kinform.kinematics.mobility.second_order import Pose, complement, independent, second_order, units
 from kinform.model.arrays import Array
 
 
