@@ -5,12 +5,13 @@ Two questions are asked from outside, each in a module of its own: `joint_ranges
 another does a part first meet it (`pair`)? The rooms are read in this order:
 
 1. `parts`: what is asked of one part. `slippage` says which of its surfaces a motion maps onto themselves; their facets
-are left out, so that journals, guides and threads need not be told from collisions by any depth. 2. `pair`: a `Course`
-is how one part moves relative to another. `distance_bounds` goes along it in steps as long as the parts are apart.
-`advancement` then halves what is left of it with the facets that count (`prepared_pair`) until it has the first
-crossing that no mate explains (`facet_crossings`, `mate_surfaces`), or a point that came to be deep inside
-(`deep_entry`, `flush_entry`). `posed_pairs` makes courses of poses of bodies. 3. `driving`: `alone` drives a joint that
-no loop closes over, `loops` all joints of a block along its one motion (`loop_motion`).
+   are left out, so that journals, guides and threads need not be told from collisions by any depth.
+2. `pair`: a `Course` is how one part moves relative to another. `distance_bounds` goes along it in steps as long as the
+   parts are apart. `advancement` then halves what is left of it with the facets that count (`prepared_pair`) until it
+   has the first crossing that no mate explains (`facet_crossings`, `mate_surfaces`), or a point that came to be deep
+   inside (`deep_entry`, `flush_entry`). `posed_pairs` makes courses of poses of bodies.
+3. `driving`: `alone` drives a joint that no loop closes over, `loops` all joints of a block along its one motion
+   (`loop_motion`).
 
 Less deep than mates may overlap it is a scrape, and none of this counts.
 """
