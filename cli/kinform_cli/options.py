@@ -66,6 +66,16 @@ def cores(jobs: int | None) -> int:
     return jobs or os.cpu_count() or 1
 
 
+def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
+    """An option with a value, by its names with a blank between them; its help says in words what holds without it."""
+    return typer.Option(*flags.split(), metavar=metavar, show_default=False, help=help, **settings)
+
+
+def argument(metavar: str, help: str) -> Any:
+    """An argument; its help says in words what holds without it."""
+    return typer.Argument(metavar=metavar, show_default=False, help=help)
+
+
 class Severity(StrEnum):
     """Severities of findings, from the worst."""
 
@@ -110,71 +120,39 @@ Quiet = Annotated[
 Debug = Annotated[
     bool, typer.Option("--debug", callback=_set_debug, help="Show the traceback of an error (also: KINFORM_DEBUG=1).")
 ]
-Jobs = Annotated[
-    int | None,
-    typer.Option(
-        "--jobs", "-j", min=1, metavar="N", show_default=False, help="Use up to N cores; default: all of them."
-    ),
-]
+Jobs = Annotated[int | None, option("--jobs -j", "N", "Use up to N cores; default: all of them.", min=1)]
 Ranges = Annotated[
     bool | None,
-    typer.Option(
+    option(
         "--ranges/--no-ranges",
-        show_default=False,
-        help="Find how far each joint goes until parts meet; "
-        "else only where the function states ranges or requirements.",
+        None,
+        "Find how far each joint goes until parts meet; else only where the function states ranges or requirements.",
     ),
 ]
 Sources = Annotated[
-    list[Path],
-    typer.Argument(
-        metavar="M.toml|MESH",
-        show_default=False,
-        help="A manifest; or STL and OBJ files in place of one, with --units.",
-    ),
+    list[Path], argument("M.toml|MESH", "A manifest; or STL and OBJ files in place of one, with --units.")
 ]
-Results = Annotated[Path, typer.Argument(metavar="F.h5", show_default=False, help="Results file to read.")]
-Output = Annotated[
-    Path,
-    typer.Option(
-        "--output", "-o", metavar="F.h5", show_default=False, help="Results file to write; may be the one that is read."
-    ),
-]
+Results = Annotated[Path, argument("F.h5", "Results file to read.")]
+Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
 AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
 Units = Annotated[
-    str | None,
-    typer.Option(
-        "--units",
-        metavar="UNIT",
-        show_default=False,
-        help="Unit of the meshes named in place of a manifest: m, cm, mm, um, in or ft.",
-    ),
+    str | None, option("--units", "UNIT", "Unit of the meshes named in place of a manifest: m, cm, mm, um, in or ft.")
 ]
 Depfile = Annotated[
-    Path | None,
-    typer.Option(
-        "--depfile",
-        metavar="FILE",
-        show_default=False,
-        help="Also write a Make rule: the output depends on every file that was read.",
-    ),
+    Path | None, option("--depfile", "FILE", "Also write a Make rule: the output depends on every file that was read.")
 ]
 ManifestFolder = Annotated[
     Path | None,
-    typer.Option(
-        "--manifest-folder",
-        metavar="DIR",
-        show_default=False,
-        help="Folder of the manifest: sarif and github then name files as seen from here.",
-    ),
+    option("--manifest-folder", "DIR", "Folder of the manifest: sarif and github then name files as seen from here."),
 ]
 Tolerances = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
         "--tolerance",
-        metavar="VALUE",
-        show_default=False,
-        help="Changes up to this are none: 0.1mm, 0.2deg, 1g, 0.5% (of masses); may be given once for each.",
+        "VALUE",
+        "Changes up to this are none: 0.1mm, 0.2deg, 1g, 0.5% (of masses); may be given once for each.",
     ),
 ]
 FailOn = Annotated[Severity, typer.Option("--fail-on", help="Least severity of a finding that gives exit code 1.")]
+PrintedFindings = Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")]
+PrintedTable = Annotated[TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")]

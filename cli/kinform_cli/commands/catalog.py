@@ -10,7 +10,7 @@ import typer
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.options import Command, Group, TableFormat, examples
+from kinform_cli.options import Command, Group, PrintedTable, TableFormat, argument, examples, option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,12 +38,7 @@ _DEFAULT = Path("catalog.sqlite")
     cls=Command, epilog=examples("kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite")
 )
 def add(
-    sources: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="DIR|F.h5...", show_default=False, help="Folders, with all below them; or results files."
-        ),
-    ],
+    sources: Annotated[list[Path], argument("DIR|F.h5...", "Folders, with all below them; or results files.")],
     file: File = _DEFAULT,
 ) -> None:
     """Add designs to the catalog: all results files below these folders.
@@ -68,63 +63,39 @@ def add(
 def find(
     joint: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--joint",
-            metavar="TYPE[:N]",
-            show_default=False,
-            help="Has a joint of this type; revolute:2 exactly two, revolute:2+ at least two. May be repeated.",
+            "TYPE[:N]",
+            "Has a joint of this type; revolute:2 exactly two, revolute:2+ at least two. May be repeated.",
         ),
     ] = None,
-    joints: Annotated[
-        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Number of joints of any type.")
-    ] = None,
-    mobility: Annotated[
-        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Effective mobility.")
-    ] = None,
-    instantaneous: Annotated[
-        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Instantaneous mobility.")
-    ] = None,
-    loops: Annotated[
-        int | None, typer.Option(min=0, metavar="N", show_default=False, help="Independent kinematic loops.")
-    ] = None,
-    min_mass: Annotated[
-        float | None, typer.Option("--min-mass", metavar="KG", show_default=False, help="Least mass.")
-    ] = None,
-    max_mass: Annotated[
-        float | None, typer.Option("--max-mass", metavar="KG", show_default=False, help="Greatest mass.")
-    ] = None,
-    max_size: Annotated[
-        float | None,
-        typer.Option("--max-size", metavar="METRES", show_default=False, help="Longest side of the box around it."),
-    ] = None,
+    joints: Annotated[int | None, option("--joints", "N", "Number of joints of any type.", min=0)] = None,
+    mobility: Annotated[int | None, option("--mobility", "N", "Effective mobility.", min=0)] = None,
+    instantaneous: Annotated[int | None, option("--instantaneous", "N", "Instantaneous mobility.", min=0)] = None,
+    loops: Annotated[int | None, option("--loops", "N", "Independent kinematic loops.", min=0)] = None,
+    min_mass: Annotated[float | None, option("--min-mass", "KG", "Least mass.")] = None,
+    max_mass: Annotated[float | None, option("--max-mass", "KG", "Greatest mass.")] = None,
+    max_size: Annotated[float | None, option("--max-size", "METRES", "Longest side of the box around it.")] = None,
     name: Annotated[
         list[str] | None,
-        typer.Option(
-            "--name",
-            metavar="TEXT",
-            show_default=False,
-            help="Text in the name of the design, its file, a part or a stated joint. May be repeated.",
+        option(
+            "--name", "TEXT", "Text in the name of the design, its file, a part or a stated joint. May be repeated."
         ),
     ] = None,
     meets: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--meets", metavar="WHAT", show_default=False, help="Meets its requirements of this kind, or of this name."
-        ),
+        list[str] | None, option("--meets", "WHAT", "Meets its requirements of this kind, or of this name.")
     ] = None,
     verified: Annotated[bool, typer.Option("--verified", help="Only designs that passed the gate.")] = False,
     file: File = _DEFAULT,
-    format: Annotated[
-        TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
-    ] = TableFormat.table,
+    format: PrintedTable = TableFormat.table,
 ) -> None:
     """Find designs by what they do; everything that is asked must hold.
 
     The exit code says whether there is an answer (0), not whether a design was found.
     """
-    for option, value in (("--min-mass", min_mass), ("--max-mass", max_mass), ("--max-size", max_size)):
+    for limit, value in (("--min-mass", min_mass), ("--max-mass", max_mass), ("--max-size", max_size)):
         if value is not None and not (math.isfinite(value) and value >= 0):
-            raise typer.BadParameter(f"{value:g} is not a positive number", param_hint=option)
+            raise typer.BadParameter(f"{value:g} is not a positive number", param_hint=limit)
     from kinform import catalog
 
     wanted = catalog.Wanted(

@@ -13,7 +13,16 @@ from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
 from kinform_cli.gate import Gate
-from kinform_cli.options import FailOn, FindingsFormat, ManifestFolder, Results, Severity, examples
+from kinform_cli.options import (
+    FailOn,
+    FindingsFormat,
+    ManifestFolder,
+    PrintedFindings,
+    Results,
+    Severity,
+    examples,
+    option,
+)
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -37,35 +46,16 @@ def check(
     source: Results,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="F.h5",
-            show_default=False,
-            help="Also write the findings to a results file; may be the one that is read.",
-        ),
+        option("--output -o", "F.h5", "Also write the findings to a results file; may be the one that is read."),
     ] = None,
-    format: Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")] = (
-        FindingsFormat.full
-    ),
+    format: PrintedFindings = FindingsFormat.full,
     fail_on: FailOn = Severity.error,
-    baseline: Annotated[
-        Path | None,
-        typer.Option("--baseline", metavar="B.json", show_default=False, help="Findings of this file do not count."),
-    ] = None,
+    baseline: Annotated[Path | None, option("--baseline", "B.json", "Findings of this file do not count.")] = None,
     write_baseline: Annotated[
-        Path | None,
-        typer.Option(
-            "--write-baseline", metavar="B.json", show_default=False, help="Write today's findings as a baseline."
-        ),
+        Path | None, option("--write-baseline", "B.json", "Write today's findings as a baseline.")
     ] = None,
     manifest_folder: ManifestFolder = None,
-    lock: Annotated[
-        Path | None,
-        typer.Option(
-            "--lock", metavar="FILE", show_default=False, help="Also compare the behaviour with this lock (KF450)."
-        ),
-    ] = None,
+    lock: Annotated[Path | None, option("--lock", "FILE", "Also compare the behaviour with this lock (KF450).")] = None,
 ) -> None:
     """Check form, behaviour and function against each other.
 

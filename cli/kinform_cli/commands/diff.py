@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.options import Tolerances, examples
+from kinform_cli.options import Tolerances, argument, examples
 
 if TYPE_CHECKING:
     from kinform.changes import Tolerance
@@ -31,8 +31,8 @@ class DiffFormat(StrEnum):
 
 
 def diff(
-    before: Annotated[Path, typer.Argument(metavar="A.h5", show_default=False, help="Results file before.")],
-    after: Annotated[Path, typer.Argument(metavar="B.h5", show_default=False, help="Results file after.")],
+    before: Annotated[Path, argument("A.h5", "Results file before.")],
+    after: Annotated[Path, argument("B.h5", "Results file after.")],
     format: Annotated[DiffFormat, typer.Option("--format", "-f", help="json: SI and radians.")] = DiffFormat.full,
     tolerances: Tolerances = None,
 ) -> None:

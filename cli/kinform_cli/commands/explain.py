@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
 from kinform_cli import console
-from kinform_cli.options import examples
+from kinform_cli.options import argument, examples
 
 EXAMPLES = examples("kinform explain", "kinform explain KF203")
 
 
 def explain(
-    code: Annotated[
-        str | None,
-        typer.Argument(metavar="CODE", show_default=False, help="Code or name of a rule; without it all are listed."),
-    ] = None,
+    code: Annotated[str | None, argument("CODE", "Code or name of a rule; without it all are listed.")] = None,
 ) -> None:
     """Explain a finding by its code: what it means, why it matters, what to do."""
     from kinform import consistency

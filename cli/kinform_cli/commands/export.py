@@ -11,7 +11,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, examples
+from kinform_cli.options import Results, examples, option
 
 EXAMPLES = examples(
     "kinform export arm.h5 --to urdf -o arm_urdf",
@@ -39,12 +39,7 @@ class Target(StrEnum):
 def export(
     source: Results,
     to: Annotated[Target, typer.Option("--to", show_default=False, help="Format to write.")],
-    output: Annotated[
-        Path,
-        typer.Option(
-            "--output", "-o", metavar="DIR", show_default=False, help="Folder to write into; made if missing."
-        ),
-    ],
+    output: Annotated[Path, option("--output -o", "DIR", "Folder to write into; made if missing.")],
     strict: Annotated[
         bool, typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model.")
     ] = False,

@@ -10,7 +10,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import cores, examples
+from kinform_cli.options import argument, cores, examples, option
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -24,21 +24,9 @@ EXAMPLES = examples(
 
 
 def init(
-    meshes: Annotated[
-        list[Path], typer.Argument(metavar="MESH...", show_default=False, help="STL and OBJ files of the parts.")
-    ],
-    units: Annotated[
-        str,
-        typer.Option(
-            "--units", metavar="UNIT", show_default=False, help="Unit of the meshes: m, cm, mm, um, in or ft."
-        ),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="M.toml", show_default=False, help="Manifest to write; else it is printed."
-        ),
-    ] = None,
+    meshes: Annotated[list[Path], argument("MESH...", "STL and OBJ files of the parts.")],
+    units: Annotated[str, option("--units", "UNIT", "Unit of the meshes: m, cm, mm, um, in or ft.")],
+    output: Annotated[Path | None, option("--output -o", "M.toml", "Manifest to write; else it is printed.")] = None,
     suggest: Annotated[
         bool,
         typer.Option(

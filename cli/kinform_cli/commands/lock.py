@@ -5,13 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.commands.diff import tolerance
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, Tolerances, examples
+from kinform_cli.options import Results, Tolerances, examples, option
 
 EXAMPLES = examples(
     "kinform lock arm.h5 -o behaviour.lock.json",
@@ -22,9 +20,7 @@ EXAMPLES = examples(
 
 def lock(
     source: Results,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", show_default=False, help="Lock file (JSON) to write.")
-    ],
+    output: Annotated[Path, option("--output -o", "FILE", "Lock file (JSON) to write.")],
     tolerances: Tolerances = None,
 ) -> None:
     """Lock the behaviour: bodies, joints, axes, ranges, mobility, masses, overlaps, as they are now.

@@ -11,7 +11,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, TableFormat, examples
+from kinform_cli.options import PrintedTable, Results, TableFormat, argument, examples, option
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -33,31 +33,21 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 def query(
     source: Results,
-    a: Annotated[str | None, typer.Argument(metavar="A", show_default=False, help="Part, group or body.")] = None,
-    b: Annotated[
-        str | None,
-        typer.Argument(metavar="B", show_default=False, help="Part, group or body that moves relative to A."),
-    ] = None,
+    a: Annotated[str | None, argument("A", "Part, group or body.")] = None,
+    b: Annotated[str | None, argument("B", "Part, group or body that moves relative to A.")] = None,
     turn: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--turn",
-            metavar="AXIS@POINT",
-            show_default=False,
-            help="Rotation about an axis (x, y, z, -x … or 0,0,1) through a point (as in 0,0,0; "
-            "in the assembly's units).",
+            "AXIS@POINT",
+            "Rotation about an axis (x, y, z, -x … or 0,0,1) through a point (as in 0,0,0; in the assembly's units).",
         ),
     ] = None,
-    slide: Annotated[
-        str | None,
-        typer.Option("--slide", metavar="DIRECTION", show_default=False, help="Translation: x, y, z, -x … or 0,0,1."),
-    ] = None,
+    slide: Annotated[str | None, option("--slide", "DIRECTION", "Translation: x, y, z, -x … or 0,0,1.")] = None,
     intended: Annotated[
         bool, typer.Option("--intended", help="Ask it of every joint of [function], in place of A, B and a motion.")
     ] = False,
-    format: Annotated[
-        TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
-    ] = TableFormat.table,
+    format: PrintedTable = TableFormat.table,
 ) -> None:
     """Ask whether B can turn or slide relative to A, and if not, which contacts block it.
 

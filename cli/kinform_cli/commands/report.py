@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, examples
+from kinform_cli.options import Results, examples, option
 from kinform_cli.progress import Working
 
 EXAMPLES = examples(
@@ -20,16 +18,13 @@ EXAMPLES = examples(
 
 def report(
     source: Results,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE.html", show_default=False, help="Page to write.")
-    ],
+    output: Annotated[Path, option("--output -o", "FILE.html", "Page to write.")],
     png: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--png",
-            metavar="DIR",
-            show_default=False,
-            help="Also write pictures and a Markdown summary into this folder, which is made where it is missing.",
+            "DIR",
+            "Also write pictures and a Markdown summary into this folder, which is made where it is missing.",
         ),
     ] = None,
 ) -> None:

@@ -17,12 +17,14 @@ from kinform_cli.options import (
     FailOn,
     FindingsFormat,
     Jobs,
+    PrintedFindings,
     Ranges,
     Severity,
     Sources,
     Units,
     cores,
     examples,
+    option,
 )
 from kinform_cli.progress import Working
 
@@ -38,20 +40,11 @@ EXAMPLES = examples(
 def run(
     sources: Sources,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="F.h5",
-            show_default=False,
-            help="Results file to write; what is still valid in it is reused.",
-        ),
+        Path | None, option("--output -o", "F.h5", "Results file to write; what is still valid in it is reused.")
     ] = None,
     units: Units = None,
     allow_outside: AllowOutside = False,
-    format: Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")] = (
-        FindingsFormat.full
-    ),
+    format: PrintedFindings = FindingsFormat.full,
     fail_on: FailOn = Severity.error,
     ranges: Ranges = None,
     jobs: Jobs = None,

@@ -10,7 +10,7 @@ import typer
 
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, TableFormat, examples
+from kinform_cli.options import PrintedTable, Results, TableFormat, argument, examples, option
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -41,25 +41,16 @@ class Topic(StrEnum):
 
 def show(
     source: Results,
-    topic: Annotated[
-        Topic | None, typer.Argument(metavar="TOPIC", show_default=False, help="What to show; without it an overview.")
-    ] = None,
-    format: Annotated[
-        TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")
-    ] = TableFormat.table,
+    topic: Annotated[Topic | None, argument("TOPIC", "What to show; without it an overview.")] = None,
+    format: PrintedTable = TableFormat.table,
     joint: Annotated[
         str | None,
-        typer.Option(
-            "--joint",
-            metavar="NAME",
-            show_default=False,
-            help="With joints: all the evidence of this joint, and what would make it another.",
-        ),
+        option("--joint", "NAME", "With joints: all the evidence of this joint, and what would make it another."),
     ] = None,
     graph: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE", help="Draw bodies, joints and loops instead, for mobility or joints: FILE.svg or FILE.dot."
+        option(
+            "--graph", "FILE", "Draw bodies, joints and loops instead, for mobility or joints: FILE.svg or FILE.dot."
         ),
     ] = None,
 ) -> None:

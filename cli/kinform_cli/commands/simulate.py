@@ -5,10 +5,8 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Annotated
 
-import typer
-
 from kinform_cli import console, files
-from kinform_cli.options import Output, Ranges, Results, examples
+from kinform_cli.options import Output, Ranges, Results, examples, option
 
 EXAMPLES = examples(
     "kinform simulate d.h5 -o e.h5",
@@ -31,10 +29,8 @@ def simulate(
     output: Output,
     level: Annotated[
         Level | None,
-        typer.Option(
-            "--level",
-            show_default=False,
-            help="Force a level; else the one that the manifest states, else the highest that is known.",
+        option(
+            "--level", None, "Force a level; else the one that the manifest states, else the highest that is known."
         ),
     ] = None,
     ranges: Ranges = None,

@@ -10,7 +10,18 @@ import typer
 
 from kinform_cli import console, errors, files
 from kinform_cli.gate import Gate
-from kinform_cli.options import AllowOutside, FailOn, FindingsFormat, Jobs, Severity, cores, examples
+from kinform_cli.options import (
+    AllowOutside,
+    FailOn,
+    FindingsFormat,
+    Jobs,
+    PrintedFindings,
+    Severity,
+    argument,
+    cores,
+    examples,
+    option,
+)
 from kinform_cli.progress import Working
 
 EXAMPLES = examples(
@@ -23,25 +34,16 @@ Stamp = tuple[int, int, int] | None
 
 
 def watch(
-    manifest: Annotated[Path, typer.Argument(metavar="M.toml", show_default=False, help="Manifest of the design.")],
-    output: Annotated[
-        Path,
-        typer.Option(
-            "--output", "-o", metavar="F.h5", show_default=False, help="Results file; what is valid is reused."
-        ),
-    ],
+    manifest: Annotated[Path, argument("M.toml", "Manifest of the design.")],
+    output: Annotated[Path, option("--output -o", "F.h5", "Results file; what is valid is reused.")],
     allow_outside: AllowOutside = False,
-    format: Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")] = (
-        FindingsFormat.concise
-    ),
+    format: PrintedFindings = FindingsFormat.concise,
     fail_on: FailOn = Severity.error,
     jobs: Jobs = None,
     period: Annotated[
         float, typer.Option("--period", min=0.01, metavar="SECONDS", help="How often the files are looked at.")
     ] = 0.5,
-    max_runs: Annotated[
-        int | None, typer.Option("--max-runs", min=1, metavar="N", show_default=False, help="Leave after so many runs.")
-    ] = None,
+    max_runs: Annotated[int | None, option("--max-runs", "N", "Leave after so many runs.", min=1)] = None,
 ) -> None:
     """Run on every save of the manifest or of a file that it names, until Ctrl-C.
 
