@@ -146,17 +146,16 @@ def _data(design: Design, motion: dict[str, Any], answer: QueryAnswer) -> dict[s
 
 
 def _answer_fields(answer: QueryAnswer) -> dict[str, Any]:
+    from kinform.reports.values.plain import fields
+
     def ways(pair: tuple[bool | None, bool | None] | None) -> dict[str, bool | None] | None:
         return None if pair is None else {"forward": pair[0], "backward": pair[1]}
 
     def contacts(blockers: Iterable[QueryBlocker]) -> list[dict[str, Any]]:
-        names = ("parts", "patch", "kind", "place", "area")
-        return [{name: getattr(blocker, name) for name in names} for blocker in blockers]
+        return [fields(blocker, "parts", "patch", "kind", "place", "area") for blocker in blockers]
 
     return {
-        "free_in_pair": answer.free_in_pair,
-        "free_in_assembly": answer.free_in_assembly,
-        "residual": answer.residual,
+        **fields(answer, "free_in_pair", "free_in_assembly", "residual"),
         "blocked_by": contacts(answer.blocked_by),
         "text": answer.text,
         "ways_in_pair": ways(answer.pair_ways),
@@ -167,13 +166,12 @@ def _answer_fields(answer: QueryAnswer) -> dict[str, Any]:
 
 
 def _data_intended(design: Design, answer: IntendedAnswer) -> dict[str, Any]:
+    from kinform.reports.values.plain import fields
+
     return {
-        "name": answer.joint.name,
-        "type": answer.joint.type,
-        "between": answer.joint.between,
-        "free": answer.free,
-        "text": answer.text,
-        "motions": [{"kind": item.kind, "twist": item.twist, **_answer_fields(item.answer)} for item in answer.motions],
+        **fields(answer.joint, "name", "type", "between"),
+        **fields(answer, "free", "text"),
+        "motions": [fields(item, "kind", "twist") | _answer_fields(item.answer) for item in answer.motions],
     }
 
 

@@ -40,25 +40,10 @@ def render(design: Design, name: str) -> RenderableType:
 def _patches(evidence: Insight, lengths: Lengths) -> Rows:
     """A row for each patch of the joint, with its weight in the decision."""
     unit = lengths.unit
-    headings = (
-        "patch",
-        "kind",
-        "part",
-        "part",
-        "surfaces",
-        "fit",
-        f"gap {unit}",
-        f"area {unit}²",
-        "weight",
-        "rows",
-        "role",
-    )
-    rows = Rows(
-        *headings,
-        title=f"\n{counted(len(evidence.patches), 'patch', 'patches')}",
-        right=(*headings[6:10], "patch"),
-        keys=4,
-    )
+    title = f"\n{counted(len(evidence.patches), 'patch', 'patches')}"
+    numeric = (f"gap {unit}", f"area {unit}²", "weight", "rows")
+    headings = ("patch", "kind", "part", "part", "surfaces", "fit", *numeric, "role")
+    rows = Rows(*headings, title=title, right=(*numeric, "patch"), keys=4)
     for item in evidence.patches:
         patch = item.patch
         kind = f"{patch.kind} (one side)" if patch.one_sided else patch.kind

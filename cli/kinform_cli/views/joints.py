@@ -23,18 +23,8 @@ def render(design: Design) -> RenderableType:
     title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
     run = design.simulation
     ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
-    rows = Rows(
-        "name",
-        "type",
-        "axis",
-        f"point {lengths.unit}",
-        "free",
-        "status",
-        *(["range"] if ranges else []),
-        "evidence",
-        title=title,
-        right=["free"],
-    )
+    headings = ("name", "type", "axis", f"point {lengths.unit}", "free", "status")
+    rows = Rows(*headings, *(["range"] if ranges else []), "evidence", title=title, right=["free"])
     for joint in kinematics.joints:
         rows.add(
             joint.name,

@@ -5,63 +5,36 @@ The JSON is `kinform.reports.summary_json`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from types import ModuleType
-
 from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
-from kinform.errors import StageError
 from kinform.foundation.words import counted
 from kinform.model.findings import SEVERITIES
+from kinform.reports.values.topics import TOPICS, require
 from kinform_cli.tables import stacked
 from kinform_cli.views import assembly, behaviour, contacts, evidence, findings, joints, mass, mobility, simulation
 
-
-@dataclass(frozen=True)
-class Topic:
-    """A view, the command whose results it shows, and the field of the design where they are."""
-
-    view: ModuleType
-    command: str
-    field: str
-
-    def computed(self, design: Design) -> bool:
-        """Whether the command has run."""
-        return getattr(design, self.field) is not None
-
-
-TOPICS = {
-    "assembly": Topic(assembly, "import", "assembly"),
-    "contacts": Topic(contacts, "contacts", "contacts"),
-    "joints": Topic(joints, "joints", "kinematics"),
-    "mobility": Topic(mobility, "joints", "kinematics"),
-    "mass": Topic(mass, "mass", "mass"),
-    "behaviour": Topic(behaviour, "simulate", "behaviour"),
-    "simulation": Topic(simulation, "simulate", "simulation"),
-    "findings": Topic(findings, "check", "report"),
-}
+VIEWS = {
+    "assembly": assembly, "contacts": contacts, "joints": joints, "mobility": mobility, "mass": mass,
+    "behaviour": behaviour, "simulation": simulation, "findings": findings,
+}  # fmt: skip
+"""The module that shows a topic."""
 
 
 def render(design: Design, topic: str | None) -> RenderableType:
     """The topic for people, or all in short; raises StageError where its stage has not run."""
     if topic is None:
         return _overview(design)
-    _require(design, topic)
-    view: RenderableType = TOPICS[topic].view.render(design)
+    require(design, topic)
+    view: RenderableType = VIEWS[topic].render(design)
     return view
 
 
 def render_joint(design: Design, name: str) -> RenderableType:
     """All the evidence of one joint; raises StageError, or KeyError for a name that no joint has."""
-    _require(design, "joints")
+    require(design, "joints")
     return evidence.render(design, name)
-
-
-def _require(design: Design, topic: str) -> None:
-    if not TOPICS[topic].computed(design):
-        raise StageError(f"`kinform show {topic}`", TOPICS[topic].command)
 
 
 def _overview(design: Design) -> RenderableType:

@@ -20,7 +20,7 @@ from kinform.reports.page.movements import Movement
 from kinform.reports.page.packing import Blob, quantised
 from kinform.reports.page.phrases import joint_sentence, patch_words
 from kinform.reports.page.scene import Scene
-from kinform.reports.values.plain import plain
+from kinform.reports.values.plain import fields, plain
 
 
 def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
@@ -56,10 +56,8 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
         "fits": FIT_COLOURS,
         "overlapColour": OVERLAP_COLOUR,
         "overlaps": [
-            {
-                "parts": item.parts,
-                "mated": item.mated,
-                "place": item.place,
+            fields(item, "parts", "mated", "place")
+            | {
                 "depth": words.length(item.depth, scene.design.assembly.units, 3),
                 "body": scene.body_index.get(item.parts[0], 0),
                 "mesh": None if shape is None else _mesh(blob, shape),
@@ -78,12 +76,10 @@ def _joint(scene: Scene, joint: Joint) -> dict[str, Any]:
     return {
         "name": joint.name,
         "wanted": ", ".join(scene.wanted.get(joint.name, [])),
-        "type": joint.type,
-        "status": joint.status,
+        **fields(joint, "type", "status"),
         "text": joint_sentence(joint, scene.design.assembly.units),
         "bodies": [number[name] for name in joint.bodies],
-        "axis": joint.axis,
-        "axis2": joint.axis2,
+        **fields(joint, "axis", "axis2"),
         "point": point,
         "right": joint.pitch is None or joint.pitch >= 0.0,
         "twists": joint.twists if joint.type == "general" else [],
@@ -127,12 +123,9 @@ def _patches(scene: Scene, blob: Blob) -> dict[str, Any]:
 def _finding(finding: Finding, focus: Focus) -> dict[str, Any]:
     return {
         "code": finding.code,
-        "parts": focus.parts,
-        "joints": focus.joints,
-        "place": focus.place,
+        **fields(focus, "parts", "joints", "place"),
         "motion": focus.movement,
-        "time": focus.time,
-        "meeting": focus.meeting,
+        **fields(focus, "time", "meeting"),
     }
 
 
@@ -141,18 +134,10 @@ def _movement(scene: Scene, blob: Blob, movement: Movement) -> dict[str, Any]:
     number: dict[str, int] = {body.name: k for k, body in enumerate(scene.bodies)}
     scale, unit = _shown(scene, movement)
     return {
-        "kind": movement.kind,
-        "name": movement.name,
-        "note": movement.note,
+        **fields(movement, "kind", "name", "note"),
         "marks": [
-            {
-                "time": mark.time,
-                "kind": mark.kind,
-                "text": mark.text,
-                "parts": mark.parts,
-                "place": mark.place,
-                "body": scene.body_index[mark.parts[0]] if mark.parts else 0,
-            }
+            fields(mark, "time", "kind", "text", "parts", "place")
+            | {"body": scene.body_index[mark.parts[0]] if mark.parts else 0}
             for mark in movement.marks
         ],
         "time": movement.time,

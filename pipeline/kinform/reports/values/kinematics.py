@@ -84,14 +84,8 @@ def mobility_values(design: Design) -> dict[str, Any]:
 
 def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
     """All counts by name."""
-    return {
-        "instantaneous": mobility.instantaneous,
-        "finite": mobility.finite,
-        "effective": mobility.effective,
-        "idle": mobility.idle,
-        "redundant": mobility.redundant,
-        "blocked_mobility": mobility.blocked,
-    }
+    counts = fields(mobility, "instantaneous", "finite", "effective", "idle", "redundant")
+    return counts | {"blocked_mobility": mobility.blocked}
 
 
 def _named(kinematics: Kinematics) -> list[dict[str, Any]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from kinform.design import Design
@@ -27,14 +28,13 @@ def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
     stage of the topic has not run, and ValueError for another topic.
     """
     if topic is None:
-        known = {name: summary(design, name) if _known(design, name) else None for name in TOPICS}
+        known = {name: summary(design, name) if TOPICS[name].computed(design) else None for name in TOPICS}
         return {"schema": "kinform/design/1", **known}
     if topic not in TOPICS:
         raise ValueError(f"unknown topic {topic!r}: expected one of {', '.join(TOPICS)}")
-    if not _known(design, topic):
-        raise StageError(f"`kinform show {topic}`", TOPICS[topic][0])
+    require(design, topic)
     head = {"schema": f"kinform/{topic}/1", "assembly": design.assembly.name, "units": design.assembly.units}
-    found: dict[str, Any] = plain(head | TOPICS[topic][2](design))
+    found: dict[str, Any] = plain(head | TOPICS[topic].values(design))
     return found
 
 
@@ -45,8 +45,7 @@ def summary_json(design: Design, topic: str | None = None) -> str:
 
 def joint_evidence(design: Design, name: str) -> dict[str, Any]:
     """All the evidence of one joint. Raises StageError when joints are not known, KeyError for another name."""
-    if not _known(design, "joints"):
-        raise StageError("`kinform show joints`", TOPICS["joints"][0])
+    require(design, "joints")
     found = insight(design, name)
     of_patch = ("parts", "surfaces", "kind", "one_sided", "area", "gap", "fit")
     evidence: dict[str, Any] = plain(
@@ -80,18 +79,33 @@ def _findings(design: Design) -> dict[str, Any]:
     return as_json.document(design.report, design)
 
 
-def _known(design: Design, topic: str) -> bool:
-    return getattr(design, TOPICS[topic][1]) is not None
+@dataclass(frozen=True)
+class Topic:
+    """The command that computes it, the field of the design that holds it, and its values."""
+
+    command: str
+    field: str
+    values: Callable[[Design], dict[str, Any]]
+
+    def computed(self, design: Design) -> bool:
+        """Whether the command has run."""
+        return getattr(design, self.field) is not None
 
 
-TOPICS: dict[str, tuple[str, str, Callable[[Design], dict[str, Any]]]] = {
-    "assembly": ("import", "assembly", assembly_values),
-    "contacts": ("contacts", "contacts", contact_values),
-    "joints": ("joints", "kinematics", joint_values),
-    "mobility": ("joints", "kinematics", mobility_values),
-    "mass": ("mass", "mass", mass_values),
-    "behaviour": ("simulate", "behaviour", behaviour_values),
-    "simulation": ("simulate", "simulation", simulation_values),
-    "findings": ("check", "report", _findings),
+TOPICS = {
+    "assembly": Topic("import", "assembly", assembly_values),
+    "contacts": Topic("contacts", "contacts", contact_values),
+    "joints": Topic("joints", "kinematics", joint_values),
+    "mobility": Topic("joints", "kinematics", mobility_values),
+    "mass": Topic("mass", "mass", mass_values),
+    "behaviour": Topic("simulate", "behaviour", behaviour_values),
+    "simulation": Topic("simulate", "simulation", simulation_values),
+    "findings": Topic("check", "report", _findings),
 }
-"""By topic: the command that computes it, the field of Design that holds it, and its values."""
+"""In the order of the pipeline."""
+
+
+def require(design: Design, topic: str) -> None:
+    """Raise StageError where the stage of the topic has not run."""
+    if not TOPICS[topic].computed(design):
+        raise StageError(f"`kinform show {topic}`", TOPICS[topic].command)
