@@ -105,6 +105,18 @@ class Table:
         return 0.0
 
 
+LAWS: dict[str, type[Signal]] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}
+"""Signals that a file can hold, by the name of their law."""
+
+
+def law_of(signal: Signal) -> str:
+    """The name of its law. Raises ValueError for a signal that is none of kinform's."""
+    for law, cls in LAWS.items():
+        if type(signal) is cls:
+            return law
+    raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+
+
 class Spline:
     """A cubic curve through a table that comes to rest at both ends, held outside.
 

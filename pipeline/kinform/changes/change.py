@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from kinform.changes.behaviours import Axis, Vector
+from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import counted, direction, length, place
 
 
@@ -29,9 +30,10 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Lengths:
-    """Lengths and places in the units of an assembly."""
+class Measure:
+    """What counts as the same, and lengths and places in the units of an assembly."""
 
+    within: Tolerance
     units: str
 
     def length(self, metres: float) -> str:
@@ -47,6 +49,14 @@ class Lengths:
         if axis is None:
             return None
         return direction(axis.direction) + ("" if axis.point is None else f" through {self.place(axis.point)}")
+
+    def displacement(
+        self, kind: str, subject: tuple[str, ...], what: str, old: Vector, new: Vector, away: float
+    ) -> Iterator[Change]:
+        """The change of a point that is `away` (m) from where it was, where that does not count as the same."""
+        if away > self.within.length:
+            message = f"{what} moved by {self.length(away)}"
+            yield Change(kind, subject, message, self.place(old), self.place(new), away, "m", new)
 
 
 def quoted(*names: str) -> str:

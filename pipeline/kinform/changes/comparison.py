@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from kinform.changes.behaviours import Snapshot
-from kinform.changes.change import Change, Lengths, freedoms_changed, quoted, signed
+from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
 from kinform.changes.joints import joint_changes
 from kinform.changes.masses import mass_changes
 from kinform.changes.matching import holder, new_names, same_bodies, with_names
@@ -51,14 +51,14 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
     other = new_names(before, after)
     before = with_names(before, other)
     now = same_bodies(before, after)
-    say = Lengths(after.units)
+    measure = Measure(within, after.units)
     ranged = before.ranges is not None and after.ranges is not None
     steps = {
         "bodies": lambda: _bodies(before, after, now, other),
-        "joints": lambda: joint_changes(before, after, now, within, say, ranged),
+        "joints": lambda: joint_changes(before, after, now, measure, ranged),
         "mobility": lambda: _mobility(before, after),
-        "masses": lambda: mass_changes(before, after, now, within, say),
-        "interferences": lambda: _interferences(before, after, within, say),
+        "masses": lambda: mass_changes(before, after, now, measure),
+        "interferences": lambda: _interferences(before, after, measure),
         "simulation": lambda: _simulation(before, after),
         "findings": lambda: _findings(before, after),
     }
@@ -115,19 +115,18 @@ def _mobility(before: Snapshot, after: Snapshot) -> Iterator[Change]:
 _FREEDOMS = ("instantaneous", "finite", "effective")
 
 
-def _interferences(before: Snapshot, after: Snapshot, within: Tolerance, say: Lengths) -> Iterator[Change]:
+def _interferences(before: Snapshot, after: Snapshot, measure: Measure) -> Iterator[Change]:
     old, new = dict(before.interferences or ()), dict(after.interferences or ())
     for pair in sorted(set(old) | set(new)):
         one, two = old.get(pair), new.get(pair)
-        shown = [None if depth is None else say.length(depth) for depth in (one, two)]
+        was, now = (None if depth is None else measure.length(depth) for depth in (one, two))
         if one is not None and two is None:
-            yield Change("interference-gone", pair, "no longer overlap", shown[0], None, -one, "m")
+            yield Change("interference-gone", pair, "no longer overlap", was, None, -one, "m")
         elif one is None and two is not None:
-            yield Change("interference-new", pair, f"overlap by {shown[1]}", None, shown[1], two, "m")
-        elif one is not None and two is not None and not within.lengths_agree(one, two):
-            yield Change(
-                "interference", pair, f"overlap {signed(two - one, say.length)}", shown[0], shown[1], two - one, "m"
-            )
+            yield Change("interference-new", pair, f"overlap by {now}", None, now, two, "m")
+        elif one is not None and two is not None and not measure.within.lengths_agree(one, two):
+            message = f"overlap {signed(two - one, measure.length)}"
+            yield Change("interference", pair, message, was, now, two - one, "m")
 
 
 def _simulation(before: Snapshot, after: Snapshot) -> Iterator[Change]:

@@ -8,14 +8,13 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from kinform.changes.behaviours import Axis, JointState, Snapshot
-from kinform.changes.change import Change, Lengths, freedoms_changed, quoted, signed
+from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
 from kinform.changes.matching import holder
-from kinform.changes.tolerance import Tolerance
 from kinform.foundation.words import angle, direction
 
 
 def joint_changes(
-    before: Snapshot, after: Snapshot, now: Mapping[str, str], within: Tolerance, say: Lengths, ranged: bool
+    before: Snapshot, after: Snapshot, now: Mapping[str, str], measure: Measure, ranged: bool
 ) -> Iterator[Change]:
     """Joints that came, went or changed; ranges where `ranged`: known on both sides."""
     into = {name: now.get(name) or holder(parts, dict(after.bodies or ())) for name, parts in before.bodies or ()}
@@ -27,9 +26,9 @@ def joint_changes(
         if pair in new and len(pair) == 2:
             still.add(pair)
             turned = tuple(str(end) for end in ends) != new[pair].bodies
-            yield from _joint(joint, new[pair], within, say)
+            yield from _joint(joint, new[pair], measure)
             if ranged and joint.type == new[pair].type:
-                yield from _range(joint, new[pair], turned, within, say)
+                yield from _range(joint, new[pair], turned, measure)
         elif len(pair) == 1 and ends[0] is not None:
             yield Change(
                 "joint-type", (joint.name,), f"became fixed: both are {quoted(str(ends[0]))} now",
@@ -42,63 +41,43 @@ def joint_changes(
             yield Change("joint-new", (joint.name,), f"is new ({joint.type}, {joint.status})", None, joint.type)
 
 
-def _joint(old: JointState, new: JointState, within: Tolerance, say: Lengths) -> Iterator[Change]:
+def _joint(old: JointState, new: JointState, measure: Measure) -> Iterator[Change]:
     """A joint that is still there: another type hides all else, as axes of different types do not compare."""
     subject = (new.name,)
+    gain = new.freedoms - old.freedoms
     if old.type != new.type:
-        gain = new.freedoms - old.freedoms
-        message = f", {freedoms_changed(gain)}" if gain else ""
-        yield Change(
-            "joint-type",
-            subject,
-            f"was {old.type}, is {new.type}{message}",
-            old.type,
-            new.type,
-            float(gain),
-            "freedoms",
-        )
+        message = f"was {old.type}, is {new.type}" + (f", {freedoms_changed(gain)}" if gain else "")
+        yield Change("joint-type", subject, message, old.type, new.type, float(gain), "freedoms")
         return
-    if old.freedoms != new.freedoms:
-        gain = new.freedoms - old.freedoms
-        yield Change(
-            "joint-freedoms",
-            subject,
-            freedoms_changed(gain),
-            str(old.freedoms),
-            str(new.freedoms),
-            float(gain),
-            "freedoms",
-        )
+    if gain:
+        counts = str(old.freedoms), str(new.freedoms)
+        yield Change("joint-freedoms", subject, freedoms_changed(gain), *counts, float(gain), "freedoms")
     if old.status != new.status:
         yield Change("joint-status", subject, f"was {old.status}, is {new.status}", old.status, new.status)
-    yield from _axes(subject, "axis", old.axis, new.axis, within, say)
-    yield from _axes(subject, "second axis", old.axis2, new.axis2, within, say)
+    yield from _axes(subject, "axis", old.axis, new.axis, measure)
+    yield from _axes(subject, "second axis", old.axis2, new.axis2, measure)
     if old.centre is not None and new.centre is not None:
         away = float(np.linalg.norm(np.subtract(new.centre, old.centre)))
-        if away > within.length:
-            yield Change(
-                "axis-moved", subject, f"centre moved by {say.length(away)}", say.place(old.centre),
-                say.place(new.centre), away, "m", new.centre,
-            )  # fmt: skip
+        yield from measure.displacement("axis-moved", subject, "centre", old.centre, new.centre, away)
     if (old.pitch is None) != (new.pitch is None) or (
-        old.pitch is not None and new.pitch is not None and not within.lengths_agree(old.pitch, new.pitch)
+        old.pitch is not None and new.pitch is not None and not measure.within.lengths_agree(old.pitch, new.pitch)
     ):
-        one, two = (None if pitch is None else say.length(pitch) for pitch in (old.pitch, new.pitch))
+        one, two = (None if pitch is None else measure.length(pitch) for pitch in (old.pitch, new.pitch))
         yield Change("pitch", subject, "has another pitch", one, two)
 
 
 def _axes(
-    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, within: Tolerance, say: Lengths
+    subject: tuple[str, ...], what: str, old: Axis | None, new: Axis | None, measure: Measure
 ) -> Iterator[Change]:
     """The angle between two lines, and how far the new one is from where the old one was located."""
     if old is None or new is None:
         if old is not new:
             message = f"{what} is {'known now' if old is None else 'no longer known'}"
-            yield Change("axis-known", subject, message, say.line(old), say.line(new))
+            yield Change("axis-known", subject, message, measure.line(old), measure.line(new))
         return
     one, two = np.array(old.direction), np.array(new.direction)
     tilt = math.atan2(float(np.linalg.norm(np.cross(one, two))), abs(float(one @ two)))
-    if tilt > within.angle:
+    if tilt > measure.within.angle:
         yield Change(
             "axis-tilted", subject, f"{what} tilted by {_deg(tilt)}", direction(one), direction(two), tilt, "rad"
         )
@@ -106,14 +85,10 @@ def _axes(
         # how far the new axis is from where the old one was located
         arm = np.array(old.point) - np.array(new.point)
         away = float(np.linalg.norm(arm - two * float(two @ arm)))
-        if away > within.length:
-            yield Change(
-                "axis-moved", subject, f"{what} moved by {say.length(away)}", say.place(old.point),
-                say.place(new.point), away, "m", new.point,
-            )  # fmt: skip
+        yield from measure.displacement("axis-moved", subject, what, old.point, new.point, away)
 
 
-def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, say: Lengths) -> Iterator[Change]:
+def _range(old: JointState, new: JointState, turned: bool, measure: Measure) -> Iterator[Change]:
     """How far the joint goes. Its value is of the second body relative to the first, about the axis: exchanged bodies
     turn the range round, and so does an axis that has come to point the other way."""
     if old.axis is not None and new.axis is not None and np.dot(old.axis.direction, new.axis.direction) < 0.0:
@@ -125,20 +100,21 @@ def _range(old: JointState, new: JointState, turned: bool, within: Tolerance, sa
     if old.range_status != new.range_status:
         message = f"range was {old.range_status}, is {new.range_status}"
         yield Change("range-status", subject, message, old.range_status, new.range_status)
-    shown, agree, unit = (say.length, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
+    within = measure.within
+    shown, agree, unit = (
+        (measure.length, within.lengths_agree, "m") if old.slides else (_deg, within.angles_agree, "rad")
+    )
     for side, one, two in (("lower", old.range_lower, lower), ("upper", old.range_upper, upper)):
+        what, was, now = f"{side} end of the range", _end(one, shown), _end(two, shown)
+        message, amount = f"{what} was {was}, is {now}", None
         if one is None or two is None:
-            if one is not two and old.range_status == new.range_status:
-                message = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
-                yield Change("range", subject, message, _end(one, shown), _end(two, shown))
+            if one is two or old.range_status != new.range_status:  # the status says it
+                continue
         elif agree(one, two):
             continue
         elif math.isfinite(one) and math.isfinite(two):
-            message = f"{side} end of the range {signed(two - one, shown)}"
-            yield Change("range", subject, message, shown(one), shown(two), two - one, unit)
-        else:
-            message = f"{side} end of the range was {_end(one, shown)}, is {_end(two, shown)}"
-            yield Change("range", subject, message, _end(one, shown), _end(two, shown))
+            message, amount = f"{what} {signed(two - one, shown)}", two - one
+        yield Change("range", subject, message, was, now, amount, None if amount is None else unit)
 
 
 def _end(value: float | None, say: Callable[[float], str]) -> str:

@@ -33,6 +33,12 @@ CODE, NAME = "KF450", "behaviour-differs-from-lock"
 ACCEPTED = Tolerance(length=1e-5, angle=math.radians(0.05), mass=1e-6, share=5e-3)
 """What a lock lets pass where nothing else is stated: 0.01 mm, 0.05°, 1 mg, 0.5 %."""
 
+TOLERANCES = {
+    "length_mm": ("length", 1e-3), "angle_deg": ("angle", math.radians(1.0)), "mass_g": ("mass", 1e-3),
+    "mass_percent": ("share", 1e-2),
+}  # fmt: skip
+"""By key in the file: the field of `Tolerance`, and what a unit of the file is in SI."""
+
 FREE = "free"
 """The end of a range at which nothing stops the joint."""
 
@@ -57,12 +63,7 @@ def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
     lock: dict[str, Any] = {
         "schema": SCHEMA,
         "assembly": behaviour.assembly,
-        "tolerances": {
-            "length_mm": _short(1e3 * tolerance.length),
-            "angle_deg": _short(math.degrees(tolerance.angle)),
-            "mass_g": _short(1e3 * tolerance.mass),
-            "mass_percent": _short(100.0 * tolerance.share),
-        },
+        "tolerances": {key: _short(getattr(tolerance, name) / size) for key, (name, size) in TOLERANCES.items()},
         "mobility": dict(behaviour.mobility or ()),
         "ground": behaviour.ground,
         "bodies": [
@@ -298,13 +299,8 @@ def _read_direction(values: Iterable[float] | None) -> Vector | None:
 
 
 def _read_tolerance(stated: Mapping[str, Any]) -> Tolerance:
-    values = {key: float(stated[key]) for key in ("length_mm", "angle_deg", "mass_g", "mass_percent")}
+    values = {key: float(stated[key]) for key in TOLERANCES}
     for key, value in values.items():
         if not (math.isfinite(value) and value >= 0.0):
             raise ValueError(f"the tolerance {key} is {value:g}, and has to be a finite number from 0")
-    return Tolerance(
-        length=1e-3 * values["length_mm"],
-        angle=math.radians(values["angle_deg"]),
-        mass=1e-3 * values["mass_g"],
-        share=1e-2 * values["mass_percent"],
-    )
+    return Tolerance(**{name: size * values[key] for key, (name, size) in TOLERANCES.items()})

@@ -19,11 +19,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
-from kinform.behaviour import Component, Constant, Gear, JointComponent, Node, RigidBody, Signal, System, count, flat
+from kinform.behaviour import Component, Gear, JointComponent, Node, RigidBody, Signal, System, count, flat
 from kinform.behaviour.components import COMPONENTS, kind_of
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.shafts import Controller
-from kinform.behaviour.signals import Ramp, Sine, Table
+from kinform.behaviour.signals import LAWS, law_of
 from kinform.errors import InputError, Problem
 from kinform.exports.exported import Exported
 from kinform.exports.model import ExportModel
@@ -32,8 +32,6 @@ from kinform.model.arrays import Array
 
 SCHEMA = "kinform/port-model/1"
 
-LAWS: dict[str, type[Signal]] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}
-"""Signals that a file can hold, by the name of their law."""
 KEYS = {"signal": "law", "knots": "times"}
 """Keys of fields that are called otherwise in the file."""
 DESCRIPTIONS = {"name": "Unique in the model.", "subject": "What the user calls it."}
@@ -140,10 +138,7 @@ def _counts(system: System) -> dict[str, int]:
 
 
 def _written_law(signal: Signal) -> dict[str, Any]:
-    for law, kind in LAWS.items():
-        if isinstance(signal, kind):
-            return {"law": law, **_values_of(signal)}
-    raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+    return {"law": law_of(signal), **_values_of(signal)}
 
 
 def _read_law(table: Any) -> Signal:

@@ -17,7 +17,7 @@ from kinform.behaviour.components import COMPONENTS, JointComponent, kind_of
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import arranged
 from kinform.behaviour.shafts import Controller
-from kinform.behaviour.signals import Constant, Ramp, Signal, Sine, Table
+from kinform.behaviour.signals import LAWS, Signal, Table, law_of
 from kinform.design import Design
 from kinform.results import layout
 from kinform.results.layout import Layout
@@ -34,7 +34,6 @@ from kinform.results.table import (
     write_rows,
 )
 
-SIGNALS: dict[str, type] = {"constant": Constant, "ramp": Ramp, "sine": Sine, "table": Table}
 LAW = integer("law")
 
 
@@ -133,12 +132,10 @@ class _Rows:
         return values | (vars(values["controller"]) if "controller" in values else {})
 
     def _add(self, signal: Signal) -> None:
-        kinds = [name for name, cls in SIGNALS.items() if type(signal) is cls]
-        if not kinds:
-            raise ValueError(f"a signal of the kind {type(signal).__name__} is none of kinform's")
+        law = law_of(signal)
         self.signals.append(signal)
         numbers = (getattr(signal, column.field, None) for column in LAW_ROWS[1:])
-        self.tables["laws"].append((kinds[0], *numbers))
+        self.tables["laws"].append((law, *numbers))
 
 
 def read(group: h5py.Group) -> Behaviour:
@@ -185,7 +182,7 @@ def _read_laws(group: h5py.Group) -> list[Signal]:
     times, levels = read_ragged(group, "law_times"), read_ragged(group, "law_levels")
     signals: list[Signal] = []
     for row, knots, values in zip(read_rows(group, "laws", LAW_ROWS), times, levels, strict=True):
-        cls = SIGNALS[row["law"]]
+        cls = LAWS[row["law"]]
         numbers = {name: row[name] for name in hints(cls) if name in row}
         signals.append(Table(tuple(knots.tolist()), tuple(values.tolist())) if cls is Table else cls(**numbers))
     return signals
