@@ -33,11 +33,7 @@ def one_freedom(
         return None, 1, f'the joint "{found.joint.name}" is {found.joint.type} and {found.joint.status}'
     if component.kind.rates != 1:
         kind = component.kind
-        return (
-            None,
-            1,
-            f'the joint "{component.subject}" is {kind.name}: it has {kind.rates} freedoms, not one',
-        )
+        return None, 1, f'the joint "{component.subject}" is {kind.name}: it has {kind.rates} freedoms, not one'
     return component, found.sign, ""
 
 

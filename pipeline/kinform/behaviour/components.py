@@ -8,20 +8,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated
 
+from kinform.behaviour import shafts
 from kinform.behaviour.joints import JointGeometry, JointKind
 from kinform.behaviour.ports import FRAME, Component, Node, Port
-from kinform.behaviour.shafts import (
-    Actor,
-    Damper,
-    DcMotor,
-    EffortDrive,
-    EndStop,
-    MotionDrive,
-    Servo,
-    Spring,
-    VoltageController,
-    VoltageSource,
-)
 from kinform.model.arrays import Array
 from kinform.model.quantities import XYZ, Direction, Inertia, JointValue, Metres, Place, Ratio
 
@@ -59,10 +48,6 @@ class JointComponent(Component):
         frames = (Port("a", FRAME), Port("b", FRAME))
         return (*frames, Port("shaft", self.kind.rates)) if self.kind.rates else frames
 
-    @property
-    def equations(self) -> int:
-        return 2 * FRAME + self.kind.rates
-
 
 @dataclass(frozen=True, eq=False)
 class Gear(Component):
@@ -70,6 +55,8 @@ class Gear(Component):
 
     Where teeth do that, their force acts along one of two lines through the pitch point, whichever pushes.
     """
+
+    PORTS = (Port("a", 1), Port("b", 1))
 
     ratio: Ratio
     pitch_point: Place | None = None
@@ -81,14 +68,6 @@ class Gear(Component):
     lower: JointValue = -math.inf
     """Values at a (rad or m) between which there are teeth."""
     upper: JointValue = math.inf
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("a", 1), Port("b", 1))
-
-    @property
-    def equations(self) -> int:
-        return 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +91,8 @@ class SpringDamper(Component):
     Its pull along the line is stiffness · (length − rest) + damping · d(length)/dt. Twelve equations.
     """
 
+    PORTS = (Port("a", FRAME), Port("b", FRAME))
+
     point: Place
     """(3,) m, of the body at port a, in the world at the pose of the meshes."""
     other: Place
@@ -122,14 +103,6 @@ class SpringDamper(Component):
     """N·s/m."""
     rest: Metres
     """m."""
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("a", FRAME), Port("b", FRAME))
-
-    @property
-    def equations(self) -> int:
-        return 2 * FRAME
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -278,16 +251,17 @@ class System(Component):
         """Loads in order."""
         return tuple(c for c in self.components if isinstance(c, LoadComponent))
 
-    def actors(self, joint: str) -> tuple[Actor, ...]:
+    def actors(self, joint: str) -> tuple[shafts.Actor, ...]:
         """What acts on the shaft of the joint component of that name."""
         component = self._by_name[joint]
         if not isinstance(component, JointComponent) or component.kind.rates == 0:
             return ()
-        return tuple(c for c, _ in self.at(joint, "shaft") if isinstance(c, Actor))
+        return tuple(c for c, _ in self.at(joint, "shaft") if isinstance(c, shafts.Actor))
 
-    def supply(self, motor: str) -> VoltageSource | VoltageController:
+    def supply(self, motor: str) -> shafts.VoltageSource | shafts.VoltageController:
         """What gives the motor of that name its voltage; ValueError when there is not exactly one."""
-        (only,) = (c for c, _ in self.at(motor, "terminals") if isinstance(c, VoltageSource | VoltageController))
+        sources = shafts.VoltageSource | shafts.VoltageController
+        (only,) = (c for c, _ in self.at(motor, "terminals") if isinstance(c, sources))
         return only
 
     def body_at(self, component: str, port: str) -> Ground | RigidBody:
@@ -305,15 +279,15 @@ COMPONENTS: dict[str, type[Component]] = {
     "ground": Ground,
     "rigid_body": RigidBody,
     "joint": JointComponent,
-    "motion": MotionDrive,
-    "effort": EffortDrive,
-    "spring": Spring,
-    "damper": Damper,
-    "end_stop": EndStop,
-    "servo": Servo,
-    "dc_motor": DcMotor,
-    "voltage_source": VoltageSource,
-    "voltage_controller": VoltageController,
+    "motion": shafts.MotionDrive,
+    "effort": shafts.EffortDrive,
+    "spring": shafts.Spring,
+    "damper": shafts.Damper,
+    "end_stop": shafts.EndStop,
+    "servo": shafts.Servo,
+    "dc_motor": shafts.DcMotor,
+    "voltage_source": shafts.VoltageSource,
+    "voltage_controller": shafts.VoltageController,
     "spring_damper": SpringDamper,
     "gear": Gear,
     "load": LoadComponent,

@@ -18,22 +18,11 @@ from collections import defaultdict
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinform.behaviour import shafts
 from kinform.behaviour.components import Gear, Ground, JointComponent, LoadComponent, RigidBody, SpringDamper, System
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import placed
 from kinform.behaviour.ports import Component, Node
-from kinform.behaviour.shafts import (
-    Controller,
-    Damper,
-    DcMotor,
-    EffortDrive,
-    EndStop,
-    MotionDrive,
-    Servo,
-    Spring,
-    VoltageController,
-    VoltageSource,
-)
 from kinform.behaviour.signals import Signal
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.model.arrays import Array
@@ -144,23 +133,23 @@ class Model:
 
     def motion(self, name: str, joint: Where, signal: Signal) -> None:
         """The joint's value follows the signal."""
-        self.add(MotionDrive(name, name, signal), shaft=joint)
+        self.add(shafts.MotionDrive(name, name, signal), shaft=joint)
 
     def effort(self, name: str, joint: Where, signal: Signal) -> None:
         """The joint gets the effort of the signal, N·m or N."""
-        self.add(EffortDrive(name, name, signal), shaft=joint)
+        self.add(shafts.EffortDrive(name, name, signal), shaft=joint)
 
     def spring(self, name: str, joint: Where, stiffness: float, rest: float = 0.0) -> None:
         """N·m/rad and rad, or N/m and m."""
-        self.add(Spring(name, name, stiffness, rest), shaft=joint)
+        self.add(shafts.Spring(name, name, stiffness, rest), shaft=joint)
 
     def damper(self, name: str, joint: Where, damping: float) -> None:
         """N·m·s/rad or N·s/m."""
-        self.add(Damper(name, name, damping), shaft=joint)
+        self.add(shafts.Damper(name, name, damping), shaft=joint)
 
     def stop(self, name: str, joint: Where, lower: float = -math.inf, upper: float = math.inf) -> None:
         """The joint's value stays between the limits, rad or m."""
-        self.add(EndStop(name, name, lower, upper), shaft=joint)
+        self.add(shafts.EndStop(name, name, lower, upper), shaft=joint)
 
     def gear(
         self,
@@ -180,23 +169,23 @@ class Model:
         flank, back = (None, None) if flanks is None else (_unit(side) for side in flanks)
         self.add(Gear(name, name, ratio, _vector(pitch_point), flank, back), a=a, b=b)
 
-    def servo(self, name: str, joint: Where, target: Signal, controller: Controller) -> None:
+    def servo(self, name: str, joint: Where, target: Signal, controller: shafts.Controller) -> None:
         """The effort on the joint is the controller's output for the target of its value."""
-        self.add(Servo(name, name, target, controller), shaft=joint)
+        self.add(shafts.Servo(name, name, target, controller), shaft=joint)
 
     def motor(
         self, name: str, joint: Where, resistance: float, inductance: float, constant: float, gear: float = 1.0
     ) -> None:
         """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint."""
-        self.add(DcMotor(name, name, resistance, inductance, constant, gear), shaft=joint)
+        self.add(shafts.DcMotor(name, name, resistance, inductance, constant, gear), shaft=joint)
 
     def voltage(self, name: str, motor: Where, signal: Signal) -> None:
         """The voltage across the terminals of a motor, V."""
-        self.add(VoltageSource(name, name, signal), terminals=motor)
+        self.add(shafts.VoltageSource(name, name, signal), terminals=motor)
 
-    def controller(self, name: str, motor: Where, joint: Where, target: Signal, controller: Controller) -> None:
+    def controller(self, name: str, motor: Where, joint: Where, target: Signal, controller: shafts.Controller) -> None:
         """A controller that gives the motor its voltage for the target of the joint's value."""
-        self.add(VoltageController(name, name, target, controller), terminals=motor, shaft=joint)
+        self.add(shafts.VoltageController(name, name, target, controller), terminals=motor, shaft=joint)
 
     def spring_between(
         self,

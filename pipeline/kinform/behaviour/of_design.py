@@ -71,11 +71,10 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
             continue
         known = masses.get(body.name)
         if known is None or known.mass is None:
-            nothing = np.full(3, np.nan), np.full((3, 3), np.nan)
-            builder.add(RigidBody(name, body.name, None, *nothing), frame=name)
+            rigid = RigidBody(name, body.name, None, np.full(3, np.nan), np.full((3, 3), np.nan))
         else:
             rigid = RigidBody(name, body.name, known.mass, known.centre_of_mass, known.inertia)
-            builder.add(rigid, frame=name)
+        builder.add(rigid, frame=name)
     ties = {coupling.through: coupling for coupling in reversed(kinematics.couplings) if coupling.kind != "screw"}
     for joint in kinematics.joints:
         if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties):

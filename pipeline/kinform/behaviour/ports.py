@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 FRAME = 6
 """Across: a twist (ω; v). Through: a wrench (τ; f)."""
@@ -20,18 +21,21 @@ class Port:
 class Component:
     """Something with ports. `name` is unique in its system; `subject` is what the user calls it."""
 
+    PORTS: ClassVar[tuple[Port, ...]] = (Port("frame", FRAME),)
+    """Ports of all components of the kind, where they are the same for all."""
+
     name: str
     subject: str
 
     @property
     def ports(self) -> tuple[Port, ...]:
         """Its ports in their fixed order."""
-        return (Port("frame", FRAME),)
+        return self.PORTS
 
     @property
     def equations(self) -> int:
-        """How many equations its behaviour makes between its port variables."""
-        return FRAME
+        """How many equations its behaviour makes between its port variables: one for each across and through pair."""
+        return sum(port.size for port in self.ports)
 
 
 @dataclass(frozen=True)

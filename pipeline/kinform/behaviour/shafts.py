@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
@@ -15,13 +15,7 @@ from kinform.model.quantities import JointValue
 class OnShaft(Component):
     """Something on the shaft of a joint with one freedom; one equation."""
 
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("shaft", 1),)
-
-    @property
-    def equations(self) -> int:
-        return 1
+    PORTS: ClassVar[tuple[Port, ...]] = (Port("shaft", 1),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,13 +80,7 @@ class Servo(OnShaft):
 class OnShaftAndTerminals(OnShaft):
     """Something between a shaft and electric terminals; two equations."""
 
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("shaft", 1), Port("terminals", 1))
-
-    @property
-    def equations(self) -> int:
-        return 2
+    PORTS = (Port("shaft", 1), Port("terminals", 1))
 
 
 @dataclass(frozen=True)
@@ -116,15 +104,9 @@ class DcMotor(OnShaftAndTerminals):
 class VoltageSource(Component):
     """The voltage across its terminals follows the signal (V); one equation."""
 
+    PORTS = (Port("terminals", 1),)
+
     signal: Signal
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        return (Port("terminals", 1),)
-
-    @property
-    def equations(self) -> int:
-        return 1
 
 
 @dataclass(frozen=True, eq=False)

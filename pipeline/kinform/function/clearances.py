@@ -124,11 +124,7 @@ def _has_facets(part: Part) -> bool:
 
 
 def _pair(
-    a: Part,
-    b: Part,
-    contacts: Contacts,
-    surfaces: Mapping[str, MeshSurfaces],
-    shared: dict[tuple[str, bytes], _Side],
+    a: Part, b: Part, contacts: Contacts, surfaces: Mapping[str, MeshSurfaces], shared: dict[tuple[str, bytes], _Side]
 ) -> _Pair:
     """The facets of two parts that count against each other."""
     assert a.mesh is not None

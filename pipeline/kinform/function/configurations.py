@@ -8,7 +8,7 @@ chain through one is refused with the reason. Ranges are those of the function a
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -109,11 +109,7 @@ class Chain:
 
 
 def chain_between(
-    assembly: Assembly,
-    kinematics: Kinematics,
-    root: str,
-    tip: str,
-    prefer: Literal["both", "stated"] = "both",
+    assembly: Assembly, kinematics: Kinematics, root: str, tip: str, prefer: Literal["both", "stated"] = "both"
 ) -> Chain | str:
     """The chain of all paths between two bodies, or why there is none.
 
@@ -161,7 +157,8 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
     points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     if frame.length < 1e-9 or len(points) < 2:
-        frame = Frame(frame.centre, max(_size(assembly), 1e-9))
+        halves = [0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None]
+        frame = Frame(frame.centre, max(constants.LEAST_SIZE, *halves, 1e-9))
     edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
     ties = [(index[c.joints[0]], index[c.joints[1]], c.meshing.ratio) for c in geared if c.meshing is not None]
     system = loop_system(edges, [j.twists for j in joints], frame, ties)
@@ -170,22 +167,15 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
     return Chain(system, frame, tuple(bodies), tuple(coordinates))
 
 
-def _size(assembly: Assembly) -> float:
-    return max([constants.LEAST_SIZE, *(0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None)])
-
-
-def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> list[Coordinate]:
-    out = []
+def _coordinates(joint: Joint, frame: Frame, ranges: dict[str, tuple[float, float]]) -> Iterator[Coordinate]:
     for twist in joint.twists:
         turns = float(np.linalg.norm(twist[:3])) > 1e-9 * float(np.linalg.norm(twist[3:]))
         vector = twist[:3] if turns else twist[3:]
         sign = -1.0 if joint.axis is not None and float(vector @ joint.axis) < 0.0 else 1.0
         unit = sign if turns else sign / frame.length
         single = joint.freedoms == 1 and joint.name in ranges
-        free = (-math.inf, math.inf)
-        low, high = ranges[joint.name] if single else free
-        out.append(Coordinate(joint.name, turns, unit, low, high, single))
-    return out
+        low, high = ranges[joint.name] if single else (-math.inf, math.inf)
+        yield Coordinate(joint.name, turns, unit, low, high, single)
 
 
 def _ranges(assembly: Assembly, kinematics: Kinematics, prefer: str) -> dict[str, tuple[float, float]]:

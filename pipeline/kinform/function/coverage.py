@@ -87,11 +87,8 @@ def _sampled(chain: Chain) -> Array:
             break
         way = rng.normal(size=len(loose)) @ loose
         stepped = close(chain, base + constants.WALK_STEP * way / np.abs(way).max(), free)
-        if (
-            stepped is not None
-            and (stepped >= low - constants.RANGE_ROUNDING).all()
-            and (stepped <= high + constants.RANGE_ROUNDING).all()
-        ):
+        slack = constants.RANGE_ROUNDING
+        if stepped is not None and ((stepped >= low - slack) & (stepped <= high + slack)).all():
             closed.append(stepped)
     return np.array(closed)
 

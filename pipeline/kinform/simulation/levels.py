@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, RigidBody
@@ -52,19 +52,17 @@ def _obstacles(behaviour: Behaviour, mechanism: Mechanism, adrift: tuple[str, ..
     return tuple(out)
 
 
-def notes_of_joints(kinematics: Kinematics) -> tuple[str, ...]:
+def notes_of_joints(kinematics: Kinematics) -> Iterator[str]:
     """What is taken for granted of joints that geometry does not settle."""
-    notes = []
     for joint in kinematics.joints:
         if joint.type == "general":
             continue
         if joint.status == "blocked":
-            notes.append(f"{joint.name} moves as {joint.type}, although contacts block it")
+            yield f"{joint.name} moves as {joint.type}, although contacts block it"
         elif joint.evidence == ("function",):
-            notes.append(f"{joint.name} is {joint.type} because [function] says so: no geometry shows it")
+            yield f"{joint.name} is {joint.type} because [function] says so: no geometry shows it"
         elif joint.status == "inferred":
-            notes.append(f"{joint.name} is taken to be {joint.type}: {', '.join(joint.evidence)}")
-    return tuple(notes)
+            yield f"{joint.name} is taken to be {joint.type}: {', '.join(joint.evidence)}"
 
 
 _DEFAULTS = {
@@ -75,20 +73,17 @@ _DEFAULTS = {
 """What drives are taken to have where the manifest does not say, by kind."""
 
 
-def notes_of_drives(drives: Iterable[Drive]) -> tuple[str, ...]:
+def notes_of_drives(drives: Iterable[Drive]) -> Iterator[str]:
     """What is taken for granted of drives."""
-    out = []
     for drive in drives:
         taken = [said for key, said in _DEFAULTS.get(drive.kind, {}).items() if key not in drive.parameters]
         if taken:
-            out.append(f"the {drive.kind.replace('_', ' ')} on {drive.joint} does not state: {', '.join(taken)}")
-    return tuple(out)
+            yield f"the {drive.kind.replace('_', ' ')} on {drive.joint} does not state: {', '.join(taken)}"
 
 
-def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
+def notes_of_teeth(kinematics: Kinematics) -> Iterator[str]:
     """Teeth that are replaced by the ratio that they keep, and by how much that may be wrong."""
     types = {str(joint.name): joint.type for joint in kinematics.joints}
-    notes = []
     for coupling in kinematics.couplings:
         teeth = coupling.meshing
         if teeth is None or coupling.kind == "screw":
@@ -98,14 +93,13 @@ def notes_of_teeth(kinematics: Kinematics) -> tuple[str, ...]:
         def shown(value: float, slides: bool = slides) -> str:
             return f"{1e3 * value:.2g} mm" if slides else f"{math.degrees(value):.2g}°"
 
-        notes.append(
+        yield (
             f"the teeth of {coupling.through} are taken for their ratio: {coupling.joints[0]} = {teeth.ratio:.6g} · "
             f"{coupling.joints[1]}, from {_teeth_counted(teeth, types, coupling.joints)} (at the pose of "
             f"the meshes their normals give {coupling.ratio:.6g} ± {coupling.uncertainty:.1g}); the meshes depart "
             f"from it by up to {shown(teeth.deviation)} of {coupling.joints[0]} within a tooth, and have play of "
             f"{shown(teeth.play)}, which is left out"
         )
-    return tuple(notes)
 
 
 def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, str]) -> str:
@@ -117,7 +111,7 @@ def _teeth_counted(teeth: Meshing, types: Mapping[str, str], joints: tuple[str, 
     return " and ".join(parts)
 
 
-def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> list[str]:
+def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> Iterator[str]:
     """What becomes of stated couplings where there are meshes: teeth keep their own ratio, what has none is free."""
     tied = {frozenset(c.joints): c for c in kinematics.couplings if c.meshing is not None or c.kind == "screw"}
     free = []
@@ -125,23 +119,20 @@ def _intended_ratios(assembly: Assembly, kinematics: Kinematics) -> list[str]:
         ends = [resolve_joint(assembly, kinematics, name).joint for name in coupling.joints]
         if frozenset(end.name for end in ends if end is not None) not in tied:
             free.append(" and ".join(coupling.joints))
-    if not free:
-        return []
-    return [f"couplings are intended, not derived from geometry, and are not imposed: {', '.join(free)}"]
+    if free:
+        yield f"couplings are intended, not derived from geometry, and are not imposed: {', '.join(free)}"
 
 
 def notes_of_level(
     assembly: Assembly, kinematics: Kinematics, level: str, adrift: tuple[str, ...], gears: bool
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """What plays no part at this level."""
-    notes = []
     if adrift:
-        notes.append(f"what no joints connect with the ground stays where it is: {', '.join(adrift)}")
+        yield f"what no joints connect with the ground stays where it is: {', '.join(adrift)}"
     if not gears and assembly.function.couplings:
-        notes += _intended_ratios(assembly, kinematics)
+        yield from _intended_ratios(assembly, kinematics)
     if level != "dynamic":
         forces = sorted({f"{d.kind} on {d.joint}" for d in assembly.function.drives if d.kind != "motion"})
         forces += sorted({f"load on {load.part}" for load in assembly.function.loads})
         if forces:
-            notes.append(f"forces play no part at the {level} level: {', '.join(forces)}")
-    return tuple(notes)
+            yield f"forces play no part at the {level} level: {', '.join(forces)}"

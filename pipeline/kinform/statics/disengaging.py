@@ -63,16 +63,3 @@ def _coordinate(run: Simulation, joint: Joint) -> Array:
     return np.asarray(
         run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)]) + SLIDES[joint.type]]
     )
-
-
-def span_along(design: Design, name: str, surface: int, axis: Array) -> tuple[float, float] | None:
-    """Lowest and highest place (m) along `axis` of a surface of a part; None where the surface is not known."""
-    part = design.assembly.part(name)
-    known = None if part.mesh is None else design.surfaces.get(part.mesh.digest)
-    if part.mesh is None or known is None or surface < 0:
-        return None
-    corners = part.mesh.vertices[np.unique(part.mesh.faces[known.labels == surface])]
-    if not len(corners):
-        return None
-    heights = (corners @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]) @ axis
-    return float(heights.min()), float(heights.max())

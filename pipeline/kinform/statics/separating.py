@@ -17,13 +17,14 @@ from kinform.design import Design
 from kinform.foundation.algebra.displacements import inverse, poses
 from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics.mobility.guides import span_along
 from kinform.kinematics.separation.contact_rows import ContactRows, is_stated
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.simulation import Simulation
 from kinform.statics.carrying import pushes_at, uncarried
 from kinform.statics.constants import APART, CLOSE, LOOKS, NO_WRENCH
-from kinform.statics.disengaging import SLIDES, slide_of, span_along
+from kinform.statics.disengaging import SLIDES, slide_of
 from kinform.statics.sharing import axes_of, decidable, self_stresses
 
 
@@ -244,7 +245,8 @@ def _patches(reactions: _Reactions, joint: Joint) -> Iterator[_Patch]:
         areas = [_area(design, name, surface) for name, surface in sides]
         spans = None
         if joint.type in SLIDES and joint.axis is not None:
-            first, second = (span_along(design, name, surface, joint.axis) for name, surface in sides)
+            assembly, surfaces = design.assembly, design.surfaces
+            first, second = (span_along(assembly, surfaces, name, surface, joint.axis) for name, surface in sides)
             spans = None if first is None or second is None else (first, second)
         yield _Patch(points, normals, areas[1] < areas[0], spans)
 

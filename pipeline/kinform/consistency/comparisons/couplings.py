@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -101,11 +102,10 @@ def _chain(kinematics: Kinematics, first: str, second: str) -> list[tuple[Coupli
     return out[::-1]
 
 
-def _leads(kinematics: Kinematics) -> list[Coupling]:
+def _leads(kinematics: Kinematics) -> Iterator[Coupling]:
     """Each screw with the slide that it moves: its own value is in as fixed a ratio to that of the slide as the turn
     beside it, where all freedoms have one ratio."""
     types = {joint.name: joint.type for joint in kinematics.joints}
-    out = []
     for coupling in kinematics.couplings:
         slides = [name for name in coupling.joints if types[name] == "prismatic"]
         if coupling.kind != "screw" or len(slides) != 1:
@@ -117,5 +117,4 @@ def _leads(kinematics: Kinematics) -> list[Coupling]:
                 rates.append((moved.get(slides[0], 0.0), moved.get(coupling.through, 0.0)))
         ratios = [slide / screw for slide, screw in rates if screw]
         if len(ratios) == len(rates) > 0 and ratios[0] and np.ptp(ratios) <= constants.SCREW_PITCH * abs(ratios[0]):
-            out.append(replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0]))
-    return out
+            yield replace(coupling, joints=(slides[0], coupling.through), ratio=ratios[0])

@@ -15,6 +15,7 @@ clear of an error:
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +42,7 @@ def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
     of their intended joints."""
     size = extent(assembly)
     whole = _of_the_whole(assembly, size) if size is not None else None
-    return (whole,) if whole is not None else _outliers(assembly)
+    return (whole,) if whole is not None else tuple(_outliers(assembly))
 
 
 def extent(assembly: Assembly) -> float | None:
@@ -86,13 +87,12 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     return None
 
 
-def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
+def _outliers(assembly: Assembly) -> Iterator[Doubt]:
     """Parts that dwarf all others together: perhaps their own `units` are wrong."""
     boxes = _boxes(assembly)
     if len(boxes) < 2:
-        return ()
+        return
     rests = dict(zip(boxes, _rests(np.array(list(boxes.values()))), strict=True))
-    outliers = []
     for part in assembly.parts:
         if part.name not in boxes:
             continue
@@ -104,8 +104,7 @@ def _outliers(assembly: Assembly) -> tuple[Doubt, ...]:
                 f"{quoted([part.name])} is {text} across, read with units = '{part.units}', "
                 f"and all other parts together {length(rest, assembly.units)}"
             )
-            outliers.append(Doubt("warning", (part.name,), message, f"{text} across", part.source))
-    return tuple(outliers)
+            yield Doubt("warning", (part.name,), message, f"{text} across", part.source)
 
 
 def _rests(boxes: Array) -> Array:

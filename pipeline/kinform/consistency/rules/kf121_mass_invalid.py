@@ -39,23 +39,20 @@ def check(context: Context) -> Outcome:
     for name, text in report.problems:
         if name not in wrong and not _explained(context.assembly.part(name)):
             wrong[name] = text
-    findings = []
-    for name in sorted(wrong):
-        part = context.assembly.part(name)
-        findings.append(
-            RULE.finding(
-                [name],
-                f"the mass properties of {quoted([name])} are impossible: {wrong[name]}",
-                found=wrong[name],
-                intended="a mass and an inertia that a rigid body can have",
-                place=part.X_WP[:3, 3],
-                declared=part.source,
-                remedy="Check the stated mass and inertia (kg, kg·m² about the centre of mass)."
-                if part.override is not None
-                else "Check the mesh for facets that cross each other, and the density.",
-            )
+    return decided(
+        RULE.finding(
+            [part.name],
+            f"the mass properties of {quoted([part.name])} are impossible: {wrong[part.name]}",
+            found=wrong[part.name],
+            intended="a mass and an inertia that a rigid body can have",
+            place=part.X_WP[:3, 3],
+            declared=part.source,
+            remedy="Check the stated mass and inertia (kg, kg·m² about the centre of mass)."
+            if part.override is not None
+            else "Check the mesh for facets that cross each other, and the density.",
         )
-    return decided(findings)
+        for part in (context.assembly.part(name) for name in sorted(wrong))
+    )
 
 
 def _impossible(properties: MassProperties) -> str:

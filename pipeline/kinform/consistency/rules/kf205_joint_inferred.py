@@ -28,7 +28,6 @@ def check(context: Context) -> Findings:
                 f"{joint.reason}",
                 found=f"{joint.type}, inferred",
                 intended="a joint that contact alone decides",
-                place=context.place_of(joint),
                 remedy="Check the evidence; model the mating surfaces, or state the joint by [[assume]].",
             )
 

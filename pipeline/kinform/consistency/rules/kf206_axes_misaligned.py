@@ -20,7 +20,6 @@ from kinform.foundation.words import angle, length, listed, quoted
 def check(context: Context) -> Findings:
     """Joints whose axes were mated beyond what the clearance allows."""
     for name, tilt, offset in context.kinematics.misaligned:
-        joint = context.joint(name)
         parts = []
         if tilt > 0.0:
             parts.append(f"{angle(tilt)} in direction")
@@ -32,7 +31,6 @@ def check(context: Context) -> Findings:
             f"the axes of the two sides of {quoted([name])} differ by {excess} more than the clearance allows",
             found=excess,
             intended="axes that agree within the clearance",
-            place=context.place_of(joint),
             remedy="Make both sides coaxial, or give the joint more clearance.",
         )
 

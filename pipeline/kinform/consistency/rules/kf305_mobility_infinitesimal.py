@@ -26,24 +26,20 @@ from kinform.foundation.words import counted, quoted
 def check(context: Context) -> Outcome:
     """Freedoms that exist at first order only, block by block."""
     mobility = context.kinematics.mobility
-    findings = []
-    for certificate in mobility.certificates:
-        if not certificate.infinitesimal:
-            continue
-        moving = [joint for name in certificate.moves if (joint := context.joint(name)) is not None]
-        findings.append(
-            RULE.finding(
-                certificate.moves,
-                f"{quoted(certificate.moves)} give at first order and then lock: "
-                f"{counted(certificate.infinitesimal, 'freedom')} of this loop "
-                f"{'is' if certificate.infinitesimal == 1 else 'are'} only infinitesimal",
-                found=f"finite mobility {certificate.finite} of {certificate.instantaneous}",
-                intended="freedoms that lead over a distance",
-                place=context.place_of(moving[0]) if moving else None,
-                declared=context.assembly.source,
-                remedy="Free a joint of the loop if it shall move; else move a joint out of line with the others.",
-            )
+    findings = [
+        RULE.finding(
+            certificate.moves,
+            f"{quoted(certificate.moves)} give at first order and then lock: "
+            f"{counted(certificate.infinitesimal, 'freedom')} of this loop "
+            f"{'is' if certificate.infinitesimal == 1 else 'are'} only infinitesimal",
+            found=f"finite mobility {certificate.finite} of {certificate.instantaneous}",
+            intended="freedoms that lead over a distance",
+            declared=context.assembly.source,
+            remedy="Free a joint of the loop if it shall move; else move a joint out of line with the others.",
         )
+        for certificate in mobility.certificates
+        if certificate.infinitesimal
+    ]
     doubtful = mobility.finite is None and context.function.mobility is not None
     reason = "" if findings else mobility.finite_reason
     return inconclusive(mobility.finite_reason, findings) if doubtful else decided(findings, reason)

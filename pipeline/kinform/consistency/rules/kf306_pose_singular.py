@@ -36,7 +36,6 @@ def check(context: Context) -> Findings:
             f"{branches}",
             found="bifurcation" if len(ways) > 1 else "singular pose",
             intended="a regular pose",
-            place=context.place_of(context.joint(certificate.joints[0])),
             declared=context.assembly.source,
             remedy="Draw the assembly in another pose; guide the device where it passes this one.",
         )

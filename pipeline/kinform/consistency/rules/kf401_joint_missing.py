@@ -17,7 +17,6 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, length, quoted
-from kinform.model.kinematics import Body
 
 
 def check(context: Context) -> Outcome:
@@ -47,13 +46,9 @@ def _reason(context: Context, comparison: Comparison) -> str:
     limit = context.assembly.tolerances.contact
     within = f" within {length(limit, context.units)}" if limit is not None else ""
     if len(lonely) == 1:
-        return f"{_quoted_name(lonely[0])} touches no other body{within}"
-    first, second = comparison.bodies
-    return f"{_quoted_name(first)} and {_quoted_name(second)} do not touch{within}"
-
-
-def _quoted_name(body: Body) -> str:
-    return quoted([body.name])
+        return f"{quoted([lonely[0].name])} touches no other body{within}"
+    first, second = (quoted([body.name]) for body in comparison.bodies)
+    return f"{first} and {second} do not touch{within}"
 
 
 RULE = Rule("KF401", "joint-missing", "error", __doc__, check, needs=("comparisons",))

@@ -35,7 +35,6 @@ def _finding(context: Context, joint: Joint) -> Finding:
         f"{quoted(joint.bodies)} are joined by a {joint.type} joint that the function does not intend",
         found=joint.type + (f" about {direction(joint.axis)}" if joint.axis is not None else ""),
         intended="no joint",
-        place=context.place_of(joint),
         declared=context.assembly.source,
         remedy="Separate the two bodies, or add the joint to [function].",
     )

@@ -34,7 +34,6 @@ def _finding(context: Context, joint: Joint) -> Finding:
         f"{quoted(joint.bodies)} touch{over}, which the function does not intend",
         found=f"{joint.type} contact, {counted(joint.freedoms, 'freedom')} left",
         intended="no contact",
-        place=context.place_of(joint),
         declared=context.assembly.source,
         remedy="Give the bodies a gap, or state the contact in [function] or by [[assume]].",
     )

@@ -14,6 +14,7 @@ Example: a pan axis that is stated to turn by ±45° is driven by a sine of 50°
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -35,7 +36,8 @@ def check(context: Context) -> Outcome:
     stated = sorted((j for j in context.function.joints if j.range is not None), key=lambda joint: joint.name)
     run = context.simulation
     joints = {item.intended.name: joint_as_intended(item) for item in context.comparisons}
-    findings, unknown = [], []
+    findings: list[Finding] = []
+    unknown = []
     for intended in stated:
         match = joints[intended.name]
         if match is None or match[0].name not in run.joint_names:
@@ -52,33 +54,27 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: Joint, sign: float) -> list[Finding]:
+def _beyond(context: Context, run: Simulation, intended: IntendedJoint, joint: Joint, sign: float) -> Iterator[Finding]:
     """A finding for each side that the motion passes."""
     values = sign * run.joint_position[:, int(run.joint_offset[run.joint_names.index(joint.name)])]
     lower, upper = intended.range or (-math.inf, math.inf)
     allowed = BEYOND * (upper - lower) if math.isfinite(upper - lower) else BEYOND
-    findings = []
-    for side, end, toward, k in (
-        ("lower", lower, -1.0, int(values.argmin())),
-        ("upper", upper, 1.0, int(values.argmax())),
-    ):
+    for side, end, toward in (("lower", lower, -1.0), ("upper", upper, 1.0)):
+        k = int((toward * values).argmax())
         value = float(values[k])
         if not toward * (value - end) > allowed:
             continue
         in_words = telling(lambda v, digits: shown(v, intended, context.units, digits), value, end)
-        findings.append(
-            RULE.finding(
-                (intended.name,),
-                f"joint '{intended.name}' moves to {in_words(value)} at t = {number(float(run.time[k]))} s, beyond the "
-                f"{side} end of its stated range, {in_words(end)}",
-                found=in_words(value),
-                intended=f"{'at least' if toward < 0.0 else 'at most'} {in_words(end)}",
-                place=joint.point,
-                declared=intended,
-                remedy="Drive the joint less far, add what stops it, or state the range that is used.",
-            )
+        yield RULE.finding(
+            (intended.name,),
+            f"joint '{intended.name}' moves to {in_words(value)} at t = {number(float(run.time[k]))} s, beyond the "
+            f"{side} end of its stated range, {in_words(end)}",
+            found=in_words(value),
+            intended=f"{'at least' if toward < 0.0 else 'at most'} {in_words(end)}",
+            place=joint.point,
+            declared=intended,
+            remedy="Drive the joint less far, add what stops it, or state the range that is used.",
         )
-    return findings
 
 
 RULE = Rule("KF413", "range-exceeded", "warning", __doc__, check, needs=("stated ranges", "motion", "comparisons"))

@@ -51,8 +51,10 @@ def judge(context: Context, requirement: Reach) -> Answer:
     if isinstance(chain, Answer):
         return chain
     body = context.body(requirement.part) or ""
-    if not chain.looped and not _finite(chain):
-        return undecided(_endless(context, chain), "State the `range` of its [[function.joint]].")
+    endless = next((c.joint for c in chain.coordinates if not c.turns and not math.isfinite(c.upper - c.lower)), None)
+    if not chain.looped and endless is not None:
+        slides = f"joint '{stated_as(context, endless)[0]}' slides, and its range is not known"
+        return undecided(slides, "State the `range` of its [[function.joint]].")
     near = requirement.angle_tolerance if pointing else requirement.tolerance
     if near is None:
         near = REACHED_ANGLE if pointing else REACHED_SHARE * (extent(context.assembly) or 1.0)
@@ -102,15 +104,6 @@ def _chain(context: Context, part: str) -> Chain | Answer:
         return undecided(f"'{part}' does not move: it is the ground", "Require it of a part that moves.")
     chain = chain_between(context.assembly, kinematics, ground, body.name)
     return undecided(chain, "See KF401 and KF901.") if isinstance(chain, str) else chain
-
-
-def _finite(chain: Chain) -> bool:
-    return all(c.turns or math.isfinite(c.upper - c.lower) for c in chain.coordinates)
-
-
-def _endless(context: Context, chain: Chain) -> str:
-    joint = next(c.joint for c in chain.coordinates if not c.turns and not math.isfinite(c.upper - c.lower))
-    return f"joint '{stated_as(context, joint)[0]}' slides, and its range is not known"
 
 
 def _bound(context: Context, targets: Targets) -> str:

@@ -50,7 +50,6 @@ def _finding(context: Context, subject: str, reason: str) -> Finding:
         f"{quoted(names)} {'is' if len(names) == 1 else 'are'} not simulated: {why}",
         found="not simulated",
         intended=f"a {level} simulation" if level else "a simulation",
-        place=context.place_of(context.joint(names[0])),
         declared=_declaring(context, subject, names) or asked or context.assembly.source,
         remedy=GROUP if carried else "Remove the cause, or ask for a lower `level`.",
     )

@@ -6,17 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from kinform.form.manifest.common import (
-    Finite,
-    JointType,
-    Name,
-    NonNegative,
-    Pair,
-    Positive,
-    Reference,
-    Table,
-    Vector,
-)
+from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
 from kinform.form.manifest.requirements import Require
 
 

@@ -6,7 +6,7 @@ Requirements are read in `requirements`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -83,9 +83,8 @@ class FunctionReader:
             scope.complain(f"{what}: the pitch is zero", "give the length a turn", *path, "pitch")
         return axis, axis2, scope.point(table.point), pitch
 
-    def assumptions(self) -> list[Assumption]:
+    def assumptions(self) -> Iterator[Assumption]:
         """`[[assume]]`."""
-        out = []
         for path, table in self.scope.tables("assume"):
             what = f"[[assume]] {path[1] + 1}"
             if table.ignore == (table.type is not None):
@@ -95,20 +94,17 @@ class FunctionReader:
             if table.type is not None:
                 axis, _, point, pitch = self.geometry(table, table.type, what, *path)
             source = self.scope.source(*path)
-            out.append(Assumption(between, table.type, table.ignore, axis, point, pitch, table.reason, source))
-        return out
+            yield Assumption(between, table.type, table.ignore, axis, point, pitch, table.reason, source)
 
-    def intended(self) -> list[IntendedJoint]:
+    def intended(self) -> Iterator[IntendedJoint]:
         """`[[function.joint]]`."""
-        out = []
         for path, table in self.scope.tables("function", "joint"):
             what = f"[[function.joint]] {in_quotes(table.name)}"
             between = self.pair(table.between, self.place, *path, "between")
             geometry = self.geometry(table, table.type, what, *path)
             bounds = self._range(table, what, *path)
             name = self.scope.prefix + table.name
-            out.append(IntendedJoint(name, between, table.type, *geometry, bounds, *self.scope.where(*path)))
-        return out
+            yield IntendedJoint(name, between, table.type, *geometry, bounds, *self.scope.where(*path))
 
     def _range(self, table: Any, what: str, *path: str | int) -> tuple[float, float] | None:
         if table.range is None:
@@ -119,16 +115,14 @@ class FunctionReader:
         scale = self.scope.metres if table.type in LINEAR else math.pi / 180.0
         return lower * scale, upper * scale
 
-    def couplings(self) -> list[Coupling]:
+    def couplings(self) -> Iterator[Coupling]:
         """`[[function.coupling]]`; the ratio from degrees and lengths to SI values."""
-        out = []
         for path, table in self.scope.tables("function", "coupling"):
             first, second = self.pair(table.joints, self.joint, *path, "joints")
             if table.ratio == 0.0:
                 self.scope.complain("the ratio of a coupling is zero", "give value(a) / value(b)", *path, "ratio")
             scales = [self.value_scale(name, *path, "joints") for name in (first, second)]
-            out.append(Coupling((first, second), table.ratio * scales[0] / scales[1], *self.scope.where(*path)))
-        return out
+            yield Coupling((first, second), table.ratio * scales[0] / scales[1], *self.scope.where(*path))
 
     def value_scale(self, joint: str, *path: str | int) -> float:
         """Radians or metres in a manifest's value of the joint; a problem where it is not stated which it is."""
@@ -140,9 +134,8 @@ class FunctionReader:
             )  # fmt: skip
         return self.scope.metres if self.joints.get(joint) in LINEAR else math.pi / 180.0
 
-    def drives(self) -> list[Drive]:
+    def drives(self) -> Iterator[Drive]:
         """`[[function.drive]]`."""
-        out = []
         for path, table in self.scope.tables("function", "drive"):
             stated = table.model_dump(exclude={"joint", "kind", "law"}, exclude_none=True, exclude_unset=True)
             law = self._law(getattr(table, "law", None), *path, "law")
@@ -153,8 +146,7 @@ class FunctionReader:
                     self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
             joint = self.joint(table.joint, *path, "joint")
             parameters = {key: float(value) for key, value in stated.items()}
-            out.append(Drive(joint, table.kind, law, parameters, self.scope.metres, *self.scope.where(*path)))
-        return out
+            yield Drive(joint, table.kind, law, parameters, self.scope.metres, *self.scope.where(*path))
 
     def _law(self, table: Any, *path: str | int) -> Law | None:
         if table is None:
@@ -168,16 +160,15 @@ class FunctionReader:
         times, values = law_rows(self.scope, file, shown)
         return Law("table", times=times, values=values, file=shown)
 
-    def loads(self) -> list[Load]:
+    def loads(self) -> Iterator[Load]:
         """`[[function.load]]`."""
-        scope, out = self.scope, []
+        scope = self.scope
         for path, table in scope.tables("function", "load"):
             if table.force is None and table.torque is None:
                 scope.complain("a load has neither force nor torque", "add force = [x, y, z] in N", *path)
             part, point = self.place(table.part, *path, "part"), scope.point(table.point)
             force, torque = scope.vector(table.force), scope.vector(table.torque)
-            out.append(Load(part, force, torque, point, table.frame, *scope.where(*path)))
-        return out
+            yield Load(part, force, torque, point, table.frame, *scope.where(*path))
 
     def check(self) -> CheckSettings:
         """`[check]` of the top manifest."""

@@ -7,17 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from kinform.foundation.algebra.spatial import to_matrix
 from kinform.model.arrays import Array
-
-
-def quaternion_rotation(wxyz: Sequence[float]) -> Array:
-    """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""
-    w, x, y, z = np.asarray(wxyz, dtype=float) / np.linalg.norm(wxyz)
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
 
 
 def rpy_rotation(degrees: Sequence[float]) -> Array:
@@ -46,15 +37,12 @@ def unit_error(wxyz: Sequence[float]) -> float:
 
 
 def pose(
-    position: Sequence[float] | None,
-    quaternion: Sequence[float] | None,
-    rpy: Sequence[float] | None,
-    metres: float,
+    position: Sequence[float] | None, quaternion: Sequence[float] | None, rpy: Sequence[float] | None, metres: float
 ) -> Array:
     """Pose (4, 4) of a placed thing in its manifest's frame; `metres` per unit of the position."""
     out = np.eye(4)
     if quaternion is not None:
-        out[:3, :3] = quaternion_rotation(quaternion)
+        out[:3, :3] = to_matrix(np.asarray(quaternion, dtype=float))
     elif rpy is not None:
         out[:3, :3] = rpy_rotation(rpy)
     if position is not None:

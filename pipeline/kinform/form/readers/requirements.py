@@ -20,17 +20,16 @@ from kinform.form.readers.function import FunctionReader
 from kinform.model.function import Requirement
 
 
-def requirements_of(reader: FunctionReader) -> list[Requirement]:
+def requirements_of(reader: FunctionReader) -> Iterator[Requirement]:
     """`[[function.require]]` of the manifest that the reader reads."""
-    scope, out = reader.scope, []
+    scope = reader.scope
     for path, table in scope.tables("function", "require"):
         for wrong, remedy, key in _faults(table):
             at = path if key is None else (*path, key)
             scope.complain(f"requirement {in_quotes(table.name)}: {wrong}", remedy, *at)
         values = _values(reader, table, *path)
         values = {key: value for key, value in values.items() if key not in ("name", "kind") and value is not None}
-        out.append(Requirement(scope.prefix + table.name, table.kind, values, *scope.where(*path)))
-    return out
+        yield Requirement(scope.prefix + table.name, table.kind, values, *scope.where(*path))
 
 
 def _values(reader: FunctionReader, table: BaseModel, *path: str | int) -> dict[str, Any]:

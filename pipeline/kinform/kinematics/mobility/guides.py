@@ -54,13 +54,12 @@ def guide(
         patch = contacts.patches[k]
         if not preserved(patch, joint_twist(joint)[None]):
             continue
-        spans = [
-            _span(assembly, surfaces, name, n, joint.axis) for name, n in zip(patch.parts, patch.surfaces, strict=True)
-        ]
+        sides = zip(patch.parts, patch.surfaces, strict=True)
+        a, b = (span_along(assembly, surfaces, name, surface, joint.axis) for name, surface in sides)
+        assert a is not None and b is not None
         if patch.parts[1] not in second:
-            spans.reverse()
-        (a0, a1), (b0, b1) = spans
-        ends.append((a0 - b1, a1 - b0))
+            a, b = b, a
+        ends.append((a[0] - b[1], a[1] - b[0]))
     if not ends or rate == 0.0:
         return -math.inf, math.inf
     low, high = min(e[0] for e in ends), max(e[1] for e in ends)
@@ -68,13 +67,16 @@ def guide(
     return min(pair), max(pair)
 
 
-def _span(
+def span_along(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], name: str, surface: int, axis: Array
-) -> tuple[float, float]:
-    """Lowest and highest place (m) along `axis` of a surface of a part."""
+) -> tuple[float, float] | None:
+    """Lowest and highest place (m) along `axis` of a surface of a part; None where the surface is not known."""
     part = assembly.part(name)
-    assert part.mesh is not None
-    mesh, X = part.mesh, part.X_WP
-    corners = mesh.vertices[np.unique(mesh.faces[surfaces[mesh.digest].labels == surface])]
-    heights = (corners @ X[:3, :3].T + X[:3, 3]) @ axis
+    known = None if part.mesh is None else surfaces.get(part.mesh.digest)
+    if part.mesh is None or known is None or surface < 0:
+        return None
+    corners = part.mesh.vertices[np.unique(part.mesh.faces[known.labels == surface])]
+    if not len(corners):
+        return None
+    heights = (corners @ part.X_WP[:3, :3].T + part.X_WP[:3, 3]) @ axis
     return float(heights.min()), float(heights.max())

@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.behaviour import shafts
 from kinform.behaviour.components import System
-from kinform.behaviour.shafts import (
-    Actor,
-    Controller,
-    Damper,
-    DcMotor,
-    EffortDrive,
-    EndStop,
-    MotionDrive,
-    Servo,
-    Spring,
-    VoltageSource,
-)
 from kinform.behaviour.signals import Signal, Spline, smooth
 from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
@@ -93,10 +83,7 @@ class Actuation:
         for joint in system.joints:
             for actor in system.actors(joint.name):
                 self._take(system, slots[joint.subject], actor)
-        self.led_q: Ints = np.array([q for q, _, _, _ in self._led], dtype=np.int64)
-        self.led: Ints = np.array([v for _, v, _, _ in self._led], dtype=np.int64)
-        self.free: Ints = np.setdiff1d(np.arange(mechanism.rates), self.led)
-        self.signals = [signal for _, _, signal, _ in self._led]
+        self._lead(self._led, mechanism.rates)
         link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
         self.loads = [
             Push(
@@ -111,23 +98,23 @@ class Actuation:
             self.springs.append(Between(first, second, *ends, spring.stiffness, spring.damping, spring.rest))
         self.first_state = len(mechanism.start) + mechanism.rates
 
-    def _take(self, system: System, slot: Slot, actor: Actor) -> None:
+    def _take(self, system: System, slot: Slot, actor: shafts.Actor) -> None:
         """Add what acts on the shaft of a joint."""
         q, v = slot.q.start, slot.v.start
-        if isinstance(actor, MotionDrive):
+        if isinstance(actor, shafts.MotionDrive):
             if self._led and self._led[-1][0] == q:
                 self.conflicts.append((slot.name, "two drives prescribe its motion"))
                 return
             signal = self._followed(actor, slot.kind.coordinates[0][1]) if self._with_mass else actor.signal
             self._led.append((q, v, signal, actor.name))
-        elif isinstance(actor, EndStop):
+        elif isinstance(actor, shafts.EndStop):
             for sense, limit in ((-1, actor.lower), (1, actor.upper)):
                 if np.isfinite(limit):
                     self.stops.append(Stop(slot.name, q, v, sense, limit))
         else:
             self.actors.append(_acts(system, slot.name, q, v, actor))
 
-    def _followed(self, actor: MotionDrive, turns: bool) -> Signal:
+    def _followed(self, actor: shafts.MotionDrive, turns: bool) -> Signal:
         """The signal as a body with mass can follow it."""
         signal = smooth(actor.signal)
         if isinstance(signal, Spline):
@@ -167,15 +154,17 @@ class Actuation:
         return self._with_led([led for led in self._led if led[1] != stop.v])
 
     def _with_led(self, led: list[tuple[int, int, Signal, str]]) -> Actuation:
-        out = object.__new__(Actuation)
-        out.__dict__.update(self.__dict__)
-        rates = len(self.free) + len(self.led)
-        out._led = led
-        out.led_q = np.array([q for q, _, _, _ in led], dtype=np.int64)
-        out.led = np.array([v for _, v, _, _ in led], dtype=np.int64)
-        out.free = np.setdiff1d(np.arange(rates), out.led)
-        out.signals = [signal for _, _, signal, _ in led]
+        out = copy.copy(self)
+        out._lead(led, len(self.free) + len(self.led))
         return out
+
+    def _lead(self, led: list[tuple[int, int, Signal, str]], rates: int) -> None:
+        """Prescribe these joints (position, rate, signal, name) of a mechanism with so many rates."""
+        self._led = led
+        self.led_q: Ints = np.array([q for q, _, _, _ in led], dtype=np.int64)
+        self.led: Ints = np.array([v for _, v, _, _ in led], dtype=np.int64)
+        self.free: Ints = np.setdiff1d(np.arange(rates), self.led)
+        self.signals = [signal for _, _, signal, _ in led]
 
     def stored(self, q: Array, X: Array) -> Array:
         """(T,) energy in the springs (J) at positions (T, nq) and poses (T, L, 4, 4)."""
@@ -194,26 +183,26 @@ class Actuation:
         return total
 
 
-def _acts(system: System, joint: str, q: int, v: int, actor: Actor) -> Acts:
+def _acts(system: System, joint: str, q: int, v: int, actor: shafts.Actor) -> Acts:
     """The actor as the kernel takes it."""
     name = actor.name
-    if isinstance(actor, EffortDrive):
+    if isinstance(actor, shafts.EffortDrive):
         return Acts(name, joint, q, v, layout.EFFORT, actor.signal, ())
-    if isinstance(actor, Spring):
+    if isinstance(actor, shafts.Spring):
         return Acts(name, joint, q, v, layout.SPRING, None, (actor.stiffness, actor.rest))
-    if isinstance(actor, Damper):
+    if isinstance(actor, shafts.Damper):
         return Acts(name, joint, q, v, layout.DAMPER, None, (actor.damping,))
-    if isinstance(actor, Servo):
+    if isinstance(actor, shafts.Servo):
         gains = _gains(actor.controller)
         return Acts(name, joint, q, v, layout.SERVO, actor.target, gains, (actor.controller.ki != 0.0, False))
-    assert isinstance(actor, DcMotor)
+    assert isinstance(actor, shafts.DcMotor)
     motor = (actor.resistance, actor.inductance, actor.constant, actor.gear)
     supply, current = system.supply(name), actor.inductance > 0.0
-    if isinstance(supply, VoltageSource):
+    if isinstance(supply, shafts.VoltageSource):
         return Acts(name, joint, q, v, layout.MOTOR, supply.signal, motor, (current, False))
     numbers = (*motor, *_gains(supply.controller))
     return Acts(name, joint, q, v, layout.CONTROLLED, supply.target, numbers, (current, supply.controller.ki != 0.0))
 
 
-def _gains(controller: Controller) -> tuple[float, float, float, float]:
+def _gains(controller: shafts.Controller) -> tuple[float, float, float, float]:
     return controller.kp, controller.ki, controller.kd, controller.limit

@@ -131,9 +131,10 @@ def publish(
         residual=_residuals(mechanism, record.q, states),
         rank=_ranks(mechanism, states, free),
         assumptions=(*assumptions, *record.notes),
+        joint_acceleration=_in_columns(mechanism, record.acceleration),
+        balance=np.full(len(record.time), np.nan),
     )
-    accelerations = _in_columns(mechanism, record.acceleration)
-    return replace(simulation, joint_acceleration=accelerations, balance=np.full(len(record.time), np.nan)), states
+    return simulation, states
 
 
 def _continuous(q: Array) -> Array:

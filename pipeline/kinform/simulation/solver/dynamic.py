@@ -22,12 +22,7 @@ from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stops import Contact
 
 
-def run_dynamic(
-    dynamics: Dynamics,
-    start: Start,
-    times: Array,
-    conduct: Conduct,
-) -> Record:
+def run_dynamic(dynamics: Dynamics, start: Start, times: Array, conduct: Conduct) -> Record:
     """Positions, rates, efforts and work at `times` (s), until the end or until it cannot go on."""
     first, last = float(times[0]), float(times[-1])
     knots = [knot for knot in dynamics.actuation.knots if first < knot < last]

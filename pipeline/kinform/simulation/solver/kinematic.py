@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from kinform.model.arrays import Array
@@ -19,13 +21,7 @@ def _follower(mechanism: Mechanism, actuation: Actuation, start: Start, settings
     return Follower(mechanism, led, start.q, settings)
 
 
-def run_kinematic(
-    mechanism: Mechanism,
-    actuation: Actuation,
-    start: Start,
-    times: Array,
-    conduct: Conduct,
-) -> Record:
+def run_kinematic(mechanism: Mechanism, actuation: Actuation, start: Start, times: Array, conduct: Conduct) -> Record:
     """Positions, rates and accelerations at `times` (s), until the end or until a loop stops."""
     follower = _follower(mechanism, actuation, start, conduct.settings)
     q = np.zeros((len(times), len(start.q)))
@@ -50,9 +46,7 @@ def run_kinematic(
     return record(len(times), "")
 
 
-def notes_of_rest(
-    mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings
-) -> tuple[str, ...]:
+def notes_of_rest(mechanism: Mechanism, actuation: Actuation, start: Start, settings: SolverSettings) -> Iterator[str]:
     """What is assumed of joints that no motion drive determines, in sentences."""
     follower = _follower(mechanism, actuation, start, settings)
     scale = mechanism.scale[follower.unknown]
@@ -65,12 +59,10 @@ def notes_of_rest(
         rates = [k for k in range(slot.v.start, slot.v.stop) if k in loose]
         if rates:
             (yielding if closing[rates].any() else still).append(slot.name)
-    notes = []
     if still:
-        notes.append(f"what no drive prescribes stays at its initial position: {', '.join(still)}")
+        yield f"what no drive prescribes stays at its initial position: {', '.join(still)}"
     if yielding:
-        notes.append(
+        yield (
             f"the drives do not determine the loops with {', '.join(yielding)}: "
             "they move as little as keeps the loops closed"
         )
-    return tuple(notes)

@@ -3,7 +3,7 @@ way of a motion from there."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,12 +44,7 @@ class Start:
 
 
 def begin(
-    mechanism: Mechanism,
-    actuation: Actuation,
-    stated: tuple[Stated, ...],
-    settings: SolverSettings,
-    *,
-    coasting: bool,
+    mechanism: Mechanism, actuation: Actuation, stated: tuple[Stated, ...], settings: SolverSettings, *, coasting: bool
 ) -> Start:
     """The start: prescribed joints where their laws put them, the others where stated, loops closed.
 
@@ -61,21 +56,15 @@ def begin(
     loose = [value for value in stated if value.v not in led]
     places = [value for value in loose if value.position != 0.0 or value.velocity == 0.0]
     target = np.concatenate([actuation.led_values(0.0), [value.position for value in places]])
-    q_index = np.concatenate([actuation.led_q, np.array([p.q for p in places], dtype=np.int64)])
-    v_index = np.concatenate([actuation.led, np.array([p.v for p in places], dtype=np.int64)])
     q = mechanism.start
     if np.any(target != 0.0):
-        path = Led(q_index, v_index, lambda s: s * target, lambda s: target)
+        path = _led(actuation, places, lambda s: s * target, lambda s: target)
         follower = Follower(mechanism, path, q, settings)
         stop = follower.go(0.0, 1.0)
         if stop is not None:
             why = OVERDRIVEN if follower.overdriven else f"the loops cannot be brought there: {stop.reason}"
-            return Start(
-                q,
-                np.zeros(mechanism.rates),
-                notes,
-                (", ".join(mechanism.joints_of(v_index)), f"initial positions: {why}"),
-            )
+            names = ", ".join(mechanism.joints_of(path.v))
+            return Start(q, np.zeros(mechanism.rates), notes, (names, f"initial positions: {why}"))
         q = follower.q
     moving = [value for value in loose if value.velocity != 0.0]
     if moving and not coasting:
@@ -118,12 +107,15 @@ def _notes_of_rest(
 def _led_rates(actuation: Actuation, moving: Sequence[Stated]) -> Led:
     """The rates of the prescribed joints at time zero, and those that are stated."""
     speed = np.concatenate([actuation.led_rates(0.0), [value.velocity for value in moving]])
-    return Led(
-        np.concatenate([actuation.led_q, np.array([value.q for value in moving], dtype=np.int64)]),
-        np.concatenate([actuation.led, np.array([value.v for value in moving], dtype=np.int64)]),
-        lambda s: speed,
-        lambda s: speed,
-    )
+    return _led(actuation, moving, lambda s: speed, lambda s: speed)
+
+
+def _led(
+    actuation: Actuation, stated: Sequence[Stated], value: Callable[[float], Array], rate: Callable[[float], Array]
+) -> Led:
+    """The prescribed joints and these, led by such values and rates."""
+    q, v = (np.array([getattr(joint, key) for joint in stated], dtype=np.int64) for key in ("q", "v"))
+    return Led(np.concatenate([actuation.led_q, q]), np.concatenate([actuation.led, v]), value, rate)
 
 
 def _opens(follower: Follower, v: Array) -> bool:
