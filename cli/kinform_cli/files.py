@@ -41,6 +41,16 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     _try_writing(path)
 
 
+def check_outputs(sources: Sequence[Path], output: Path | None, depfile: Path | None) -> None:
+    """As check_output, for a results file and its Make rule, which come from these sources."""
+    if output is not None:
+        check_output(output, inputs=sources)
+    if depfile is not None:
+        if output is None:
+            raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
+        check_text_output(depfile, inputs=[*sources, output])
+
+
 def _spare_inputs(path: Path, inputs: Iterable[Path]) -> None:
     for source in inputs:
         if source == path or (path.exists() and source.exists() and path.samefile(source)):
@@ -112,11 +122,11 @@ def write_bytes(path: Path, data: bytes) -> None:
     results.replace_file(path, data)
 
 
-def read_by(design: Design, sources: Sequence[Path]) -> list[Path]:
-    """Every file that an import of these sources read, as seen from here."""
-    if sources[0].suffix.lower() in MESHES:
-        return sorted(sources)
-    return [sources[0].parent / name for name in design.assembly.files]
+def write_rule(depfile: Path, output: Path, design: Design, sources: Sequence[Path]) -> None:
+    """Write a Make rule by which the output depends on every file that an import of these sources read."""
+    meshes = sources[0].suffix.lower() in MESHES
+    read_files = sorted(sources) if meshes else [sources[0].parent / name for name in design.assembly.files]
+    write_text(depfile, make_rule(output, read_files))
 
 
 def make_rule(target: Path, sources: Iterable[Path]) -> str:

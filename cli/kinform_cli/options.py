@@ -67,7 +67,7 @@ def cores(jobs: int | None) -> int:
 
 
 def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
-    """An option with a value, by its names with a blank between them; its help says in words what holds without it."""
+    """An option by its names, with blanks between, and a word for its value; its help says what holds without it."""
     return typer.Option(*flags.split(), metavar=metavar, show_default=False, help=help, **settings)
 
 

@@ -19,9 +19,7 @@ def import_(
 ) -> None:
     """Read a manifest and its meshes into a results file; the other stages need nothing else."""
     manifest = files.is_manifest(sources, units)
-    files.check_output(output, inputs=sources)
-    if depfile is not None:
-        files.check_text_output(depfile, inputs=[*sources, output])
+    files.check_outputs(sources, output, depfile)
     from kinform import results, stages
 
     with Working("import"):
@@ -32,7 +30,7 @@ def import_(
             design = stages.import_meshes(sources, units=units)
     results.write(design, output)
     if depfile is not None:
-        files.write_text(depfile, files.make_rule(output, files.read_by(design, sources)))
+        files.write_rule(depfile, output, design, sources)
     assembly = design.assembly
     parts, groups = counted(len(assembly.parts), "part"), counted(len(assembly.groups), "group")
     console.say(f"{output}: {assembly.name}, {parts}, {groups}")

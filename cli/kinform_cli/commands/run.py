@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.errors import refuse
 from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
@@ -59,7 +57,7 @@ def run(
     2: not verified: a rule could not decide, none ran, or the input is bad.
     """
     manifest = files.is_manifest(sources, units)
-    _check_files(sources, output, depfile)
+    files.check_outputs(sources, output, depfile)
     first = output is not None and not output.exists()
     import kinform
 
@@ -75,7 +73,7 @@ def run(
             ranges=ranges,
         )
     if depfile is not None and output is not None:
-        files.write_text(depfile, files.make_rule(output, files.read_by(outcome.gist, sources)))
+        files.write_rule(depfile, output, outcome.gist, sources)
     code = Gate(format, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
     if output is None:
         console.say("nothing was kept: add -o F.h5, and `kinform show` and `kinform report` can look at the results")
@@ -83,13 +81,3 @@ def run(
         page = output.with_suffix(".html")
         console.say(f"next: kinform report {output} -o {page}   (one page to look at), or: kinform show {output}")
     raise typer.Exit(code)
-
-
-def _check_files(sources: Sequence[Path], output: Path | None, depfile: Path | None) -> None:
-    """Raise an error if what the run writes could not be written."""
-    if output is not None:
-        files.check_output(output, inputs=sources)
-    if depfile is not None:
-        if output is None:
-            raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
-        files.check_text_output(depfile, inputs=[*sources, output])

@@ -13,9 +13,9 @@ from kinform.behaviour.components import Gear, Ground, JointComponent, LoadCompo
 from kinform.behaviour.constants import UNIT_LENGTH
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Actor, Controller, DcMotor, EndStop, VoltageController, VoltageSource
-from kinform.behaviour.signals import Constant, Ramp, Sine, Table
+from kinform.behaviour.signals import LAWS, Table
 
-_SIGNALS = (Constant, Ramp, Sine, Table)
+_SIGNALS = tuple(LAWS.values())
 _UNBOUNDED = ("lower", "upper", "limit")
 """Values that may be infinite."""
 
