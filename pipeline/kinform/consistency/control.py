@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from kinform.consistency.context import Unused
@@ -60,22 +60,20 @@ def outcome_without(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequenc
     return replace(rule, outcome="passed" if left else "ignored", reason=_reasons(ignored))
 
 
-def unused_entries(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore]) -> tuple[Unused, ...]:
+def unused_entries(rules: Sequence[Rule], settings: CheckSettings, used: Sequence[Ignore]) -> Iterator[Unused]:
     """Entries of `[check]` that had no effect."""
-    out = []
     for word in settings.select:
         if not any(_selects(rule, word) for rule in rules):
-            out.append(Unused(word, f"[check] selects {word!r}, and no rule has this code or name"))
+            yield Unused(word, f"[check] selects {word!r}, and no rule has this code or name")
     for word, _ in settings.severity:
         if not any(means(rule, word) for rule in rules):
-            out.append(Unused(word, f"[check.severity] names {word!r}, and no rule has this code or name"))
+            yield Unused(word, f"[check.severity] names {word!r}, and no rule has this code or name")
     for entry in settings.ignore:
         if not any(means(rule, entry.code) for rule in rules):
             message = f"[[check.ignore]] names {entry.code!r}, and no rule has this code or name"
-            out.append(Unused(entry.code, message, entry))
+            yield Unused(entry.code, message, entry)
         elif entry not in used:
-            out.append(idle_ignore(entry))
-    return tuple(out)
+            yield idle_ignore(entry)
 
 
 def idle_ignore(entry: Ignore) -> Unused:

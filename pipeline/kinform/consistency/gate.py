@@ -31,9 +31,8 @@ def check(design: Design) -> CheckReport:
     # these two speak later: of the other rules, and where a lock is given
     used += [entry for entry in settings.ignore if means(CONTROL, entry.code) or means(LOCKED, entry.code)]
     alone = all(run.outcome.outcome in ("skipped", "ignored") for run in applied.values())
-    applied[CONTROL.code] = apply(
-        CONTROL, CONTROL.outcome(replace(context, unused_settings=unused_entries(RULES, settings, used))), settings
-    )
+    unused = tuple(unused_entries(RULES, settings, used))
+    applied[CONTROL.code] = apply(CONTROL, CONTROL.outcome(replace(context, unused_settings=unused)), settings)
     rules = [applied[rule.code].outcome for rule in RULES]
     if alone:
         # a rule about the rules verifies nothing of the design

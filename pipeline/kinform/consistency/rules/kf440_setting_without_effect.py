@@ -26,21 +26,17 @@ def check(context: Context) -> Outcome:
     if context.unused_settings is None or not entries:
         return skipped("the manifest has no [check]")
     whole = Source(settings.file or context.assembly.source.file, settings.line)
-    findings = []
-    for item in context.unused_settings:
-        ignored = item.ignore
-        declared = whole if ignored is None else Source(ignored.file, ignored.line)
-        subject = [item.name] if ignored is None or ignored.subject is None else [item.name, ignored.subject]
-        findings.append(
-            RULE.finding(
-                subject,
-                item.message,
-                found="no effect",
-                intended="an entry that changes something",
-                declared=declared,
-                remedy="Remove the entry, or correct its code or subject.",
-            )
+    findings = [
+        RULE.finding(
+            [item.name] if item.ignore is None or item.ignore.subject is None else [item.name, item.ignore.subject],
+            item.message,
+            found="no effect",
+            intended="an entry that changes something",
+            declared=item.ignore or whole,
+            remedy="Remove the entry, or correct its code or subject.",
         )
+        for item in context.unused_settings
+    ]
     return decided(findings, f"{counted(entries, 'entry', 'entries')} of [check]")
 
 

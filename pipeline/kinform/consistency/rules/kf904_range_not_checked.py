@@ -31,22 +31,19 @@ def check(context: Context) -> Outcome:
         return skipped(
             f"bodies without meshes: {counted(len(items), 'range')} given by the function, nothing to compare"
         )
-    findings = []
-    for item in open_:
-        why = _unknown(item)
-        if why:
-            lower, upper = (shown(end, item.intended, context.units) for end in item.intended.range or (0.0, 0.0))
-            findings.append(
-                RULE.finding(
-                    [item.intended.name],
-                    f"the range of joint '{item.intended.name}' is not known: {why}",
-                    found="not known",
-                    intended=f"{lower} to {upper}",
-                    place=item.intended.point,
-                    declared=item.intended,
-                    remedy="Follow the reason, or check it by other means.",
-                )
-            )
+    findings = [
+        RULE.finding(
+            [item.intended.name],
+            f"the range of joint '{item.intended.name}' is not known: {why}",
+            found="not known",
+            intended=" to ".join(shown(end, item.intended, context.units) for end in item.intended.range or (0.0, 0.0)),
+            place=item.intended.point,
+            declared=item.intended,
+            remedy="Follow the reason, or check it by other means.",
+        )
+        for item in open_
+        if (why := _unknown(item))
+    ]
     return settled(findings, f"{counted(len(findings), 'range')} not checked" if findings else "")
 
 

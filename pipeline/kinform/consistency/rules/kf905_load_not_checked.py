@@ -27,24 +27,21 @@ def check(context: Context) -> Outcome:
     loads = context.function.loads
     simulation = context.design.simulation
     carried = simulation is not None and simulation.status == "done" and simulation.level == "dynamic"
-    findings = []
-    for load in loads:
-        held = _on_ground(context, load)
-        if carried and not held:
-            continue
-        findings.append(
-            RULE.finding(
-                [load.part],
-                f"the load on {quoted([load.part])} acts on the ground, which is held: what it does is not computed"
-                if held
-                else f"the load on {quoted([load.part])} was not simulated",
-                found="without effect" if held else "not simulated",
-                intended="a dynamic simulation that carries the load",
-                place=load.point,
-                declared=load,
-                remedy=MOVE if held else 'Ask for `level = "dynamic"`, with the mass of every moving part known.',
-            )
+    findings = [
+        RULE.finding(
+            [load.part],
+            f"the load on {quoted([load.part])} acts on the ground, which is held: what it does is not computed"
+            if held
+            else f"the load on {quoted([load.part])} was not simulated",
+            found="without effect" if held else "not simulated",
+            intended="a dynamic simulation that carries the load",
+            place=load.point,
+            declared=load,
+            remedy=MOVE if held else 'Ask for `level = "dynamic"`, with the mass of every moving part known.',
         )
+        for load in loads
+        if (held := _on_ground(context, load)) or not carried
+    ]
     doubt = f"{counted(len(findings), 'load')} not simulated" if findings else ""
     return settled(findings, doubt, f"{counted(len(loads), 'load')} carried by the dynamic simulation")
 
