@@ -24,7 +24,7 @@ from kinform.behaviour import RigidBody  # noqa: E402
 from kinform.foundation.algebra.spatial import to_matrix  # noqa: E402
 from kinform.simulation import Course, SolverSettings, simulate_system  # noqa: E402
 from kinform.simulation.kernel.calls import engine  # noqa: E402
-from kinform.simulation.solver.run import Run  # noqa: E402
+from kinform.simulation.solver.run_state import Run  # noqa: E402
 
 REPEATS = 5
 TOLERANCES = (1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 1e-9, 1e-10)

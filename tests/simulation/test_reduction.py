@@ -9,7 +9,7 @@ from support.port_models import DOWN, bricard, four_bars, hung_chain, squeezer
 from kinform.simulation import Course, SolverSettings, of_system, simulate_system
 from kinform.simulation.kernel.calls import engine
 from kinform.simulation.kernel.tables import address, addresses
-from kinform.simulation.solver.run import Run
+from kinform.simulation.solver.run_state import Run
 
 
 def begun(model, monkeypatch):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
 from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
 from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
-from kinform.consistency.gate import amended, check
+from kinform.consistency.inspection import amended, check
 from kinform.consistency.outcome import Outcome
 from kinform.consistency.rule import Rule
 from kinform.consistency.rules import RULES

@@ -19,9 +19,9 @@ from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.form.readers.function import FunctionReader
+from kinform.form.readers.open_manifest import Scope, parse
 from kinform.form.readers.poses import pose, unit_error
 from kinform.form.readers.requirements import requirements_of
-from kinform.form.readers.scope import Scope, parse
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly

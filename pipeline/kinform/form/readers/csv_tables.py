@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.readers.scope import Scope
+from kinform.form.readers.open_manifest import Scope
 
 
 def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:

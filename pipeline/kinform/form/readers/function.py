@@ -16,7 +16,7 @@ from kinform.form.constants import OUTPUTS, PARALLEL_AXES
 from kinform.form.files import DesignFiles
 from kinform.form.problems import did_you_mean, in_quotes
 from kinform.form.readers.csv_tables import law_rows
-from kinform.form.readers.scope import Scope
+from kinform.form.readers.open_manifest import Scope
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import Coupling, Drive, InitialValue, IntendedJoint, Law, Load, SimulationRequest

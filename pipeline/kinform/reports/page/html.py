@@ -19,10 +19,10 @@ from kinform.design import Design
 from kinform.exports.graph.drawing import graph_legend, graph_panel
 from kinform.reports.constants import FIT_COLOURS, MOST_PICTURES
 from kinform.reports.page import agreement, facts
-from kinform.reports.page.embedded import embedded_scene
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plot_groups
 from kinform.reports.page.scene import Scene
+from kinform.reports.page.scene_data import embedded_scene
 from kinform.version import __version__
 
 

@@ -17,7 +17,7 @@ from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.implicit import is_stiff, run_implicit
 from kinform.simulation.solver.record import Record
-from kinform.simulation.solver.run import Run
+from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.start import Start
 from kinform.simulation.solver.stops import Contact
 

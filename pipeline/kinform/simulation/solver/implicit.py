@@ -19,7 +19,7 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.simulation import constants
 from kinform.simulation.kernel import layout
-from kinform.simulation.solver.run import Run
+from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.stops import Contact
 
 

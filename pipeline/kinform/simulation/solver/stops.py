@@ -18,7 +18,7 @@ from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Actuation, Stop
 from kinform.simulation.mechanism.closure import factor
 from kinform.simulation.mechanism.dynamics import Dynamics
-from kinform.simulation.solver.run import Run
+from kinform.simulation.solver.run_state import Run
 
 
 class Contact:
