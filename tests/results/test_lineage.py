@@ -134,6 +134,7 @@ def test_versions_are_read_without_importing_and_are_those_of_the_packages() -> 
 
 
 def test_a_mesh_that_changed_while_it_was_read_leaves_no_lineage(pair: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from kinform.form.readers import open_manifest
 
     parse = open_manifest.parse
 
