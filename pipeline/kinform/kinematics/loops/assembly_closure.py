@@ -1,4 +1,4 @@
-"""Mobility of the whole: loop closure in joint rates, block by block.
+"""Closure of the whole assembly in joint rates, block by block: which rates are left, and how many.
 
 Blocks of the graph of bodies and joints close independently; a bridge adds all its freedoms (Davies 1981 for the
 closure equations). The room's docstring has an example.

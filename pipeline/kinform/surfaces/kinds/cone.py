@@ -1,4 +1,4 @@
-"""Circular cones: countersinks, chamfers, tapers, points."""
+"""Circular cones: countersinks, chamfers, tapers, points. Proposed here, fitted by least squares in `ruled`."""
 
 from __future__ import annotations
 

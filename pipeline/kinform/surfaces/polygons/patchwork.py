@@ -1,4 +1,4 @@
-"""Facets → polygons: edges, dihedrals, coplanar clusters, smooth edges with their convexity.
+"""The polygons of a mesh and the edges between them: areas, normals, dihedrals, which edges are smooth.
 
 A polygon is a connected set of coplanar facets; surfaces are recovered over polygons, because the
 triangulation inside a plane says nothing. Facets thinner than the noise have meaningless normals:

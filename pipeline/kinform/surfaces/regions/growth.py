@@ -16,7 +16,7 @@ from kinform.surfaces import constants
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.regions.candidates import Candidates
-from kinform.surfaces.regions.ground import Ground, among
+from kinform.surfaces.regions.territory import Territory, among
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class Growth:
     batch: Batch
 
 
-def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
+def whole(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth:
     """Regions of pieces that are one surface for the greatest part, without growth; the others come back empty.
 
     Four fits out of five end at the first look, so that comes before anything that costs more.
@@ -35,22 +35,22 @@ def whole(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
     params, usable = kind.propose(batch)
     pieces = batch.select(usable[batch.region])
     side = _facing(kind, pieces, params) if kind.saddle else side
-    fit = np.full(batch.count, ground.scale.fit)
+    fit = np.full(batch.count, territory.scale.fit)
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
     share = np.bincount(pieces.region, fits, batch.count) / np.maximum(batch.size, 1)
     pieces, number = _compact(pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]))
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
-    kept = kept.within(_justify(kept, pieces, ground.scale))
-    pieces = _large(kind, ground.connected(_conforming(kept, pieces)))
-    return _credible(ground, surfaces, pieces, kept.refine(pieces, 1), number)
+    kept = kept.within(_justify(kept, pieces, territory.scale))
+    pieces = _large(kind, territory.connected(_conforming(kept, pieces)))
+    return _credible(territory, surfaces, pieces, kept.refine(pieces, 1), number)
 
 
-def absorb(ground: Ground, growth: Growth) -> Growth:
+def absorb(territory: Territory, growth: Growth) -> Growth:
     """Regions with what conforms beside them, and their fits over it. Only what gained is fitted again."""
     kind, params = growth.surfaces.kind, growth.surfaces.params.copy()
     batch, number = _compact(growth.batch)
-    hopeful = _hopeful(ground, growth.surfaces.of(number), batch)
+    hopeful = _hopeful(territory, growth.surfaces.of(number), batch)
     finished = [_keys(batch.select(~hopeful[batch.region]), number)]
     batch, kept = _compact(batch.select(hopeful[batch.region]))
     number = number[kept]
@@ -58,41 +58,41 @@ def absorb(ground: Ground, growth: Growth) -> Growth:
     for _ in range(constants.ABSORPTIONS):
         if not len(batch.region):
             break
-        larger = ground.spread(surfaces, batch, surfaces.reach(batch), constants.LAYERS_OF_WHOLE)
+        larger = territory.spread(surfaces, batch, surfaces.reach(batch), constants.LAYERS_OF_WHOLE)
         gained = larger.size > batch.size
         finished.append(_keys(batch.select(~gained[batch.region]), number))
         batch, kept = _compact(larger.select(gained[larger.region]))
         number = number[kept]
         surfaces = surfaces.of(kept).refine(batch, 1)
         params[number] = surfaces.params
-        batch = _settle(ground, surfaces, batch)
+        batch = _settle(territory, surfaces, batch)
     finished.append(_keys(batch, number))
-    grown = Batch.of_keys(ground.patchwork, np.sort(np.concatenate(finished)), growth.batch.count)
+    grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), growth.batch.count)
     return Growth(Candidates(kind, params, growth.surfaces.side, growth.surfaces.tolerance), grown)
 
 
-def pursue(ground: Ground, kind: Kind, batch: Batch, side: Ints) -> Growth:
+def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth:
     """Fits, grows, fits again until nothing changes; regions that fail come back empty.
 
     A seed must conform to its own hypothesis with at least `kind.least` polygons.
     """
-    fit = np.full(batch.count, ground.scale.fit)
+    fit = np.full(batch.count, territory.scale.fit)
     params, usable = kind.propose(batch)
     batch = batch.select(usable[batch.region])
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(batch, 2)
-    batch, surfaces = _grow(ground, surfaces, _settle(ground, surfaces, batch))
+    batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = _compact(batch)
     kept = surfaces.of(number).refine(batch, 2)
-    kept = kept.within(_justify(kept, batch, ground.scale))
-    batch = _settle(ground, kept, batch)
-    return _credible(ground, surfaces, batch, kept.refine(batch, 2), number)
+    kept = kept.within(_justify(kept, batch, territory.scale))
+    batch = _settle(territory, kept, batch)
+    return _credible(territory, surfaces, batch, kept.refine(batch, 2), number)
 
 
-def _grow(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Candidates]:
+def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Batch, Candidates]:
     """Rounds of fitting and growing. A region that did not change in a round is finished and leaves, so
     that the later rounds work on the few that still grow."""
     count, params = batch.count, surfaces.params.copy()
-    fit = np.full(count, ground.scale.fit)
+    fit = np.full(count, territory.scale.fit)
     finished = []
     batch, number = _compact(batch)
     growing = surfaces.of(number)
@@ -101,8 +101,8 @@ def _grow(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Ca
             break
         before = batch.size
         growing = growing.refine(batch, 2).within(fit[number])
-        batch = _drop_shared(_settle(ground, growing, batch))
-        batch = ground.spread(
+        batch = _drop_shared(_settle(territory, growing, batch))
+        batch = territory.spread(
             growing, batch, growing.reach(batch), min(constants.FIRST_LAYERS << stage, constants.MOST_LAYERS)
         )
         params[number] = growing.params
@@ -111,7 +111,7 @@ def _grow(ground: Ground, surfaces: Candidates, batch: Batch) -> tuple[Batch, Ca
         batch, kept = _compact(batch.select(~still[batch.region]))
         growing, number = growing.of(kept), number[kept]
     finished.append(_keys(batch, number))
-    grown = Batch.of_keys(ground.patchwork, np.sort(np.concatenate(finished)), count)
+    grown = Batch.of_keys(territory.patchwork, np.sort(np.concatenate(finished)), count)
     return grown, Candidates(surfaces.kind, params, surfaces.side, fit)
 
 
@@ -123,10 +123,10 @@ def _facing(kind: Kind, batch: Batch, params: Params) -> Ints:
     return np.where(np.bincount(batch.region, agreement, batch.count) >= 0, 1, -1).astype(np.int64)
 
 
-def _hopeful(ground: Ground, surfaces: Candidates, batch: Batch) -> Flags:
+def _hopeful(territory: Territory, surfaces: Candidates, batch: Batch) -> Flags:
     """Which regions have a neighbour that would conform if facets were as wide as they may ever be."""
-    keys = ground.neighbours(batch.keys)
-    beside = Batch.of_keys(ground.patchwork, keys[~among(keys, batch.keys)], batch.count)
+    keys = territory.neighbours(batch.keys)
+    beside = Batch.of_keys(territory.patchwork, keys[~among(keys, batch.keys)], batch.count)
     fits = surfaces.conforms(beside, np.full(batch.count, constants.WIDEST + constants.FACET_ROUNDING))
     return np.asarray(np.bincount(beside.region[fits], minlength=batch.count) > 0)
 
@@ -163,15 +163,15 @@ def _large(kind: Kind, batch: Batch) -> Batch:
     return batch.select((batch.size >= kind.least)[batch.region])
 
 
-def _settle(ground: Ground, surfaces: Candidates, batch: Batch) -> Batch:
+def _settle(territory: Territory, surfaces: Candidates, batch: Batch) -> Batch:
     """The batch, whose regions are connected, without polygons that do not conform, and without regions that fell
     apart and became too small."""
     kept = _conforming(surfaces, batch)
     torn = kept.size < batch.size
     if torn.any():
         loose = torn[kept.region]
-        keys = np.concatenate([kept.select(~loose).keys, ground.connected(kept.select(loose)).keys])
-        kept = Batch.of_keys(ground.patchwork, np.sort(keys), batch.count)
+        keys = np.concatenate([kept.select(~loose).keys, territory.connected(kept.select(loose)).keys])
+        kept = Batch.of_keys(territory.patchwork, np.sort(keys), batch.count)
     return _large(surfaces.kind, kept)
 
 
@@ -180,10 +180,10 @@ def _justify(surfaces: Candidates, batch: Batch, scale: Scale) -> Array:
     return np.clip(constants.TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 
 
-def _credible(ground: Ground, surfaces: Candidates, batch: Batch, kept: Candidates, number: Ints) -> Growth:
+def _credible(territory: Territory, surfaces: Candidates, batch: Batch, kept: Candidates, number: Ints) -> Growth:
     """Those of the regions that there is evidence enough for, with their surfaces, under their old numbers."""
     kind, params, tolerance = surfaces.kind, surfaces.params.copy(), surfaces.tolerance.copy()
     params[number], tolerance[number] = kept.params, kept.tolerance
-    batch = batch.select(kind.credible(batch, kept.params, ground.scale)[batch.region])
-    regions = Batch.of_keys(ground.patchwork, _keys(batch, number), len(params))
+    batch = batch.select(kind.credible(batch, kept.params, territory.scale)[batch.region])
+    regions = Batch.of_keys(territory.patchwork, _keys(batch, number), len(params))
     return Growth(Candidates(kind, params, surfaces.side, tolerance), regions)

@@ -23,8 +23,8 @@ from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
-from kinform.surfaces.regions.ground import Ground
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
+from kinform.surfaces.regions.territory import Territory
 
 CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere(), Torus())
 """The curved kinds, simplest first. A new kind is one more entry."""
@@ -59,29 +59,29 @@ class Partition:
 def partition(work: Patchwork, scale: Scale) -> Partition:
     """Assigns every polygon."""
     regions: list[Region] = []
-    ground = Ground.of(work, scale)
-    link = links(work, ground.free)
+    territory = Territory.of(work, scale)
+    link = links(work, territory.free)
     bent = curvature(work, link)
     like = link.alike & continues(work, bent, link)
     for kinds, both_ways in ((CURVED, True), (SIMPLE, False)):
-        batch, side = _blends(ground, link, like, bent) if both_ways else _pieces(ground, link, link.alike)
-        growths = [absorb(ground, growth) for growth in _whole_pieces(ground, batch, side, bent, kinds)]
-        regions += _choose(growths, ground)
+        batch, side = _blends(territory, link, like, bent) if both_ways else _pieces(territory, link, link.alike)
+        growths = [absorb(territory, growth) for growth in _whole_pieces(territory, batch, side, bent, kinds)]
+        regions += _choose(growths, territory)
     tried = np.zeros(len(work.a), bool)
     total = work.area.sum()
     inner = work.b >= 0
     tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < constants.GRAIN * total
     for _ in range(constants.ROUNDS):
-        chosen = _choose(_search(ground, tried, bent), ground)
+        chosen = _choose(_search(territory, tried, bent), territory)
         regions += chosen
         if sum(work.area[region.polygons].sum() for region in chosen) < constants.WORTH * total:
             break
-    return Partition(tuple(regions), *_remainder(ground))
+    return Partition(tuple(regions), *_remainder(territory))
 
 
-def _pieces(ground: Ground, link: Links, joined: Flags) -> tuple[Batch, Ints]:
+def _pieces(territory: Territory, link: Links, joined: Flags) -> tuple[Batch, Ints]:
     """Pieces of polygons that convex, and that concave, links among `joined` hold together, with their sides."""
-    work, free = ground.patchwork, ground.free
+    work, free = territory.patchwork, territory.free
     keys, sides = [], []
     count: int = 0
     sign = work.sign[link.edge]
@@ -102,9 +102,9 @@ def _pieces(ground: Ground, link: Links, joined: Flags) -> tuple[Batch, Ints]:
     return Batch.of_keys(work, np.sort(np.concatenate(keys)), count), np.concatenate(sides)
 
 
-def _blends(ground: Ground, link: Links, joined: Flags, bent: Curvature) -> tuple[Batch, Ints]:
+def _blends(territory: Territory, link: Links, joined: Flags, bent: Curvature) -> tuple[Batch, Ints]:
     """Pieces whose links may bend either way, with the side to which the stronger curvature bends."""
-    work, free = ground.patchwork, ground.free
+    work, free = territory.patchwork, territory.free
     use = joined & free[link.a] & free[link.b]
     label = components(link.a[use], link.b[use], work.count)
     size = np.bincount(label[free], minlength=work.count)
@@ -116,7 +116,7 @@ def _blends(ground: Ground, link: Links, joined: Flags, bent: Curvature) -> tupl
 
 
 def _whole_pieces(
-    ground: Ground, batch: Batch, side: Ints, bent: Curvature, kinds: tuple[Kind, ...]
+    territory: Territory, batch: Batch, side: Ints, bent: Curvature, kinds: tuple[Kind, ...]
 ) -> list[Growth]:  # fmt: skip
     """Each kind on the pieces that bend as it does; what one kind explains whole, the later are not tried on."""
     growths = []
@@ -126,13 +126,13 @@ def _whole_pieces(
             break
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
-        growths.append(whole(ground, kind, batch.select(suits[batch.region]), side))
+        growths.append(whole(territory, kind, batch.select(suits[batch.region]), side))
         explained = growths[-1].batch.size >= constants.EXPLAINED * batch.size
         batch = batch.select(~explained[batch.region])
     return growths
 
 
-def _choose(growths: list[Growth], ground: Ground) -> list[Region]:
+def _choose(growths: list[Growth], territory: Territory) -> list[Region]:
     """Larger regions first, each without the polygons that were taken before it; they are free no longer."""
     entries = []
     for order, growth in enumerate(growths):
@@ -145,20 +145,20 @@ def _choose(growths: list[Growth], ground: Ground) -> list[Region]:
     chosen = []
     for _, order, _, number, polygons in entries:
         surfaces = growths[order].surfaces
-        fresh = polygons[ground.free[polygons]]
+        fresh = polygons[territory.free[polygons]]
         if len(fresh) < max(surfaces.kind.least, constants.FRESH * len(polygons)):
             continue
-        ground.free[fresh] = False
+        territory.free[fresh] = False
         side, tolerance = int(surfaces.side[number]), float(surfaces.tolerance[number])
         chosen.append(Region(surfaces.kind, fresh, surfaces.params[number], side, tolerance))
     return chosen
 
 
-def _search(ground: Ground, tried: Flags, bent: Curvature) -> list[Growth]:
+def _search(territory: Territory, tried: Flags, bent: Curvature) -> list[Growth]:
     """One round of hypotheses from seeds, of all kinds and both sides; the seeds are tried from now on."""
     growths: list[Growth] = []
-    work = ground.patchwork
-    both = [_seeds(ground, tried, side) for side in (1, -1)]
+    work = territory.patchwork
+    both = [_seeds(territory, tried, side) for side in (1, -1)]
     seeds = np.concatenate(both)
     if not len(seeds):
         return growths
@@ -170,16 +170,16 @@ def _search(ground: Ground, tried: Flags, bent: Curvature) -> list[Growth]:
         suits = np.flatnonzero(
             (least <= kind.bends[1] + constants.BEND_SLACK) & (most >= kind.bends[0] - constants.BEND_SLACK)
         )
-        batch = _around(ground, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
+        batch = _around(territory, seeds[suits], side[suits], constants.STRAIGHT[kind.name])
         batch = batch.select((batch.size >= kind.least)[batch.region])
         if len(batch.region):
-            growths.append(pursue(ground, kind, batch, side[suits]))
+            growths.append(pursue(territory, kind, batch, side[suits]))
     return growths
 
 
-def _seeds(ground: Ground, tried: Flags, side: int) -> Ints:
+def _seeds(territory: Territory, tried: Flags, side: int) -> Ints:
     """Smooth edges to start from: the longest in their surroundings, not used before."""
-    work, edges = ground.patchwork, ground.smooth
+    work, edges = territory.patchwork, territory.smooth
     usable = edges[work.sign[edges] * side >= 0]
     start = usable[(work.sign[usable] == side) & ~tried[usable]]
     rank = np.full(len(work.a), -1)
@@ -195,25 +195,25 @@ def _seeds(ground: Ground, tried: Flags, side: int) -> Ints:
     return foremost
 
 
-def _around(ground: Ground, seeds: Ints, side: Ints, straightness: float) -> Batch:
+def _around(territory: Territory, seeds: Ints, side: Ints, straightness: float) -> Batch:
     """Both polygons of each seed and their neighbours across edges along the seed (all, when 0)."""
-    work = ground.patchwork
+    work = territory.patchwork
     numbers = np.arange(len(seeds))
     polygon = np.r_[work.a[seeds], work.b[seeds]]
     region = np.r_[numbers, numbers]
-    owner, edge = ground.links.expand(polygon)
+    owner, edge = territory.links.expand(polygon)
     target = work.other(edge, polygon[owner])
     direction = work.vertices[work.ends[:, 1]] - work.vertices[work.ends[:, 0]]
     cosine = np.abs(dot(direction[edge], direction[seeds[region[owner]]]))
     near = cosine >= straightness * work.length[edge] * work.length[seeds[region[owner]]]
-    keep = near & ground.free[target] & (work.sign[edge] * side[region[owner]] >= 0)
+    keep = near & territory.free[target] & (work.sign[edge] * side[region[owner]] >= 0)
     keys = np.r_[region, region[owner][keep]] * np.int64(work.count) + np.r_[polygon, target[keep]]
     return Batch.of_keys(work, distinct(keys), len(seeds))
 
 
-def _remainder(ground: Ground) -> tuple[Ints, Ints]:
+def _remainder(territory: Territory) -> tuple[Ints, Ints]:
     """Numbers of the planes and of the freeform patches among what no curved surface explains."""
-    work, left, edges = ground.patchwork, ground.free, ground.smooth
+    work, left, edges = territory.patchwork, territory.free, territory.smooth
     a, b = work.a[edges], work.b[edges]
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)

@@ -16,7 +16,7 @@ from kinform.surfaces.regions.candidates import Candidates
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class Territory:
     """The polygons of a mesh while regions grow on them."""
 
     patchwork: Patchwork
@@ -27,8 +27,8 @@ class Ground:
     """(P,) in no region yet; written as regions are chosen."""
 
     @classmethod
-    def of(cls, patchwork: Patchwork, scale: Scale) -> Ground:
-        """The ground of a patchwork, all of it free."""
+    def of(cls, patchwork: Patchwork, scale: Scale) -> Territory:
+        """The territory of a patchwork, all of it free."""
         edges = np.flatnonzero(patchwork.smooth)
         rows = np.r_[patchwork.a[edges], patchwork.b[edges]]
         links = Ragged(rows, np.r_[edges, edges], patchwork.count)
