@@ -115,6 +115,12 @@ def hinted(made, infer):
     return of_assembly(made, infer_fasteners=infer)
 
 
+def of_step(made, share):
+    """The shaft of a file whose numbers go in steps of this share of its size."""
+    mesh = next(part.mesh for part in made.assembly.parts if part.name == "shaft")
+    return of_part(made, "shaft", mesh=replace(mesh, resolution=share * mesh.diagonal))
+
+
 def reacting(made, force):
     wrench = np.zeros((len(made.simulation.time), 1, 6))
     wrench[3, 0, 3] = force
@@ -144,6 +150,7 @@ STOCK = MassOverride(1.0, np.zeros(3), np.eye(3))
 
 OF_A_HINGE = {
     "KF110": (far_away, None),
+    "KF111": (lambda d: of_step(d, 1e-3), lambda d: of_step(d, 1e-5)),
     "KF120": (weightless, None),
     "KF121": (lambda d: of_mass(d, principal_moments=np.array([1.0, 1.0, 3.0])), None),
     "KF122": (lambda d: of_part(d, "shaft", override=STOCK), None),

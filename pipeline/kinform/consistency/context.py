@@ -163,8 +163,10 @@ class Context:
         return doubts(self.assembly)
 
     @cached_property
-    def _mistaken_scale(self) -> Outcome | None:
-        """Why contacts, and all that follows from them, mean nothing at this size; None when they do."""
+    def _nothing_to_touch(self) -> Outcome | None:
+        """Why contacts, and all that follows from them, mean nothing; None when they do."""
+        if self.assembly.lost:
+            return inconclusive("mesh files have lost the shapes of parts (KF111): contacts of these mean nothing")
         if not self.meshes or self.assembly.tolerances.contact is not None:
             return None
         if not any(doubt.severity == "error" for doubt in self.doubts):
@@ -187,8 +189,8 @@ class Context:
             return self.lacks("meshes")
         if need == "simulation" and not self.simulation_requested:
             return skipped("no simulation is requested")
-        if need != "mass" and self._mistaken_scale is not None:
-            return self._mistaken_scale
+        if need != "mass" and self._nothing_to_touch is not None:
+            return self._nothing_to_touch
         result = getattr(self.design, need)
         run = result is not None and not (need == "simulation" and result.status == "not requested")
         return None if run else inconclusive(NOT_RUN[need])

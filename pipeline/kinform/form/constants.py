@@ -51,6 +51,9 @@ USUAL_ASSEMBLY = (0.01, 10.0)
 
 # ---- meshes.weld, meshes.health, meshes.bodies
 
+EPS32 = 2.0**-23
+"""Relative step of single precision: no mesh is taken to be known better than that, at its own size."""
+
 WELD_SHARE = 1e-6
 """Welding distance in diagonals of the mesh, where none is stated: ten roundings of single precision."""
 
@@ -68,6 +71,26 @@ SLIVER = 1e-24
 
 INSIDE = 0.5
 """Winding number above which a point lies in a shell: it is 1 inside and 0 outside."""
+
+WELD_STEPS = 2.0
+"""The same in steps of the last place of the largest coordinate, where that is more: copies of one corner that were
+rounded apart differ by one in each direction."""
+
+FAR = 8.0
+"""A mesh whose middle lies this many of its diagonals from the origin of its file, along one axis, is moved to its own:
+nearer ones lose no more than four bits, of the 29 that doubles have more than single precision."""
+
+# ---- meshes.digits
+
+LARGE_COORDINATES = 0.1
+"""Share of the largest coordinate from which on a coordinate is as coarse as it: one decimal digit."""
+
+DIGITS_READ = 2000
+"""Coordinates of a text whose digits are looked at."""
+
+LAST_DIGIT_USED = 0.5
+"""Share of the coordinates that use the last digit, above which it is where they were rounded: nine in ten of rounded
+numbers do."""
 
 # ---- meshes.polygons, meshes.obj
 

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from kinform.form.files import DesignFiles, earlier_meshes, is_mesh, mesh_use
 from kinform.form.problems import Problems
 from kinform.model.assembly import Assembly, Part
@@ -52,4 +54,6 @@ def _with_mesh(part: Part, top: Path, files: DesignFiles, weld: float | None) ->
     mesh = files.mesh(top / part.mesh.path, mesh_use(part, weld), part.source.file, 1)
     if mesh is None:
         return None
-    return part if mesh is part.mesh else replace(part, mesh=mesh)
+    if mesh is part.mesh:
+        return part
+    return replace(part, mesh=mesh) if np.array_equal(mesh.origin, part.mesh.origin) else None

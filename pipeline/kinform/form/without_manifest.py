@@ -16,6 +16,7 @@ from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.readers.poses import shift
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function
@@ -44,7 +45,8 @@ def load_meshes(
             continue
         if label in parts:
             problems.add(f"two bodies are named {in_quotes(label)}", str(path), None, "rename a file or a body")
-        parts[label] = Part(PartName(label), mesh, np.eye(4), True, None, density, None, units, Source(path.name))
+        pose = shift(np.eye(4), mesh.origin)
+        parts[label] = Part(PartName(label), mesh, pose, True, None, density, None, units, Source(path.name))
     problems.raise_if_any()
     first = Path(paths[0])
     return Assembly(
@@ -115,7 +117,7 @@ def _free(name: str, taken: set[str]) -> str:
 def doubts(assembly: Assembly) -> list[str]:
     """Why the unit of these meshes, not yet placed, is hard to believe, in sentences."""
     units = assembly.units
-    corners = np.concatenate([p.mesh.vertices for p in assembly.parts if p.mesh is not None])
+    corners = np.concatenate([np.array(p.mesh.placed_box(p.X_WP)) for p in assembly.parts if p.mesh is not None])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     if SMALLEST_ASSEMBLY <= size <= LARGEST_ASSEMBLY:
         return []

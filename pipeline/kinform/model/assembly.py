@@ -55,7 +55,10 @@ class MeshHealth:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A welded triangle mesh in the part frame, shared by all parts with the same content."""
+    """A welded triangle mesh in the part frame, shared by all parts with the same content.
+
+    The part frame is the frame of the file, moved along to `origin`.
+    """
 
     vertices: Annotated[Array, "m"]
     """(V, 3) m."""
@@ -67,7 +70,12 @@ class Mesh:
     body: str | None
     """Body inside the file (OBJ `o`/`g`, ASCII solid), or None for the whole file."""
     digest: str
-    """SHA-256 (hex) of the welded geometry: vertices, faces. Equal digests: the same shape."""
+    """SHA-256 (hex) of the welded geometry: vertices, faces, and the resolution where it is coarser than that of single
+    precision. Equal digests: the same shape, as well known."""
+    origin: Place = field(default_factory=lambda: np.zeros(3))
+    """(3,) m: of the part frame in the frame of the file. Nought unless the file has its mesh far from its origin."""
+    resolution: Metres = 0.0
+    """A step of the last place of the file's largest coordinate (m): nothing finer is known of this mesh."""
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -201,6 +209,16 @@ class Assembly:
     """What the reader did on its own account, in sentences."""
     check: CheckSettings = field(default=CheckSettings())
     """How the rules are applied."""
+
+    @cached_property
+    def lost(self) -> frozenset[PartName]:
+        """Parts whose files have numbers too coarse for their shape."""
+        share = self.tolerances.resolved
+        return frozenset(
+            part.name
+            for part in self.parts
+            if part.mesh is not None and part.mesh.resolution > share * part.mesh.diagonal
+        )
 
     def part(self, name: str) -> Part:
         """The part of that name; KeyError otherwise."""

@@ -35,6 +35,9 @@ class Tolerances:
     opposed: Ratio = -0.3
     """A hit counts when the dot product of the two outward facet normals is below this."""
 
+    resolved: Ratio = 2e-4
+    """Resolution of a mesh file, relative to the part's diagonal, beyond which the file has lost the shape."""
+
     held: Ratio = 2e-3
     """Singular values above this are constraints."""
     free: Ratio = 1e-4

@@ -41,11 +41,11 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
     diagonal = mesh.diagonal
     if not len(mesh.faces) or diagonal <= 0 or not np.isfinite(mesh.vertices).all():
         return MeshSurfaces(mesh.digest, (), np.zeros(0, np.int64), 0.0)
-    largest = float(np.abs(mesh.vertices).max())
+    rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
     centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
     vertices, faces, order = _canonical_order((mesh.vertices - centre) / diagonal, mesh.faces)
     facets = Facets.of(vertices, faces)
-    scale = Scale.of(facets, EPS32 * largest / diagonal, tolerances)
+    scale = Scale.of(facets, rounding / diagonal, tolerances)
     work = Patchwork.of(facets, scale, tolerances)
     descriptions = _describe(work, partition(work, scale), scale)
     return _assemble(mesh, work, descriptions, order, centre, diagonal)

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import hashlib
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import FLAT, SLIVER, WELD_SHARE
+from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, WELD_SHARE, WELD_STEPS
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
 from kinform.foundation.meshes.shells import shells_of
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
 
 
 def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, body: str | None, solid: bool) -> Mesh:
     """The welded mesh of a file, in metres.
 
-    `weld` is the welding distance (m), None for 1e-6 of the diagonal. A closed mesh that is inside out
-    is turned; its health keeps the negative volume. Raises MeshError for empty meshes, and for flat ones
-    where a solid is meant.
+    `weld` is the welding distance (m), None for 1e-6 of the diagonal or two steps of the file's numbers. A closed
+    mesh that is inside out is turned; its health keeps the negative volume. Raises MeshError for empty meshes, and for
+    flat ones where a solid is meant.
     """
-    vertices, faces, distance = _welded(raw, metres, weld)
+    origin = far_origin(raw.vertices)
+    resolution = raw.resolution * metres
+    vertices, faces, distance = _welded(raw, origin, metres, weld)
     kept = faces[~_collapsed(faces)]
     if not len(kept):
         raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
@@ -38,17 +41,38 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     health = _health(shape, kept, edges, raw, distance)
     if health.watertight and health.consistent_winding and health.volume < 0.0:
         kept = np.ascontiguousarray(kept[:, ::-1])
-    digest = hashlib.sha256(shape.tobytes() + kept.tobytes()).hexdigest()
+    usual = EPS32 * float(np.abs(shape).max())
+    known = np.float64(resolution).tobytes() if resolution > usual else b""
+    digest = hashlib.sha256(shape.tobytes() + kept.tobytes() + known).hexdigest()
     shape.setflags(write=False)
     kept.setflags(write=False)
-    return Mesh(shape, kept, health, path, body, digest)
+    return Mesh(shape, kept, health, path, body, digest, np.asarray(freeze(origin * metres)), max(resolution, usual))
 
 
-def _welded(raw: RawMesh, metres: float, weld: float | None) -> tuple[Array, Ints, float]:
+def far_origin(vertices: NDArray[np.floating]) -> Array:
+    """Where the part frame is to be, in file units (3,): the origin, but where the vertices (n, 3) lie far from it.
+
+    Moving there rounds nothing: the place is a multiple of a power of two that is not below their diagonal.
+    """
+    if not len(vertices):
+        return np.zeros(3)
+    low, high = vertices.min(axis=0).astype(np.float64), vertices.max(axis=0).astype(np.float64)
+    middle, diagonal = 0.5 * low + 0.5 * high, float(np.linalg.norm(high - low))
+    if not diagonal > 0.0:
+        return np.zeros(3)
+    step = 2.0 ** math.ceil(math.log2(diagonal))
+    return np.asarray(np.where(np.abs(middle) > FAR * diagonal, np.round(middle / step) * step, 0.0))
+
+
+def _welded(raw: RawMesh, origin: Array, metres: float, weld: float | None) -> tuple[Array, Ints, float]:
+    """Vertices (m) from `origin` (3,) of the file, faces, and the distance (m) up to which vertices were one."""
     first, place = merge_exact(raw.vertices)
-    vertices = np.ascontiguousarray(raw.vertices[first].astype(np.float64) * metres)
+    vertices = np.ascontiguousarray((raw.vertices[first].astype(np.float64) - origin) * metres)
     faces = place[raw.faces]
-    distance = WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0))) if weld is None else weld
+    distance = weld
+    if distance is None:
+        share = WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0)))
+        distance = max(share, WELD_STEPS * raw.resolution * metres)
     leaders, close = merge_close(vertices, distance)
     welded: Array = vertices[leaders]
     return welded, close[faces], distance

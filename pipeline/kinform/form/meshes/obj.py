@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.form.constants import FAULTS_SHOWN
+from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.polygons import triangulate
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh
 from kinform.foundation.words import counted
@@ -77,7 +78,12 @@ def parse_obj(text: str) -> RawMesh:
         _labelling("object", lines.objects, np.array(lines.face_object)[owner]),
         _labelling("group", lines.groups, np.array(lines.face_group)[owner]),
     )
-    return RawMesh(vertices, faces, tuple(x for x in labellings if x is not None))
+    return RawMesh(vertices, faces, tuple(x for x in labellings if x is not None), _written(lines, vertices))
+
+
+def _written(lines: _Lines, vertices: NDArray[np.float64]) -> float:
+    """Unit of the last digit of the largest coordinates, as the text writes them."""
+    return written_step([token for rest in lines.vertices for token in rest.split()[:3]], vertices.ravel())
 
 
 def _labelling(kind: str, names: dict[str, int], labels: NDArray[np.int64]) -> Labelling | None:

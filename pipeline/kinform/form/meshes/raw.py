@@ -48,9 +48,18 @@ class RawMesh:
     vertices: NDArray[np.floating]
     faces: NDArray[np.int64]
     labellings: tuple[Labelling, ...] = ()
+    written: float = 0.0
+    """Unit of the last digit of the largest coordinates of a text, in file units; 0: finer than can be told."""
+
+    @property
+    def resolution(self) -> float:
+        """What one step of the last place is in the largest coordinate, in file units: of binary numbers, or as
+        written."""
+        largest = float(np.abs(self.vertices).max(initial=0.0))
+        return max(self.written, float(np.finfo(self.vertices.dtype).eps) * largest)
 
 
-def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = ()) -> RawMesh:
+def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = (), written: float = 0.0) -> RawMesh:
     """A raw mesh of (F, 3, 3) facet corners, none of them shared."""
     faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
-    return RawMesh(corners.reshape(-1, 3), faces, labellings)
+    return RawMesh(corners.reshape(-1, 3), faces, labellings, written)

@@ -13,12 +13,14 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, soup
 from kinform.foundation.words import counted
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID = re.compile(r"^[ \t]*(end)?solid\b[ \t]*([^\n]*)$", re.MULTILINE | re.IGNORECASE)
+_VERTEX = re.compile(r"\bvertex[ \t]+([^\n]*)", re.IGNORECASE)
 _TOKENS = 21
 _WORDS = {
     0: "facet", 1: "normal", 5: "outer", 6: "loop", 7: "vertex", 11: "vertex", 15: "vertex",
@@ -94,7 +96,14 @@ def parse_ascii(text: str) -> RawMesh:
         raise MeshError([Fault("is empty: it has no facet", REEXPORT)])
     unique, where = _unique_names(names)
     label = where[np.concatenate(labels)]
-    return soup(np.concatenate(corners), (Labelling("solid", unique, label),))
+    every = np.concatenate(corners)
+    return soup(every, (Labelling("solid", unique, label),), _written(text, every))
+
+
+def _written(text: str, corners: NDArray[np.float64]) -> float:
+    """Unit of the last digit of the largest coordinates, as the text writes them."""
+    tokens = [token for line in _VERTEX.findall(text) for token in line.split()]
+    return written_step(tokens, corners.ravel()) if len(tokens) == corners.size else 0.0
 
 
 def _solids(text: str, faults: list[Fault]) -> list[tuple[str, int, int]]:

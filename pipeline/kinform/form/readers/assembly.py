@@ -20,7 +20,7 @@ from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.open_manifest import Scope, parse
-from kinform.form.readers.poses import pose, unit_error
+from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
@@ -219,11 +219,12 @@ class _AssemblyReader:
             scope.complain(f"{what} has no mesh, but body or units of one", "add mesh, or remove them", *path)
         if table.material is not None and table.density is not None:
             scope.complain(f"{what} has both material and density", "remove one of them", *path, "density")
-        override = _override(scope, table, what, *path)
+        origin = np.zeros(3) if mesh is None else mesh.origin
+        override = _override(scope, table, origin, what, *path)
         return Part(
             name=PartName(scope.prefix + table.name),
             mesh=mesh,
-            X_WP=scope.X_WF @ _pose(scope, table, *path),
+            X_WP=shift(scope.X_WF @ _pose(scope, table, *path), origin),
             solid=table.solid,
             material=table.material,
             density=_density(scope, table, what, *path),
@@ -254,7 +255,8 @@ def _density(scope: Scope, table: PartTable, what: str, *path: str | int) -> flo
     return density
 
 
-def _override(scope: Scope, table: PartTable, what: str, *path: str | int) -> MassOverride | None:
+def _override(scope: Scope, table: PartTable, origin: Array, what: str, *path: str | int) -> MassOverride | None:
+    """The stated mass of a part whose frame lies at `origin` (3,) m of its file's."""
     keys = ("mass", "centre_of_mass", "inertia")
     missing = [key for key in keys if getattr(table, key) is None]
     if len(missing) == len(keys):
@@ -269,7 +271,7 @@ def _override(scope: Scope, table: PartTable, what: str, *path: str | int) -> Ma
         scope.complain(f"{what}: the inertia is not symmetric", "give a symmetric matrix", *path, "inertia")
     assert table.mass is not None
     assert table.centre_of_mass is not None
-    return MassOverride(table.mass, np.array(table.centre_of_mass) * scope.metres, inertia)
+    return MassOverride(table.mass, np.array(table.centre_of_mass) * scope.metres - origin, inertia)
 
 
 def _tolerances(table: TolerancesTable, metres: float) -> Tolerances:

@@ -48,3 +48,12 @@ def pose(
     if position is not None:
         out[:3, 3] = np.asarray(position, dtype=float) * metres
     return out
+
+
+def shift(X_WF: Array, place: Array) -> Array:
+    """The pose (4, 4) moved along to a place (3,) of its own frame."""
+    if not place.any():
+        return X_WF
+    out = X_WF.copy()
+    out[:3, 3] += X_WF[:3, :3] @ place
+    return out

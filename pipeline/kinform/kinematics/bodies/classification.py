@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
+from kinform.foundation.words import quoted
 from kinform.kinematics.answers import Answers, ask
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
@@ -42,6 +44,10 @@ class Pairs:
         question = Question(tuple((patch, turned) for _, patch, turned in members), tolerances, contact, size)
         answer = ask(self._answers, "pair", (question,), lambda: answer_pair(question))
         self.extremes |= {index: samples for (index, _, _), samples in zip(members, answer.extremes, strict=True)}
+        lost = sorted({part for _, patch, _ in members for part in patch.parts} & self.assembly.lost)
+        if lost and answer.joint is not None:
+            reason = f"the {'file' if len(lost) == 1 else 'files'} of {quoted(lost)} lost the shape: too few digits"
+            answer = replace(answer, joint=replace(answer.joint, status="ambiguous", reason=reason))
         return answer
 
 

@@ -46,7 +46,7 @@ class _Parts:
             "meshes",
             Ragged("vertices", width=3),
             Ragged("faces", width=3, dtype=FACETS),
-            first=("digest", "path", "body", "health"),
+            first=("digest", "path", "body", "health", "origin", "resolution"),
         ),
     )
 
@@ -77,7 +77,7 @@ class _Parts:
 
 
 def _identity(mesh: Mesh) -> tuple[object, ...]:
-    return (mesh.digest, mesh.path, mesh.body, mesh.health)
+    return (mesh.digest, mesh.path, mesh.body, mesh.health, mesh.origin.tobytes(), mesh.resolution)
 
 
 HEADER = Row("header", "name", "units", "ground", "infer_fasteners", "source")
