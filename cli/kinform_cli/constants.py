@@ -57,3 +57,15 @@ MOST_NAMES = 8
 
 NO_ANGLE = 1e-9
 """Radians below which a misfit of directions is none."""
+
+NO_SHIFT = 1e-12
+"""Share of the largest part below which a misfit of places is none: rounding."""
+
+SHOWN_SHIFT = 1e-6
+"""Share of the largest part from which on the shift of a joint is listed: below are the roundings of mesh files."""
+
+SHOWN_TURN = 1e-5
+"""Radians from which on its turn is: noise, and no rounding. A choice."""
+
+MOST_MOVES = 12
+"""Joints that were moved that are listed; the JSON has them all. A choice."""

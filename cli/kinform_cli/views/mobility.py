@@ -7,12 +7,12 @@ import math
 from rich.console import RenderableType
 
 from kinform.design import Design
-from kinform.foundation.words import rate
+from kinform.foundation.words import counted, length, rate
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.freedom_phrases import follower_rates, freedom_text
 from kinform.reports.values.kinematics import mobility_counts
-from kinform_cli.constants import MOST_NAMES, NO_ANGLE
+from kinform_cli.constants import MOST_MOVES, MOST_NAMES, NO_ANGLE, NO_SHIFT, SHOWN_SHIFT, SHOWN_TURN
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths
 
@@ -50,7 +50,7 @@ def render(design: Design) -> RenderableType:
     if mobility.uncertain:
         items.append(f"the counts depend on joints that are not certain: {', '.join(mobility.uncertain)}")
     items += [_coupling(coupling, design) for coupling in design.kinematics.couplings]
-    items.append(_misfit(design))
+    items += _misfit(design)
     if mobility.named:
         items += ["", _freedoms(design)]
     if mobility.redundancies:
@@ -129,13 +129,23 @@ def _first_names(items: list[str]) -> str:
     )
 
 
-def _misfit(design: Design) -> str:
-    """What was moved to make axes agree that agree within their uncertainty."""
-    assert design.kinematics is not None
-    misfit, lengths = design.kinematics.misfit, Lengths.of(design.assembly)
-    moves = []
-    if lengths.length(misfit.distance) != lengths.length(0.0):
-        moves.append(f"{lengths.length(misfit.distance)} {lengths.unit} at {misfit.distance_at}")
+def _misfit(design: Design) -> list[str]:
+    """What was moved to make axes agree that agree within their uncertainty: the most, and each joint that shows."""
+    kinematics, units = design.kinematics, design.assembly.units
+    assert kinematics is not None
+    misfit = kinematics.misfit
+    size = max((part.mesh.diagonal for part in design.assembly.parts if part.mesh is not None), default=1.0)
+    most = []
+    if misfit.distance > NO_SHIFT * size:
+        most.append(f"{length(misfit.distance, units, 2)} at {misfit.distance_at}")
     if misfit.angle >= NO_ANGLE:
-        moves.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
-    return f"misfit of axes that were made to agree: {', '.join(moves) or 'none'}"
+        most.append(f"{math.degrees(misfit.angle):.2g}° at {misfit.angle_at}")
+    lines = [f"misfit of axes that were made to agree: {', '.join(most) or 'none'}"]
+    shown = [m for m in kinematics.moves if m.distance > SHOWN_SHIFT * size or m.angle > SHOWN_TURN]
+    for move in shown[:MOST_MOVES]:
+        lines.append(
+            f"  {move.joint} was moved by {length(move.distance, units, 2)} and {math.degrees(move.angle):.2g}°"
+        )
+    if len(shown) > MOST_MOVES:
+        lines.append(f"  and {counted(len(shown) - MOST_MOVES, 'more joint')}")
+    return lines

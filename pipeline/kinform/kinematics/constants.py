@@ -197,10 +197,20 @@ LEAST_CROSSING = 0.05
 FIRST_LOOK = 1.001
 """Slack of the first look at which lines may meet, which must not lose any to rounding."""
 
+# --- axes/equal_lengths -----------------------------------------------------------------------------------------------
+
+MOST_COMPARED_JOINTS = 400
+"""Blocks with more joints are left as they are: loops of four bodies grow with their square."""
+ONE_PIN = 1e-13
+"""Share of the assembly's size by which lines that were made coaxial may be apart: rounding."""
+LEAST_SIDE = 100.0
+"""Times what the pins of a loop may be shifted by in all that each of its sides is long at least: shorter sides are
+equal to anything."""
+EQUAL_SIDES = 4e-15
+"""Share of the assembly's size by which sides that are equal differ: a few roundings of its coordinates."""
+
 # --- axes/proportions -----------------------------------------------------------------------------------------------
 
-FILE_ROUNDING = 1e-8
-"""rad, and share of the size: uncertainty of what the single precision of mesh files holds."""
 CLOSED_GAP = 1e-12
 """rad, and shares of the size: loops that stay closed to this need nothing."""
 GLANCE = 0.1

@@ -8,9 +8,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from kinform.kinematics.answers import Answers
+from kinform.kinematics.axes.bounds import move_bounds, uncertainties
+from kinform.kinematics.axes.equal_lengths import equalise_lengths
 from kinform.kinematics.axes.higher_pairs import align_higher_pairs
+from kinform.kinematics.axes.misfit import misfit_of, moves_between
 from kinform.kinematics.axes.proportions import fit_proportions
-from kinform.kinematics.axes.snapping import snap_axes, uncertainties
+from kinform.kinematics.axes.snapping import snap_axes
 from kinform.kinematics.bodies.classification import Pairs, decide_all
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import fasten, label_inferred, turn_about_suggested_axes
@@ -89,9 +92,13 @@ def derive(
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated
     joints = turn_about_suggested_axes(assembly, contacts, [every[pair] for pair in sorted(every)], bodies)
     joints = label_inferred(joints, bodies)
-    snapped, misfit = snap_axes(joints, patches, size)
-    doubts = uncertainties(snapped, patches)
-    fitted, misfit = fit_proportions(JointGraph(bodies, snapped), doubts, size, misfit)
+    bounds = move_bounds(joints, patches, assembly.tolerances.alignment, size)
+    snapped = snap_axes(joints, bounds)
+    left = bounds.after(moves_between(joints, snapped), joints)
+    equal = equalise_lengths(JointGraph(bodies, snapped), left, size)
+    left = bounds.after(moves_between(joints, equal), joints)
+    fitted = fit_proportions(JointGraph(bodies, equal), left, size)
+    moves = moves_between(joints, fitted)
     aligned = align_higher_pairs(JointGraph(bodies, fitted), patches, size, assembly.tolerances.alignment)
     mechanism = _Mechanism(
         assembly=assembly,
@@ -105,7 +112,7 @@ def derive(
         answers=answers,
     )
     misaligned = ((name, a.angle, a.offset) for name, a in by_contact.items() if a.angle > 0.0 or a.offset > 0.0)
-    return replace(_moves_and_parts(mechanism), misfit=misfit, misaligned=tuple(misaligned))
+    return replace(_moves_and_parts(mechanism), misfit=misfit_of(moves), misaligned=tuple(misaligned), moves=moves)
 
 
 def functional(assembly: Assembly) -> Kinematics:

@@ -166,6 +166,17 @@ class ConstraintMatrix:
 
 
 @dataclass(frozen=True)
+class Move:
+    """By how much one joint was moved so that its axis agrees with others exactly."""
+
+    joint: JointName
+    angle: Radians
+    """By which its axis was turned."""
+    distance: Metres
+    """By which its line was shifted across itself, or its centre."""
+
+
+@dataclass(frozen=True)
 class Misfit:
     """What snapping did: the greatest change of a direction and of a position, and where."""
 
@@ -354,6 +365,8 @@ class Kinematics:
     separations_reason: str = ""
     """Why it is not known, or not known of all bodies, whether they can leave."""
     couplings: tuple[Coupling, ...] = ()
+    moves: tuple[Move, ...] = ()
+    """What snapping did to each joint that it moved, in the order of the joints; `misfit` has the greatest."""
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -2,7 +2,7 @@
 
 With directions kept, "these lines pass through one point" is linear in the shifts of the lines and in the
 point; the shifts, each weighed by its uncertainty, are the solution of least norm. Nothing that meets only
-by more than its uncertainty is touched.
+by more than its uncertainty is touched, and nothing is shifted by more than its room.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ class Locus:
     position: float
     """m: uncertainty of the place, at `point`."""
     bodies: frozenset[str]
+    room: float = np.inf
+    """m: the most that it may be shifted by."""
 
     def uncertainty(self, place: Array) -> float:
         """m: of the line beside a place (3,)."""
@@ -59,21 +61,27 @@ def meeting_shifts(loci: Sequence[Locus], sigmas: float) -> Array:
 
 
 def _shifts(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas: float) -> Array:
-    """Shifts for these points, without the loci that would have to move by more than their uncertainty."""
+    """Shifts for these points, without the loci that would have to move by more than they may."""
     if all(_distance(loci[k], place) <= MET * _reach(loci[k], place) for members, place in points for k in members):
         return np.zeros((len(loci), 3))
     while points:
         shifts = _solve(loci, points)
         excess = {
-            k: float(np.linalg.norm(shifts[k])) / max(loci[k].uncertainty(place) for m, place in points if k in m)
+            k: _excess(loci[k], shifts[k], sigmas * max(loci[k].uncertainty(place) for m, place in points if k in m))
             for k in sorted({k for members, _ in points for k in members})
         }
         worst = max(excess, key=lambda k: excess[k])
-        if excess[worst] <= sigmas:
+        if excess[worst] <= 1.0:
             return shifts
         left = [([k for k in members if k != worst], place) for members, place in points]
         points = [(members, place) for members, place in left if len(members) > 1]
     return np.zeros((len(loci), 3))
+
+
+def _excess(locus: Locus, shift: Array, uncertain: float) -> float:
+    """A shift (3,) over the most that it may be."""
+    size, most = float(np.linalg.norm(shift)), min(uncertain, locus.room)
+    return 0.0 if size == 0.0 else size / most if most > 0.0 else np.inf
 
 
 def _meetings(loci: Sequence[Locus], sigmas: float) -> list[tuple[list[int], Array]]:

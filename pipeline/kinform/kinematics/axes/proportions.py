@@ -22,30 +22,29 @@ from kinform.foundation.algebra.screws import Frame
 from kinform.foundation.algebra.vectors import cross, cross_matrix
 from kinform.foundation.graphs.graph import blocks
 from kinform.kinematics import constants
+from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.loops.joint_graph import JointGraph
 from kinform.kinematics.loops.loop_kinematics import LoopSystem, loop_system
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.arrays import Array
-from kinform.model.kinematics import Joint, Misfit
+from kinform.model.kinematics import Joint
 
 
-def fit_proportions(graph: JointGraph, doubts: Array, size: float, misfit: Misfit) -> tuple[tuple[Joint, ...], Misfit]:
-    """The joints with axes that let redundant loops close along their motions, and the misfit with what was moved.
+def fit_proportions(graph: JointGraph, bounds: MoveBounds, size: float) -> tuple[Joint, ...]:
+    """The joints with axes that let redundant loops close along their motions.
 
-    `doubts` (joints, 2): uncertainty of directions (rad) and places (m); `size` of the assembly (m). Loops for which
-    moves within these uncertainties are not enough stay as they are.
+    `size` of the assembly (m). Loops for which moves within the bounds are not enough stay as they are.
     """
     out = list(graph.joints)
     for block in blocks(len(graph.bodies), graph.edges):
         joints = [out[k] for k in block]
         if len(block) < 2 or any(joint.type == "general" or joint.status == "ambiguous" for joint in joints):
             continue
-        sigma = np.maximum(doubts[list(block)], [constants.FILE_ROUNDING, constants.FILE_ROUNDING * size])
-        loops = _Loops([graph.edges[k] for k in block], joints, sigma, _frame(joints, size))
+        edges, of_block = [graph.edges[k] for k in block], list(block)
+        loops = _Loops(edges, joints, bounds.sigma[of_block], bounds.most[of_block], _frame(joints, size))
         for k, joint in zip(block, _fit_axes(loops), strict=True):
-            misfit = _with_move(misfit, out[k], joint)
             out[k] = joint
-    return tuple(out), misfit
+    return tuple(out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +55,8 @@ class _Loops:
     joints: Sequence[Joint]
     sigma: Array
     """(joints, 2): uncertainty of directions (rad) and places (m)."""
+    most: Array
+    """(joints, 2): by how much they may be moved."""
     frame: Frame
 
     @cached_property
@@ -78,13 +79,13 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
     moves the axes for the gaps along a walk through the poses, and walks again through those of the moved loops.
     """
     joints = loops.joints
-    if sum(joint.freedoms for joint in joints) > constants.MOST_FITTED_RATES or _planar(joints):
+    if sum(joint.freedoms for joint in joints) > constants.MOST_FITTED_RATES:
         return joints
     system = loops.system
     values = np.linalg.svd(system.close(np.zeros((1, system.coordinates))).jacobian[0], compute_uv=False)
     rank = int(np.count_nonzero(values > constants.FITTED_RANK * max(values.max(initial=0.0), 1e-300)))
     freedoms = system.coordinates - rank
-    if rank == 6 * len(system.loops) or not 0 < freedoms <= constants.MOST_FITTED_FREEDOMS:
+    if rank == (3 if _planar(joints) else 6) * len(system.loops) or not 0 < freedoms <= constants.MOST_FITTED_FREEDOMS:
         return joints
     if _glance(system, rank) < constants.GLANCE * constants.CLOSED_GAP:
         return joints
@@ -102,17 +103,17 @@ def _fit_axes(loops: _Loops) -> Sequence[Joint]:
             break
     if walk.gap > max(constants.IMPROVED * before.gap, constants.CLOSED_GAP):
         return joints
-    for joint, twist, (angle, place) in zip(joints, twists, loops.sigma, strict=True):
+    for joint, twist, (angle, place) in zip(joints, twists, loops.most, strict=True):
         at = np.zeros(3) if joint.point is None else joint.point
         turn, shift = np.linalg.norm(twist[:3]), np.linalg.norm(twist[3:] + cross(twist[:3], at))
-        if turn > constants.SIGMAS * angle or shift > constants.SIGMAS * place:
+        if turn > angle or shift > place:
             return joints
     return moved.joints
 
 
 def _planar(joints: Sequence[Joint]) -> bool:
-    """Whether all turns are about exactly parallel axes and all slides along or across them: such loops close
-    exactly by their kind, and are by far the most."""
+    """Whether all turns are about exactly parallel axes and all slides along or across them: three conditions a loop
+    are met by their kind, and the other three decide in the plane."""
     turns = [j.axis for j in joints if j.type in ("revolute", "cylindrical", "planar") and j.axis is not None]
     slides = [j.axis for j in joints if j.type == "prismatic" and j.axis is not None]
     if len(turns) + len(slides) < len(joints) or not turns:
@@ -224,18 +225,3 @@ def _displace(joint: Joint, twist: Array) -> Joint:
     point = None if joint.point is None else X[:3, :3] @ joint.point + X[:3, 3]
     twists = twists_of(joint.type, axis, point, joint.pitch, axis2)
     return replace(joint, axis=axis, point=point, axis2=axis2, twists=twists)
-
-
-def _with_move(misfit: Misfit, old: Joint, new: Joint) -> Misfit:
-    """The misfit with how far one joint was moved."""
-    if old is new:
-        return misfit
-    if old.axis is not None and new.axis is not None:
-        angle = float(np.linalg.norm(cross(old.axis, new.axis)))
-        if angle > misfit.angle:
-            misfit = replace(misfit, angle=angle, angle_at=old.name)
-    if old.point is not None and new.point is not None:
-        distance = float(np.linalg.norm(new.point - old.point))
-        if distance > misfit.distance:
-            misfit = replace(misfit, distance=distance, distance_at=old.name)
-    return misfit

@@ -2,29 +2,29 @@
 uncertainty says so.
 
 Without this a four-bar whose axes differ by the rounding of a mesh file is a rigid structure to the
-rank of its closure, and a wrong trajectory to a simulation. What was moved is the misfit. Axes that
-differ by more than the uncertainty of their fits are the designer's error and stay as they are.
+rank of its closure, and a wrong trajectory to a simulation. What was moved is the misfit (`misfit`). Axes that
+differ by more than the uncertainty of their fits are the designer's error and stay as they are; so do axes
+that are known so badly that their uncertainty would allow what the alignment does not (`bounds`). Whatever
+would have to move by more is left out of what is made to agree, the worst first, and the rest is tried again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, perpendicular
+from kinform.kinematics.axes.bounds import MoveBounds
 from kinform.kinematics.axes.concurrence import Locus, meeting_shifts
-from kinform.kinematics.constants import DIRECTION_DECIMALS, EXACT_AXIS, MET, RCOND, SIGMAS, UNMOVED
+from kinform.kinematics.constants import DIRECTION_DECIMALS, MET, RCOND, SIGMAS
 from kinform.kinematics.pair.joint import twists_of
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.model.contacts import Patch
-from kinform.model.kinematics import Joint, Misfit
+from kinform.model.kinematics import Joint
 
 LINES = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line, not only a direction."""
-CARRIERS = ("cylinder", "cone", "sphere")
-"""Kinds of patches whose fits say best where a joint is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +39,9 @@ class _Axis:
     line: bool
     angle: float
     position: float
+    most_angle: float
+    """rad, and m: the most that it may be moved by in all."""
+    most_distance: float
 
     @property
     def direction(self) -> Array:
@@ -50,6 +53,14 @@ class _Axis:
         """Where the line, made parallel to `axis`, crosses the plane through the origin."""
         foot: Array = self.point - axis * float(axis @ self.point)
         return foot
+
+    def turn(self, direction: Array) -> float:
+        """Sine of the angle by which it would be turned to this direction."""
+        return float(np.linalg.norm(cross(self.direction, direction)))
+
+    def shift(self, place: Array) -> float:
+        """m: by which it would be shifted to a line or centre through this place, once it has its direction."""
+        return float(np.linalg.norm(place - self.point))
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,38 +75,40 @@ class _Line:
     def locus(self, joints: Sequence[Joint]) -> Locus:
         lead = self.members[0]
         bodies = frozenset(str(body) for member in self.members for body in joints[member.joint].bodies)
-        foot = lead.point if self.foot is None else self.foot
-        return Locus(foot, self.direction, lead.angle, lead.position, bodies)
+        return Locus(self.place, self.direction, lead.angle, lead.position, bodies, self.room())
 
-    def shift(self, shift: Array, joints: Sequence[Joint]) -> _Line:
-        return replace(self, foot=self.locus(joints).point + shift) if np.any(shift) else self
+    @property
+    def place(self) -> Array:
+        """(3,) on the line, or the centre."""
+        return self.members[0].point if self.foot is None else self.foot
+
+    def at(self, member: _Axis) -> Array:
+        """(3,) where the joint of a member is on the line."""
+        along = 0.0 if self.direction is None else self.direction * float(self.direction @ (member.point - self.place))
+        return np.asarray(self.place + along)
+
+    def room(self) -> float:
+        """m by which it may still be shifted."""
+        return max(0.0, min(member.most_distance - member.shift(self.at(member)) for member in self.members))
+
+    def shift(self, shift: Array) -> _Line:
+        return replace(self, foot=self.place + shift) if np.any(shift) else self
 
 
-def snap_axes(joints: Sequence[Joint], patches: Sequence[Patch], reach: float) -> tuple[tuple[Joint, ...], Misfit]:
-    """The joints with snapped axes and points, and the misfit. `reach`: size of the assembly (m)."""
-    axes = [a for a in (_axis(k, joint, patches, reach) for k, joint in enumerate(joints)) if a is not None]
+def snap_axes(joints: Sequence[Joint], bounds: MoveBounds) -> tuple[Joint, ...]:
+    """The joints with snapped axes and points, none moved by more than its bounds."""
+    axes = [a for a in (_axis(k, joint, bounds) for k, joint in enumerate(joints)) if a is not None]
     lines = _lines([a for a in axes if a.axis is not None])
     lines += [_Line((a,), None, None) for a in axes if a.axis is None]
     placed = [k for k, line in enumerate(lines) if line.direction is None or line.members[0].line]
     shifts = meeting_shifts([lines[k].locus(joints) for k in placed], SIGMAS)
     for k, shift in zip(placed, shifts, strict=True):
-        lines[k] = lines[k].shift(shift, joints)
-    out, misfit = list(joints), Misfit()
+        lines[k] = lines[k].shift(shift)
+    out = list(joints)
     for line in lines:
         for member in line.members:
-            out[member.joint], misfit = _on_line(out[member.joint], member, line, misfit)
-    return tuple(out), misfit
-
-
-def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
-    """(joints, 2): of the direction (rad) and of the place (m) of each joint, by its best patch; 0 where it has none.
-    Patches on facets of no known surface have no say."""
-    out = np.zeros((len(joints), 2))
-    for k, joint in enumerate(joints):
-        mating = [patches[p] for p in joint.patches if not patches[p].one_sided]
-        carriers = [p for p in mating if p.kind in CARRIERS] or mating
-        out[k] = [min((p.uncertainty[n] for p in carriers), default=0.0) for n in (0, 1)]
-    return out
+            out[member.joint] = _on_line(out[member.joint], member, line)
+    return tuple(out)
 
 
 def _lines(axes: Sequence[_Axis]) -> list[_Line]:
@@ -103,7 +116,7 @@ def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     bundles = _bundles(sorted(axes, key=lambda a: (a.angle, a.name)))
     means = [_mean_direction(bundle) for bundle in bundles]
     lines = []
-    for bundle, direction in zip(bundles, _square(means, [b[0].angle for b in bundles]), strict=True):
+    for bundle, direction in zip(bundles, _square(bundles, means), strict=True):
         for group in _coaxial(bundle, direction):
             foot = None
             if len(group) > 1:
@@ -113,55 +126,87 @@ def _lines(axes: Sequence[_Axis]) -> list[_Line]:
     return lines
 
 
-def _axis(index: int, joint: Joint, patches: Sequence[Patch], reach: float) -> _Axis | None:
+def _axis(index: int, joint: Joint, bounds: MoveBounds) -> _Axis | None:
     if joint.type in ("general", "universal") or (joint.axis is None and joint.type != "spherical"):
         return None
-    touching = [patches[k] for k in joint.patches]
-    directed = [p for p in touching if np.any(p.axis)] if joint.axis is not None else []
-    carriers = [p for p in touching if p.kind in CARRIERS] or directed
-    angle = min((p.uncertainty[0] for p in carriers if np.any(p.axis)), default=0.0)
-    position = min((p.uncertainty[1] for p in carriers), default=0.0)
+    (angle, position), (most_angle, most_distance) = bounds.sigma[index], bounds.most[index]
     return _Axis(
         joint=index,
         name=joint.name,
         axis=joint.axis,
         point=np.zeros(3) if joint.point is None else joint.point,
         line=joint.type in LINES,
-        angle=max(angle, EXACT_AXIS) if joint.axis is not None else 0.0,
-        position=max(position, EXACT_AXIS * reach),
+        angle=float(angle),
+        position=float(position),
+        most_angle=float(most_angle),
+        most_distance=float(most_distance),
     )
 
 
 def _bundles(axes: Sequence[_Axis]) -> list[list[_Axis]]:
-    """Axes of one direction."""
+    """Axes of one direction, none farther from their mean than it may be turned."""
     directions = np.array([a.direction for a in axes]).reshape(-1, 3)
-    angles = np.array([a.angle for a in axes])
+    most = np.array([a.most_angle for a in axes])
 
     def parallel(leaders: Ints, k: int) -> Flags:
         sine = np.linalg.norm(cross(directions[leaders], directions[k]), axis=1)
-        return np.asarray(sine <= SIGMAS * (angles[leaders] + angles[k]))
+        return np.asarray(sine <= most[leaders] + most[k])
 
-    return _cluster(axes, parallel)
+    def excess(bundle: Sequence[_Axis]) -> list[float]:
+        mean = _mean_direction(bundle)
+        return [a.turn(mean) / a.most_angle for a in bundle]
+
+    return _cluster(axes, parallel, excess)
 
 
 def _coaxial(bundle: Sequence[_Axis], direction: Array) -> list[list[_Axis]]:
-    """Of axes of one direction those on one line."""
+    """Of axes of one direction those on one line, none farther from their mean than it may be shifted."""
     feet = np.array([a.foot(direction) for a in bundle])
-    positions = np.array([a.position for a in bundle])
+    most = np.array([a.most_distance for a in bundle])
     lines = np.array([a.line for a in bundle])
 
     def coaxial(leaders: Ints, k: int) -> Flags:
         apart = np.linalg.norm(feet[leaders] - feet[k], axis=1)
-        return np.asarray(lines[leaders] & lines[k] & (apart <= SIGMAS * (positions[leaders] + positions[k])))
+        return np.asarray(lines[leaders] & lines[k] & (apart <= most[leaders] + most[k]))
 
-    return _cluster(bundle, coaxial)
+    def excess(group: Sequence[_Axis]) -> list[float]:
+        mean = _mean_foot(group, direction)
+        return [float(np.linalg.norm(a.foot(direction) - mean)) / a.most_distance for a in group]
+
+    return _cluster(bundle, coaxial, excess)
 
 
-def _cluster(members: Sequence[_Axis], agree: Callable[[Ints, int], Flags]) -> list[list[_Axis]]:
-    """Greedy clusters: each member joins the first cluster whose leader it agrees with."""
+def _cluster(
+    members: Sequence[_Axis],
+    agree: Callable[[Ints, int], Flags],
+    excess: Callable[[Sequence[_Axis]], list[float]],
+) -> list[list[_Axis]]:
+    """Greedy clusters: each member joins the first cluster whose leader it agrees with. `excess` says by what share of
+    its bound each of a cluster would be moved: the worst beyond it leaves, and starts anew with what else has left."""
+    clusters: list[list[_Axis]] = []
+    indices = {id(member): k for k, member in enumerate(members)}
+    rest = list(members)
+    while rest:
+        left: list[_Axis] = []
+        for cluster in _greedy(rest, indices, agree):
+            while len(cluster) > 1:
+                shares = excess(cluster)
+                worst = int(np.argmax(shares))
+                if shares[worst] <= 1.0:
+                    break
+                left.append(cluster.pop(worst))
+            clusters.append(cluster)
+        rest = sorted(left, key=lambda member: indices[id(member)])
+    return clusters
+
+
+def _greedy(
+    members: Sequence[_Axis], indices: Mapping[int, int], agree: Callable[[Ints, int], Flags]
+) -> list[list[_Axis]]:
     clusters: list[list[_Axis]] = []
     leaders = np.zeros(len(members), dtype=np.int64)
-    for k, member in enumerate(members):
+    for member in members:
+        k = indices[id(member)]
         good = agree(leaders[: len(clusters)], k)
         if good.any():
             clusters[int(np.argmax(good))].append(member)
@@ -185,21 +230,41 @@ def _mean_foot(group: Sequence[_Axis], direction: Array) -> Array:
     return np.asarray(np.average([a.foot(direction) for a in group], axis=0, weights=weights))
 
 
-def _square(directions: Sequence[Array], angles: Sequence[float]) -> list[Array]:
-    """The directions with those exactly perpendicular that are so within their uncertainties (rad).
+def _square(bundles: Sequence[Sequence[_Axis]], directions: Sequence[Array]) -> list[Array]:
+    """The directions of bundles with those exactly perpendicular that are so within their uncertainties.
 
-    The least turns, each weighed by its uncertainty, that satisfy all these conditions to first order;
-    a second round removes what is of second order.
+    Pairs for which an axis would be turned by more than it may, the mean of its bundle included, are left out: all
+    pairs of the worst bundle, and then the rest is tried again.
     """
     out = [np.asarray(d) for d in directions]
     if len(out) < 2:
         return out
+    sigma = np.array([bundle[0].angle for bundle in bundles])
+    most = np.array([bundle[0].most_angle for bundle in bundles])
     cosine = np.abs(np.array(out) @ np.array(out).T)
-    sigma = np.asarray(angles)
-    first, second = np.nonzero(np.triu(cosine <= SIGMAS * (sigma[:, None] + sigma[None]), 1))
+    first, second = np.nonzero(np.triu(cosine <= most[:, None] + most[None], 1))
+    while len(first):
+        squared = _squared(out, sigma, first, second)
+        excess = {
+            k: max(a.turn(squared[k]) / a.most_angle for a in bundles[k])
+            for k in sorted({*first.tolist(), *second.tolist()})
+        }
+        worst = max(excess, key=lambda k: excess[k])
+        if excess[worst] <= 1.0:
+            return squared
+        keep = (first != worst) & (second != worst)
+        first, second = first[keep], second[keep]
+    return out
+
+
+def _squared(directions: Sequence[Array], sigma: Array, first: Ints, second: Ints) -> list[Array]:
+    """The directions with these pairs of them made perpendicular.
+
+    The least turns, each weighed by its uncertainty (rad), that satisfy all these conditions to first order;
+    a second round removes what is of second order.
+    """
+    out = list(directions)
     for _ in range(2):
-        if not len(first):
-            break
         turns = [np.array(perpendicular(d)) for d in out]
         matrix = np.zeros((len(first), 2 * len(out)))
         for row, (i, j) in enumerate(zip(first, second, strict=True)):
@@ -216,18 +281,8 @@ def _square(directions: Sequence[Array], angles: Sequence[float]) -> list[Array]
     return out
 
 
-def _on_line(joint: Joint, old: _Axis, line: _Line, misfit: Misfit) -> tuple[Joint, Misfit]:
-    """The joint on its snapped line, and the misfit with what that moved."""
-    direction, point = line.direction, joint.point
-    if direction is not None:
-        angle = float(np.linalg.norm(cross(old.direction, direction)))
-        if angle > max(misfit.angle, UNMOVED):
-            misfit = replace(misfit, angle=angle, angle_at=old.name)
-    if line.foot is not None:
-        along = 0.0 if direction is None else direction * float(direction @ (old.point - line.foot))
-        point = line.foot + along
-        distance = float(np.linalg.norm(point - old.point))
-        if distance > max(misfit.distance, UNMOVED * float(np.abs(old.point).max())):
-            misfit = replace(misfit, distance=distance, distance_at=old.name)
-    twists = twists_of(joint.type, direction, point, joint.pitch, joint.axis2)
-    return replace(joint, axis=direction, point=point, twists=twists), misfit
+def _on_line(joint: Joint, member: _Axis, line: _Line) -> Joint:
+    """The joint on its snapped line."""
+    point = joint.point if line.foot is None else line.at(member)
+    twists = twists_of(joint.type, line.direction, point, joint.pitch, joint.axis2)
+    return replace(joint, axis=line.direction, point=point, twists=twists)

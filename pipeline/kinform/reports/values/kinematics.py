@@ -74,7 +74,7 @@ def mobility_values(design: Design) -> dict[str, Any]:
             fields(one, "kind", "text", "rows", "joints", "patches", "directions", "wrenches")
             for one in mobility.redundancies
         ],
-        "misfit": asdict(kinematics.misfit),
+        "misfit": asdict(kinematics.misfit) | {"moves": [asdict(move) for move in kinematics.moves]},
         "misaligned": [
             {"joint": joint, "angle": angle, "offset": offset} for joint, angle, offset in kinematics.misaligned
         ],

@@ -34,6 +34,7 @@ LAYOUT = Layout(
     ),
     Texts("separations_reason"),
     Table("misfit"),
+    Table("moves"),
     Table("misaligned"),
     Table("couplings", Table("meshings", field="meshing", owner="coupling")),
 )

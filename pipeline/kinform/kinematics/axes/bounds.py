@@ -1,0 +1,78 @@
+"""How well each joint's axis is known, and by how much it may be moved to agree with others.
+
+Two bounds hold, both. What is beyond the uncertainty of an axis is the designer's error, not the fit's. And what is
+within it but beyond the alignment is not known to be meant: a short journal of a noisy mesh has an axis that is
+uncertain by degrees, and turning it into line with its neighbours would be a guess. A tolerance of directions says of
+places what it says at the joint's own ends: a line that is turned by the alignment about the middle of the contact
+misses its old place by the alignment times the contact's extent, and no more is forgiven to a shift. So no absolute
+length decides: the bound grows with the joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.kinematics.constants import EXACT_AXIS, SIGMAS
+from kinform.model.arrays import Array
+from kinform.model.contacts import Patch
+from kinform.model.kinematics import Joint, Move
+
+CARRIERS = ("cylinder", "cone", "sphere")
+"""Kinds of patches whose fits say best where a joint is."""
+
+
+@dataclass(frozen=True, eq=False)
+class MoveBounds:
+    """Of each joint, for directions (rad) and places (m)."""
+
+    sigma: Array
+    """(joints, 2) standard uncertainty."""
+    most: Array
+    """(joints, 2) the most that it may be moved by."""
+
+    def after(self, moves: Sequence[Move], joints: Sequence[Joint]) -> MoveBounds:
+        """What is left of the bounds of these joints after moves."""
+        made = {move.joint: (move.angle, move.distance) for move in moves}
+        used = np.array([made.get(joint.name, (0.0, 0.0)) for joint in joints]).reshape(-1, 2)
+        return replace(self, most=np.maximum(self.most - used, 0.0))
+
+
+def move_bounds(joints: Sequence[Joint], patches: Sequence[Patch], alignment: float, reach: float) -> MoveBounds:
+    """The bounds of joints; `alignment` (rad) of the tolerances, `reach`: size of the assembly (m)."""
+    sigma, most = np.zeros((len(joints), 2)), np.zeros((len(joints), 2))
+    for k, joint in enumerate(joints):
+        touching = [patches[p] for p in joint.patches]
+        sigma[k] = _uncertainty(joint, touching, reach)
+        most[k] = np.minimum(SIGMAS * sigma[k], [alignment, alignment * _extent(touching, reach)])
+    return MoveBounds(sigma, most)
+
+
+def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:
+    """(joints, 2): of the direction (rad) and of the place (m) of each joint, by its best patch; 0 where it has none.
+    Patches on facets of no known surface have no say."""
+    out = np.zeros((len(joints), 2))
+    for k, joint in enumerate(joints):
+        mating = [patches[p] for p in joint.patches if not patches[p].one_sided]
+        carriers = [p for p in mating if p.kind in CARRIERS] or mating
+        out[k] = [min((p.uncertainty[n] for p in carriers), default=0.0) for n in (0, 1)]
+    return out
+
+
+def _uncertainty(joint: Joint, touching: Sequence[Patch], reach: float) -> tuple[float, float]:
+    """By the best patch of those that say best where a joint is; never better than doubles know."""
+    directed = [p for p in touching if np.any(p.axis)] if joint.axis is not None else []
+    carriers = [p for p in touching if p.kind in CARRIERS] or directed
+    angle = min((p.uncertainty[0] for p in carriers if np.any(p.axis)), default=0.0)
+    position = min((p.uncertainty[1] for p in carriers), default=0.0)
+    return max(angle, EXACT_AXIS), max(position, EXACT_AXIS * reach)
+
+
+def _extent(touching: Sequence[Patch], reach: float) -> float:
+    """m: diagonal of the box of the contact; the assembly's size where a joint was stated."""
+    points = [p.points for p in touching if len(p.points)]
+    if not points:
+        return reach
+    return float(np.linalg.norm(np.ptp(np.concatenate(points), axis=0)))
