@@ -7,6 +7,8 @@ was not measured. "Relative" is to what the sentence names, else to 1.
 
 from __future__ import annotations
 
+import math
+
 # --- more than one room ---------------------------------------------------------------------------------------------
 
 SIGMAS = 3.0
@@ -154,6 +156,47 @@ THREAD_LEAN = 5e-3
 THREAD_FIT = 0.75
 """Share of the squared speeds that a screw may leave where facets lean like a thread."""
 
+# --- pair/uncertainty ------------------------------------------------------------------------------------------------
+
+SAYS_DIRECTION = 0.1
+"""Sine within which an axis is along, or a plane across, the joint's axis, and has a say about its direction."""
+VAGUE_AXIS = math.radians(0.5)
+"""rad: standard uncertainty of its direction above which an axis is too badly known for a joint."""
+VAGUE_PLACE = 0.03
+"""The same of its place, as a share of its radius: what a clearance may be."""
+
+# --- pair/scraps -----------------------------------------------------------------------------------------------------
+
+SLIVER_ARC = math.radians(30.0)
+"""rad: rounds that cover less about their axis, ..."""
+SLIVER_SHARE = 0.01
+"""... with less than this share of the contact area, decide nothing. So do planes that only facets rest on."""
+SLIVER_ARC_ONE_SIDED = math.radians(90.0)
+"""rad: the same, whatever the share, where only facets of no known surface run on the round: flanks of teeth."""
+DIP = 0.1
+"""Share of the contact tolerance from which on a flat that overlaps dips into the other part, ..."""
+DIP_SHARE = 0.05
+"""... and share of the area below which it then decides nothing, ..."""
+FACED = -0.99
+"""... unless another such flat faces it: cosine of their normals."""
+
+# --- pair/stops ------------------------------------------------------------------------------------------------------
+
+FACING_ONE_WAY = 1e-4
+"""1 − cosine of normals of faces that face one way."""
+SLIDES_FROM = 0.5
+"""Length of a guide over its width from which on it slides and does not jam."""
+ONE_SECTION = 0.05
+"""Relative difference of radii that are one cross-section."""
+INSIDE_GUIDE = 1.05
+"""Faces that reach no further than this, in half widths of the guide, are inside of its cross-section."""
+ROUND_FROM = 0.3
+"""Points of a face beyond this share of its reach show whether it goes round the axis."""
+BESIDE_AXIS = math.radians(200.0)
+"""rad without any of a face about the axis, beyond which it lies beside it."""
+SHORT_FLANK = 0.5
+"""Length of a flank over that of the faces beside it below which it guides nothing."""
+
 # --- pair/joint -----------------------------------------------------------------------------------------------------
 
 LEAST_MISALIGNMENT = 1e-4
@@ -180,6 +223,11 @@ BALL_DIRECTIONS = 96
 
 SUGGESTED_AXIS = 1e-3
 """rad by which a suggested axis may differ from the normal of a planar joint."""
+
+# --- bodies/readings ------------------------------------------------------------------------------------------------
+
+ON_ONE_LINE = 1e-3
+"""Sine between axes, and share of the assembly's size between lines, of contacts of a pin that are about one line."""
 
 # --- axes/snapping --------------------------------------------------------------------------------------------------
 

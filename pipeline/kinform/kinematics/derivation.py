@@ -18,6 +18,7 @@ from kinform.kinematics.bodies.classification import Pairs, decide_all
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import fasten, label_inferred, turn_about_suggested_axes
 from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.bodies.readings import choose_readings
 from kinform.kinematics.bodies.stated_joints import intended_joints, stated_joints
 from kinform.kinematics.constants import MOST_BASIS_NUMBERS
 from kinform.kinematics.loops.assembly_closure import Closure, body_twists
@@ -87,6 +88,7 @@ def derive(
     if fasten(assembly, contacts, merger):
         decided = decide_all(pairs, merger)
     bodies = merger.bodies()
+    decided = choose_readings(assembly, _body_of_part(bodies), decided, size)
     stated = stated_joints(assembly, _body_of_part(bodies))
     by_contact = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated

@@ -92,6 +92,23 @@ class Release:
 
 
 @dataclass(frozen=True, eq=False)
+class Reading:
+    """Another joint that the contact of two bodies admits: what stands against a motion may end it or guide it."""
+
+    type: str
+    axis: Direction | None
+    """(3,) unit, canonical sign."""
+    point: Place | None
+    """(3,) m."""
+    pitch: Lead | None
+    freedoms: int
+    cause: str
+    """What the faces are that it leaves out: stop, sliver, flank; empty where it leaves out none."""
+    words: str
+    """When it holds: "cylindrical, if 314 mm² between base and rod are an end stop"."""
+
+
+@dataclass(frozen=True, eq=False)
 class Joint:
     """What two bodies may do relative to each other; values are of the second about `axis`
     relative to the first."""
@@ -132,6 +149,12 @@ class Joint:
     """Why it is not known whether they are held."""
     motion: str = ""
     """In words what the second body may do: "turns about …, slides along …"; of joints that contact decided."""
+    axis_uncertainty: Radians = 0.0
+    """Standard uncertainty of the direction of the axis, by the fits of what decides it; 0 where it has none."""
+    point_uncertainty: Metres = 0.0
+    """Standard uncertainty of the place of the axis, or of the centre; 0 where it has none."""
+    readings: tuple[Reading, ...] = ()
+    """What else the contact may mean: of an ambiguous joint the other answers, of an inferred one those not chosen."""
 
 
 @dataclass(frozen=True, eq=False)

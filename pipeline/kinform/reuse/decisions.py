@@ -11,14 +11,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from kinform.kinematics.pair.question import Answer
-from kinform.model.kinematics import Blocker, Joint, Release
+from kinform.model.kinematics import Blocker, Joint, Reading, Release
 from kinform.reuse import fingerprints
 from kinform.reuse.digest import digest
 from kinform.reuse.ledger import Ledger
 from kinform.reuse.packing import pack, seal, unpack
 from kinform.version import __version__
 
-CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, Joint, Release)}
+CLASSES: dict[str, type] = {cls.__name__: cls for cls in (Answer, Blocker, Joint, Reading, Release)}
 
 
 class Decisions:

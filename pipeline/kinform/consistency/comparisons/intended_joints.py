@@ -103,7 +103,7 @@ def compare_joint(
         return Comparison(intended, bodies, "one body", reason, type="fixed")
     pair = {first.name, second.name}
     direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
-    if direct is not None and "function" in direct.evidence:
+    if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
     motion = motion_through_helpers(kinematics, first.name, second.name, named)

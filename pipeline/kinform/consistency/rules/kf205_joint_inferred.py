@@ -14,14 +14,14 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import listed, quoted
 
-STATED = frozenset({"assumption", "function"})
-"""Evidence that somebody stated: reported by KF207, or the function itself."""
+STATED = (("assumption",), ("function",))
+"""All the evidence of joints that somebody stated: reported by KF207, or the function itself."""
 
 
 def check(context: Context) -> Findings:
     """Joints whose status is inferred, except from statements."""
     for joint in context.kinematics.joints:
-        if joint.status == "inferred" and not STATED.intersection(joint.evidence):
+        if joint.status == "inferred" and joint.evidence not in STATED:
             yield RULE.finding(
                 [joint.name],
                 f"the {joint.type} joint of {quoted(joint.bodies)} is inferred from {listed(joint.evidence)}: "

@@ -74,7 +74,9 @@ def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]
             answer = known_answers[key]
             if answer.joint is None:
                 continue
-            out[pair] = answer, joint_between(answer.joint, pair, [index for index, _, _ in members])
+            places = [index for index, _, _ in members]
+            other = None if answer.other is None else joint_between(answer.other, pair, places)
+            out[pair] = replace(answer, other=other), joint_between(answer.joint, pair, places)
             parts = members[0][1].parts
             if frozenset(merger.root(p) for p in parts) in stated:
                 continue

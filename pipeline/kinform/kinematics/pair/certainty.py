@@ -2,14 +2,15 @@
 
 A doubtful answer is `ambiguous`, never silently one or the other. The doubts: a singular value between free
 and held; facets of no known surface, lines and points that alone hold something (where they touch next is
-not known); axes that nearly agree, which a designer means as one; and touches too small or too far apart
-to be meant.
+not known); scraps of surfaces that alone do (`scraps`); axes that nearly agree, which a designer means as one; touches
+too small or too far apart to be meant; an axis that the fits hardly know (`uncertainty`); and faces that may be end
+stops (`stops`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +19,10 @@ from kinform.foundation.words import counted
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
-from kinform.kinematics.pair.lower_pairs import name_space
+from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.pair.scraps import scraps
+from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, stop_reading
+from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.tolerances import Tolerances
@@ -29,25 +33,46 @@ HIGHER = (*TOUCHING, "freeform", "other")
 """Kinds of patches whose normals turn, or whose place moves, as soon as the bodies do."""
 
 
+@dataclass(frozen=True, eq=False)
+class Certainty:
+    """How sure an answer is, why, and what else it may be."""
+
+    status: str
+    reason: str
+    other: OtherReading | None = None
+
+
 def certainty(
-    evidence: Evidence, twists: Array, basis: Array, values: Array, tolerances: Tolerances
-) -> tuple[str, str]:
-    """Status and reason of the freedoms `basis` (6, k) with singular values (6,), found among `twists` (6, n)."""
+    evidence: Evidence, twists: Array, preserved: Flags, basis: Array, values: Array, tolerances: Tolerances
+) -> Certainty:
+    """How sure the freedoms `basis` (6, k) are, with singular values (6,), found among `twists` (6, n) of which
+    `preserved` (items, n) says what each patch preserves."""
     count = basis.shape[1]
     if count < 6 and values[count] < tolerances.held:
-        return "ambiguous", (
+        return Certainty(
+            "ambiguous",
             f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
-            f"and held (> {tolerances.held:g})"
+            f"and held (> {tolerances.held:g})",
         )
-    touching = momentary(evidence, basis) or (
-        name_space(basis, evidence.frame).type == "general" and meets([item.patch for item in evidence.items])
-    )
+    form = name_space(basis, evidence.frame)
+    touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
     doubt = "" if touching else _loose_doubt(evidence, twists, count, tolerances) or _stray_doubt(evidence)
     doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances) or _thread_doubt(evidence, basis)
+    doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
-        return "ambiguous", doubt
+        return Certainty("ambiguous", doubt)
+    other = (
+        _teeth_reading(evidence, twists, preserved, basis, tolerances)
+        if touching
+        else _scrap_reading(evidence, twists, preserved, basis, tolerances)
+    )
+    other = other or stop_reading(evidence, twists, preserved, basis, tolerances)
+    if other is not None:
+        faces = faces_in_words(evidence, other.out)
+        words = f"{form.type} if {faces} holds; {other.form.type} if it is {ROLES[other.role]}"
+        return Certainty("ambiguous", words, other)
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
-    return "determined", f"the contact leaves {counted(count, 'freedom')}{weakest}"
+    return Certainty("determined", f"the contact leaves {counted(count, 'freedom')}{weakest}")
 
 
 def meets(patches: Sequence[Patch]) -> bool:
@@ -105,6 +130,42 @@ def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tole
         return ""
     kinds = sorted({item.patch.kind for item in evidence.chosen(~firm)})
     return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
+
+
+def _scrap_reading(
+    evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
+) -> OtherReading | None:
+    """What the patches leave free without the scraps among them, where that is more than `basis` (6, k)."""
+    slight = scraps(evidence, tolerances.alignment)
+    if not slight.any():
+        return None
+    slight |= [item.patch.kind in HIGHER for item in evidence.items]
+    role = "sliver"
+    out = tuple(int(k) for k in np.flatnonzero(slight))
+    if slight.all():
+        return OtherReading(JointForm("general"), np.eye(6), out, role)
+    firm, _ = freedoms(evidence, twists, preserved, ~slight, tolerances)
+    if firm.shape[1] <= basis.shape[1]:
+        return None
+    return OtherReading(name_space(firm, evidence.frame), firm, out, role)
+
+
+def _teeth_reading(
+    evidence: Evidence, twists: Array, preserved: Flags, basis: Array, tolerances: Tolerances
+) -> OtherReading | None:
+    """What faces leave free without the points and lines of contact beside them, where those hold all but one of it.
+
+    Teeth and cams drive bodies that something else bears. Where the bodies bear on each other by faces, as planes do,
+    and the flanks hold nearly all of what these leave, one of the two is drawn where it is not.
+    """
+    flanks = np.array([item.patch.kind in TOUCHING for item in evidence.items])
+    if basis.shape[1] > 1 or flanks.all() or not flanks.any():
+        return None
+    firm, _ = freedoms(evidence, twists, preserved, ~flanks, tolerances)
+    if firm.shape[1] <= basis.shape[1]:
+        return None
+    out = tuple(int(k) for k in np.flatnonzero(flanks))
+    return OtherReading(name_space(firm, evidence.frame), firm, out, "flank")
 
 
 def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:

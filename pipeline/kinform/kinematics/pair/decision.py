@@ -13,11 +13,12 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics import constants
-from kinform.kinematics.pair.certainty import certainty, momentary
+from kinform.kinematics.pair.certainty import Certainty, certainty, momentary
 from kinform.kinematics.pair.evidence import COAXIAL, GUIDES, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
 from kinform.kinematics.pair.hypotheses import Motion, candidate_motions
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
 from kinform.model.tolerances import Tolerances
 
@@ -39,6 +40,10 @@ class Decision:
     """Items left out, each with the motion that it forbids."""
     singular_values: Array
     """(6,) ascending."""
+    other: Decision | None = None
+    """What else the contact may mean, of an ambiguous answer."""
+    role: str = ""
+    """Of such another reading: what the patches are that it leaves out (`stops.ROLES`)."""
 
 
 def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
@@ -54,16 +59,40 @@ def decide(evidence: Evidence, tolerances: Tolerances) -> Decision:
         keep, motion = chosen
         basis, loosened = freedoms(evidence, twists, preserved, keep, tolerances)
     if chosen is None or basis.shape[1] <= strict.shape[1]:
-        status, reason = certainty(evidence, twists, strict, values, tolerances)
+        sure = certainty(evidence, twists, preserved, strict, values, tolerances)
         kept = tuple(range(len(evidence.items)))
         form = JointForm("general") if momentary(evidence, strict) else name_space(strict, evidence.frame)
-        return Decision(form, strict, strict, status, reason, kept, (), values)
+        other = None if sure.other is None else _other(evidence, sure, candidates, preserved, values)
+        return Decision(form, strict, strict, sure.status, sure.reason, kept, (), values, other)
     out = tuple((int(k), motion) for k in np.flatnonzero(~keep))
     area = evidence.areas
     share = float(area[~keep].sum() / area.sum())
     reason = f"{len(out)} of {len(area)} patches ({100 * share:.1f} % of the area) left out: they block it"
     kept = tuple(int(k) for k in np.flatnonzero(keep))
-    return Decision(name_space(basis, evidence.frame), basis, strict, "blocked", reason, kept, out, loosened)
+    form = name_space(basis, evidence.frame)
+    doubt = uncertainty_doubt(evidence.chosen(keep), form, evidence.frame.length)
+    status, reason = ("ambiguous", f"{doubt}; {reason}") if doubt else ("blocked", reason)
+    return Decision(form, basis, strict, status, reason, kept, out, loosened)
+
+
+def _other(
+    evidence: Evidence, sure: Certainty, candidates: tuple[Motion, ...], preserved: Flags, values: Array
+) -> Decision:
+    """The other reading of a doubtful answer, as a decision of its own: what it leaves out forbids a motion."""
+    other = sure.other
+    assert other is not None
+    keep = np.ones(len(evidence.items), dtype=bool)
+    keep[list(other.out)] = False
+    free = preserved[keep].all(axis=0)
+    # each forbids a motion that the kept patches leave; where it does so only together with others, any that it forbids
+    out = []
+    for k in other.out:
+        forbids = free & ~preserved[k]
+        out.append((k, candidates[int(np.argmax(forbids if forbids.any() else ~preserved[k]))]))
+    kept = tuple(int(k) for k in np.flatnonzero(keep))
+    return Decision(
+        other.form, other.basis, other.basis, "inferred", sure.reason, kept, tuple(out), values, role=other.role
+    )
 
 
 def _consensus(

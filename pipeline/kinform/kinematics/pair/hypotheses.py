@@ -52,7 +52,7 @@ class Motion:
 
 def candidate_motions(evidence: Evidence, alignment: float) -> tuple[Motion, ...]:
     """Candidate motions in a fixed order, best supported first."""
-    lines = _axes(evidence, alignment)
+    lines = coaxial_lines(evidence, alignment)
     centres = _centres(evidence)
     normals = _directions([(i.patch.axis, i.area) for i in evidence.items if i.patch.kind == "plane"], alignment)
     directions = _slides(evidence, lines, normals, alignment)
@@ -100,8 +100,8 @@ def _pitches(evidence: Evidence, line: Line) -> list[float]:
     return [pitch for pitch, _ in pitches]
 
 
-def _axes(evidence: Evidence, alignment: float) -> list[Line]:
-    """Clusters of coaxial patches, each with the line fitted to its members."""
+def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
+    """Clusters of coaxial patches, each with the line fitted to its members, the best supported first."""
     items = evidence.items
     coaxial = sorted((k for k, i in enumerate(items) if i.patch.kind in COAXIAL), key=lambda k: (-items[k].area, k))
     clusters = _merge(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinform.foundation.algebra.screws import twist_at_origin
@@ -11,9 +13,11 @@ from kinform.kinematics.pair.decision import Decision
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence
 from kinform.kinematics.pair.hypotheses import motion_words
 from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.pair.stops import ROLES
+from kinform.kinematics.pair.uncertainty import joint_uncertainty
 from kinform.kinematics.wording import motions_in_words
 from kinform.model.arrays import Array
-from kinform.model.kinematics import FREEDOMS, Blocker, Joint
+from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading
 from kinform.model.names import BodyName, JointName
 
 
@@ -73,7 +77,8 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         )
         for item, motion in blocking
     )
-    return Joint(
+    direction, place = joint_uncertainty(kept, form)
+    joint = Joint(
         name=JointName(f"{bodies[0]}~{bodies[1]}"),
         bodies=bodies,
         type=form.type,
@@ -90,7 +95,22 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         blockers=blockers,
         singular_values=decision.singular_values,
         motion=motions_in_words(decision.basis, frame),
+        axis_uncertainty=direction,
+        point_uncertainty=place,
     )
+    if decision.other is None:
+        return joint
+    return replace(
+        joint, readings=(reading_of(joint_from_decision(bodies, evidence, decision.other), decision.other.role),)
+    )
+
+
+def reading_of(joint: Joint, cause: str) -> Reading:
+    """What a joint says, as one reading of the contact; `cause` names what its blockers are then."""
+    area = 1e6 * sum(blocker.area for blocker in joint.blockers)
+    parts = " and ".join(max(joint.blockers, key=lambda b: (b.area, b.parts)).parts) if joint.blockers else ""
+    words = f"{joint.type}, if {area:.3g} mm² between {parts} are {ROLES[cause]}" if parts else joint.type
+    return Reading(joint.type, joint.axis, joint.point, joint.pitch, joint.freedoms, cause, words)
 
 
 def stated_joint(bodies: tuple[BodyName, BodyName], form: JointForm, evidence: str, reason: str) -> Joint:

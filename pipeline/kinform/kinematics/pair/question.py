@@ -48,6 +48,8 @@ class Answer:
     """rad: misalignment beyond clearance and uncertainty."""
     offset: float = 0.0
     """m."""
+    other: Joint | None = None
+    """The other reading of an ambiguous joint (`Joint.readings`), as a joint."""
 
 
 def bare_patches(patches: Sequence[Patch]) -> tuple[Patch, ...]:
@@ -65,7 +67,8 @@ def answer_pair(question: Question) -> Answer:
     decision = decide(evidence, question.tolerances)
     joint = joint_from_decision((BodyName(""), BodyName("")), evidence, decision)
     strict = twist_at_origin(decision.strict, evidence.frame).T if decision.status == "blocked" else None
-    return Answer(extremes, joint, strict, *misalignment(evidence, decision))
+    other = None if decision.other is None else joint_from_decision(joint.bodies, evidence, decision.other)
+    return Answer(extremes, joint, strict, *misalignment(evidence, decision), other)
 
 
 def joint_between(joint: Joint, pair: tuple[BodyName, BodyName], indices: Sequence[int]) -> Joint:

@@ -160,7 +160,7 @@ def pair_cones(rows: ContactRows, joints: Sequence[Joint]) -> list[Cone | None]:
 
 def is_stated(joint: Joint) -> bool:
     """Is the joint what somebody stated, or what rims suggested, rather than what contact leaves?"""
-    return not joint.patches or bool({"rim", "bolt circle", "assumption", "function"}.intersection(joint.evidence))
+    return not joint.patches or bool({"rim", "bolt circle", "assumption"}.intersection(joint.evidence))
 
 
 def _frames(points: Array, counts: Ints) -> list[Frame]:

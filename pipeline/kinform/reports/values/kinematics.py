@@ -47,6 +47,10 @@ def one_joint(joint: Joint, computed: bool) -> dict[str, Any]:
         "range": limits if computed else None,
         "patches": joint.patches,
         "blocked_by": [fields(blocker, *of_blocker) for blocker in joint.blockers],
+        "readings": [
+            fields(one, "type", "axis", "point", "pitch", "freedoms", "cause", "words") for one in joint.readings
+        ],
+        **fields(joint, "axis_uncertainty", "point_uncertainty"),
         "singular_values": joint.singular_values,
         **fields(joint, "held", "held_reason", "extremes"),
         "releases": [release(way) for way in joint.releases],

@@ -21,6 +21,8 @@ LAYOUT = Layout(
         Ragged("patches"),
         Table("blockers", owner="joint"),
         Row("held", "held", "extremes", "held_reason"),
+        Row("uncertainty", "axis_uncertainty", "point_uncertainty"),
+        Table("readings", owner="joint"),
         Table("releases", owner="joint", first=("kind", "direction", "point", "extreme", "words")),
     ),
     Table(

@@ -1,0 +1,57 @@
+"""Patches too slight to decide: slivers of rounds, and shallow overlaps of small flats.
+
+A tooth's flank that happens to lie near another, a facet or two of a fillet, a corner that dips into a face: each has
+normals and an area, and would hold something if it were believed. They may confirm a joint that the rest of the contact
+gives; where the answer hangs on them it is ambiguous (`certainty`). How much arc and area a surface needs is in
+`kinematics.constants`, with the robots that chose it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import perpendicular
+from kinform.kinematics import constants
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.pair.hypotheses import coaxial_lines
+from kinform.model.arrays import Array, Flags
+
+
+def scraps(evidence: Evidence, alignment: float) -> Flags:
+    """(items,): which patches are too slight to decide. Surfaces about one axis count together.
+
+    `alignment` (rad): within this axes are one.
+    """
+    areas, items = evidence.areas, evidence.items
+    share = areas / areas.sum()
+    dips = [k for k, item in enumerate(items) if _dips(item, evidence.contact) and share[k] < constants.DIP_SHARE]
+    slight = np.zeros(len(items), dtype=bool)
+    for k, item in enumerate(items):
+        if item.patch.kind != "plane":
+            continue
+        # the two flanks of a pressed key face each other
+        faced = any(float(items[j].normals[0] @ item.normals[0]) < constants.FACED for j in dips)
+        slight[k] = (k in dips and not faced) or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE)
+    for line in coaxial_lines(evidence, alignment):
+        members = list(line.items)
+        arc = sum(_arc(items[k], line.axis) for k in members)
+        together = float(share[members].sum())
+        if all(items[k].patch.one_sided for k in members):
+            slight[members] = arc < constants.SLIVER_ARC_ONE_SIDED
+        else:
+            slight[members] = arc < constants.SLIVER_ARC and together < constants.SLIVER_SHARE
+    return slight
+
+
+def _dips(item: Item, contact: float) -> bool:
+    """Is it a plane that overlaps the other part deeper than a press would?"""
+    return item.patch.kind == "plane" and item.interferes and -item.patch.gap > constants.DIP * contact
+
+
+def _arc(item: Item, axis: Array) -> float:
+    """rad: angle about the axis (3,) that the normals of a patch cover."""
+    if item.patch.kind not in COAXIAL:
+        return 0.0
+    u, v = perpendicular(axis)
+    angles = np.sort(np.arctan2(item.normals @ v, item.normals @ u))
+    return float(2.0 * np.pi - np.diff(angles, append=angles[0] + 2.0 * np.pi).max())

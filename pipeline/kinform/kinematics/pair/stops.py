@@ -1,0 +1,192 @@
+"""End stops: faces that end a motion at the drawn pose, and do not guide it.
+
+The rows of a pair take every patch for a constraint in both senses, so that a face which a lever just touches holds it.
+A *stop candidate* is a set of faces whose removal frees a motion that they oppose in one sense only. One sense alone is
+no doubt: a block rests on a table, a shaft on its collar. What tells a guide from a stop is where the face is:
+
+- A collar or shoulder lies round the guide and beyond it: the motion is meant to be held there.
+- A face inside of the guide's own cross-section, at the end of a guide that is long enough to slide in, may be the
+  bottom of a bore that a piston has reached, or the step bearing of a shaft. So may a face beside the axis.
+- A face that opposes a turn in one sense is what the lever came to rest on.
+- A flank beside a plane contact makes a slider of it where it runs along with it, and is a stop where it is short.
+
+Where the candidate may be either, both readings are kept, and the joint is ambiguous until something else chooses.
+
+Whether a guide is long enough to slide in is the rule for bushings: shorter than half of its width it jams, as friction
+at its edges then holds any load beside its axis (W. Beitz, K.-H. Küttner, Dubbel, guides).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.kinematics import constants
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
+from kinform.kinematics.pair.freedoms import freedoms
+from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.model.arrays import Array, Flags
+from kinform.model.tolerances import Tolerances
+
+ROLES = {
+    "stop": "an end stop",
+    "sliver": "too slight to decide",
+    "flank": "the flank of a tooth or cam, which bears nothing",
+}
+"""What faces are that may not be meant to hold."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherReading:
+    """What the patches say without some that may not be meant."""
+
+    form: JointForm
+    basis: Array
+    """(6, k) scaled freedoms."""
+    out: tuple[int, ...]
+    """Items that are left out."""
+    role: str
+    """What those are then: stop, sliver or flank."""
+
+
+def stop_reading(
+    evidence: Evidence, twists: Array, preserved: Flags, strict: Array, tolerances: Tolerances
+) -> OtherReading | None:
+    """The other reading of a pair whose freedoms are `strict` (6, k), if some of its faces may be a stop; None if not.
+
+    `twists` (6, n) are candidate motions, `preserved` (items, n) which patches slide on themselves under them.
+    Of several stops the one with the least area.
+    """
+    best: tuple[float, OtherReading] | None = None
+    areas = evidence.areas
+    for out in _candidates(evidence):
+        keep = np.ones(len(evidence.items), dtype=bool)
+        keep[list(out)] = False
+        free = preserved[keep].all(axis=0) if keep.any() else np.zeros(twists.shape[1], dtype=bool)
+        if not (free & ~preserved[~keep].all(axis=0)).any():
+            continue
+        basis, _ = freedoms(evidence, twists, preserved, keep, tolerances)
+        if basis.shape[1] <= strict.shape[1]:
+            continue
+        reading = OtherReading(name_space(basis, evidence.frame), basis, out, "stop")
+        area = float(areas[list(out)].sum())
+        if (best is None or area < best[0]) and _may_be_stop(evidence, strict, reading, keep):
+            best = area, reading
+    return None if best is None else best[1]
+
+
+def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:
+    """Sets of items that could be stops: planes that face one way, and single cones and balls."""
+    items = evidence.items
+    planes = sorted((k for k, i in enumerate(items) if i.patch.kind == "plane"), key=lambda k: (-items[k].area, k))
+    sets: list[tuple[int, ...]] = []
+    left = list(planes)
+    while left:
+        normal = items[left[0]].normals[0]
+        facing = [k for k in left if float(items[k].normals[0] @ normal) > 1.0 - constants.FACING_ONE_WAY]
+        sets.append(tuple(sorted(facing)))
+        left = [k for k in left if k not in facing]
+    sets += [(k,) for k, i in enumerate(items) if i.patch.kind in ("cone", "sphere") and not i.patch.one_sided]
+    return [found for found in sets if len(found) < len(items)]
+
+
+def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep: Flags) -> bool:
+    """Is there nothing that tells the faces left out to be guides?"""
+    freed = reading.basis - strict @ (strict.T @ reading.basis)
+    vectors, sizes, _ = np.linalg.svd(freed, full_matrices=False)
+    motions = vectors[:, sizes > constants.NEW_FREEDOM]
+    guides = evidence.chosen(keep)
+    faces = evidence.chosen(~keep)
+    if motions.shape[1] == 2:
+        return _short_flank(evidence, strict, reading, guides, faces)
+    if motions.shape[1] != 1 or not _one_sense(evidence, motions[:, 0], reading.out):
+        return False
+    turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
+    if reading.form.type in turned.get(name_space(strict, evidence.frame).type, ()):
+        return True
+    return reading.form.axis is not None and _ends_guide(reading.form, guides, faces)
+
+
+def _one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
+    """Do the items oppose the motion (6,) in one sense only?"""
+    speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in out])
+    large = constants.OPPOSING_SPEED * float(np.abs(speeds).max())
+    return not (bool((speeds > large).any()) and bool((speeds < -large).any()))
+
+
+def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
+    """Are the faces at the end of a guide along the joint's axis, inside of its cross-section or beside its axis?"""
+    axis = form.axis
+    assert axis is not None
+    running = [i for i in guides if i.patch.kind in (*COAXIAL, "extrusion", "plane") and _runs_along(i, axis)]
+    if form.type not in ("cylindrical", "prismatic") or not running:
+        return False
+    points = np.concatenate([i.points for i in running])
+    ends = np.concatenate([i.points for i in faces])
+    centre = form.point if form.type == "cylindrical" and form.point is not None else points.mean(axis=0)
+    at_end = _across(ends, centre, axis)
+    face_reach = float(np.linalg.norm(at_end, axis=1).max())
+    sections = [
+        (float(np.ptp(section @ axis)), float(np.linalg.norm(_across(section, centre, axis), axis=1).max()))
+        for section in _sections(running)
+    ]
+    if all(length < constants.SLIDES_FROM * 2.0 * half for length, half in sections):
+        return False
+    reach = max(half for _, half in sections)
+    far = at_end[np.linalg.norm(at_end, axis=1) > constants.ROUND_FROM * face_reach]
+    angles = np.sort(np.arctan2(far[:, 1], far[:, 0]))
+    gap = float(np.diff(angles, append=angles[0] + 2.0 * np.pi).max())
+    return face_reach <= constants.INSIDE_GUIDE * reach or gap > constants.BESIDE_AXIS
+
+
+def _across(points: Array, centre: Array, axis: Array) -> Array:
+    """(n, 2): points (n, 3) as seen along the axis, from the centre."""
+    u, v = perpendicular(axis)
+    return np.stack([(points - centre) @ u, (points - centre) @ v], axis=1)
+
+
+def _sections(running: list[Item]) -> list[Array]:
+    """Points of guides of one cross-section: a stepped shaft that slides leaves its steps behind."""
+    rounds: list[tuple[float, list[Array]]] = []
+    flat = [item.points for item in running if item.patch.kind != "cylinder"]
+    for item in running:
+        if item.patch.kind != "cylinder":
+            continue
+        radius = max(item.patch.radii)
+        same = next((of for r, of in rounds if abs(r - radius) <= constants.ONE_SECTION * r), None)
+        if same is None:
+            rounds.append((radius, [item.points]))
+        else:
+            same.append(item.points)
+    return [np.concatenate(of) for of in (*(of for _, of in rounds), flat) if of]
+
+
+def _runs_along(item: Item, axis: Array) -> bool:
+    """Does the patch slide on itself along the axis?"""
+    if item.patch.kind == "plane":
+        return abs(float(item.patch.axis @ axis)) < constants.ALONG_AXIS
+    return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
+
+
+def _short_flank(
+    evidence: Evidence, strict: Array, reading: OtherReading, guides: list[Item], faces: list[Item]
+) -> bool:
+    """Do short faces, all on one side, make a slider of a plane contact?"""
+    form = name_space(strict, evidence.frame)
+    if form.type != "prismatic" or reading.form.type != "planar" or form.axis is None or reading.form.axis is None:
+        return False
+    sideways = cross(form.axis, reading.form.axis)
+    senses = {float(item.normals[0] @ sideways) > 0.0 for item in faces}
+    length, guided = (float(np.ptp(np.concatenate([i.points for i in of]) @ form.axis)) for of in (faces, guides))
+    return len(senses) == 1 and length < constants.SHORT_FLANK * guided
+
+
+def faces_in_words(evidence: Evidence, out: tuple[int, ...]) -> str:
+    """Patches in words: "the plane of 12.5 mm² between base and rod"."""
+    items = [evidence.items[k] for k in out]
+    area = 1e6 * sum(item.patch.area for item in items)
+    largest = max(items, key=lambda item: (item.patch.area, item.patch.parts))
+    kinds = largest.patch.kind if len(items) == 1 else f"{largest.patch.kind} (in {len(items)} pieces)"
+    return f"the {kinds} of {area:.3g} mm² between {' and '.join(largest.patch.parts)}"

@@ -1,0 +1,86 @@
+"""How well the axis of a joint is known, and its place on it: by the fits of the patches that decide them.
+
+Each patch says where its axis or centre is, with the uncertainty of the two surfaces that were fitted. The best of
+those that have a say counts. A direction is said by axes along it, by planes across it, and by planes along it where
+two of them meet in it. A place is said by surfaces of revolution about it and by balls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics import constants
+from kinform.kinematics.pair.evidence import COAXIAL, Item
+from kinform.kinematics.pair.lower_pairs import JointForm
+
+PLACED = ("revolute", "cylindrical", "screw", "spherical", "universal")
+"""Joints whose axis or centre has a place."""
+
+
+def joint_uncertainty(items: Sequence[Item], form: JointForm) -> tuple[float, float]:
+    """Standard uncertainty of the direction (rad) and of the place (m) of a joint that these patches decide.
+
+    0 where the joint has no direction or no place, and where no patch says it: planes alone that make a hinge.
+    """
+    angles = [angle for item in items if (angle := _angle(item, form)) is not None]
+    shifts = [shift for item in items if (shift := _shift(item, form)) is not None]
+    direction = min(angles, default=0.0) if form.axis is not None else 0.0
+    place = min(shifts, default=0.0) if form.type in PLACED else 0.0
+    return direction, place
+
+
+def uncertainty_doubt(items: Sequence[Item], form: JointForm, length: float) -> str:
+    """Why the axis or the place is known too badly for a joint, in words; empty where it is not.
+
+    `length` (m) is the size of the contact, for a place that has no radius of its own.
+    """
+    direction, place = joint_uncertainty(items, form)
+    if direction > constants.VAGUE_AXIS:
+        return (
+            f"the axis is known to {np.degrees(direction):.2g}° only, by the fits of what decides it "
+            f"(more than {np.degrees(constants.VAGUE_AXIS):.2g}°)"
+        )
+    radius = max(
+        (max(i.patch.radii) for i in items if i.patch.kind in ("cylinder", "sphere") and _says(i, form)), default=0.0
+    )
+    least = constants.VAGUE_PLACE * (radius or length)
+    if place > least:
+        return (
+            f"the place of the axis is known to {1e3 * place:.2g} mm only, by the fits of what decides it "
+            f"(more than {100 * constants.VAGUE_PLACE:.2g} % of its radius of {1e3 * (radius or length):.3g} mm)"
+        )
+    return ""
+
+
+def _says(item: Item, form: JointForm) -> bool:
+    """Has the patch a say about the place of the joint's axis or centre?"""
+    return _shift(item, form) is not None
+
+
+def _angle(item: Item, form: JointForm) -> float | None:
+    """rad: how well the patch says the joint's direction; None where it says nothing about it."""
+    if form.axis is None or not np.any(item.patch.axis):
+        return None
+    sine = float(np.linalg.norm(cross(item.patch.axis, form.axis)))
+    along = sine < constants.SAYS_DIRECTION
+    across = abs(float(item.patch.axis @ form.axis)) < constants.SAYS_DIRECTION
+    if item.patch.kind in (*COAXIAL, "extrusion") and along:
+        return item.patch.uncertainty[0]
+    if item.patch.kind == "plane" and (along or (across and form.type == "prismatic")):
+        return item.patch.uncertainty[0]
+    return None
+
+
+def _shift(item: Item, form: JointForm) -> float | None:
+    """m: how well the patch says the joint's place; None where it says nothing about it."""
+    if form.point is None:
+        return None
+    if item.patch.kind == "sphere":
+        return item.patch.uncertainty[1]
+    if item.patch.kind not in COAXIAL or form.axis is None:
+        return None
+    along = float(np.linalg.norm(cross(item.patch.axis, form.axis))) < constants.SAYS_DIRECTION
+    return item.patch.uncertainty[1] if along else None
