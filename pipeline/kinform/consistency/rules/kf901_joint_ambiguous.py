@@ -5,7 +5,11 @@ Inconclusive when an intended joint is between the two bodies. Without an intend
 Why it matters: a guess could be wrong either way. Very short journals, slight tapers, noisy meshes and
 coarse facets are the usual causes.
 
-What to do: export a finer mesh, make the locating surface longer, or state the joint by `[[assume]]`.
+A face may also be read in two ways, as a guide or as an end stop: the bottom of a bore that a piston has reached, or
+the step bearing of a shaft. Both readings are named then, and an intended joint chooses among them.
+
+What to do: export a finer mesh, make the locating surface longer, state the intended joint where there are two
+readings, or state the joint by `[[assume]]`.
 
 Example: a disc 0.2 mm thick in a bore of 40 mm: it hardly keeps the axis.
 """
@@ -39,14 +43,18 @@ def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:
 
 def _finding(context: Context, joint: Joint, intended: IntendedJoint | None) -> Finding:
     values = ", ".join(f"{value:.2g}" for value in joint.singular_values)
+    others = " or ".join(reading.type for reading in joint.readings) or "another"
+    remedy = "Export a finer mesh, lengthen the locating surface, or state the joint by [[assume]]."
+    if joint.readings:
+        remedy = "State the joint that is meant as [[function.joint]]: it chooses among these. Else by [[assume]]."
     return RULE.at("warning" if intended is None else RULE.severity).finding(
         [joint.name if intended is None else intended.name],
         f"the joint of {quoted(joint.bodies)} is ambiguous: {joint.reason}",
-        found=f"{joint.type}, or another; singular values {values}",
+        found=f"{joint.type}, or {others}; singular values {values}",
         intended=intended.type if intended is not None else None,
         place=context.place_of(joint),
         declared=intended,
-        remedy="Export a finer mesh, lengthen the locating surface, or state the joint by [[assume]].",
+        remedy=remedy,
     )
 
 

@@ -1,0 +1,159 @@
+"""End stops, slivers and flanks: what contact may mean in two ways is ambiguous, names both, and fuses nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from support.patches import Z, cylinder, plane, ring
+
+from kinform.kinematics.pair.decision import decide
+from kinform.kinematics.pair.evidence import gather
+from kinform.model.tolerances import Tolerances
+
+X, Y = np.eye(3)[0], np.eye(3)[1]
+
+
+def decision(patches, contact=5e-4):
+    evidence = gather([(k, p, False) for k, p in enumerate(patches)], Tolerances(), contact, 0.0)
+    return decide(evidence, Tolerances())
+
+
+def types(found):
+    return found.form.type, found.status, None if found.other is None else found.other.form.type
+
+
+def disc(at=(0, 0, -0.01), normal=-Z, outer=0.004, **keys):
+    return ring(at, normal, inner=0.0005, outer=outer, **keys)
+
+
+def moved(patch, turn, scale, shift):
+    """The patch of the same contact at another attitude, size and place."""
+    R = turn.as_matrix()
+    return replace(
+        patch,
+        points=scale * patch.points @ R.T + shift,
+        normals=patch.normals @ R.T,
+        weights=scale**2 * patch.weights,
+        area=scale**2 * patch.area,
+        gaps=scale * patch.gaps,
+        gap=scale * patch.gap,
+        axis=R @ patch.axis,
+        point=scale * R @ patch.point + shift,
+        radii=tuple(scale * r for r in patch.radii),
+        uncertainty=(patch.uncertainty[0], scale * patch.uncertainty[1]),
+    )
+
+
+def test_a_piston_at_the_bottom_of_its_bore_is_a_shaft_on_its_thrust_face():
+    assert types(decision([cylinder(), disc()])) == ("revolute", "ambiguous", "cylindrical")
+
+
+def test_a_shaft_on_its_collar_is_a_shaft():
+    assert types(decision([cylinder(), ring((0, 0, -0.01), -Z)])) == ("revolute", "determined", None)
+
+
+def test_a_collar_that_runs_round_half_of_the_shaft_still_holds_it_one_beside_it_may_not():
+    pad = plane((0.009, 0, 0.01), Z, (0.004, 0.004))
+    assert types(decision([cylinder(), pad])) == ("revolute", "ambiguous", "cylindrical")
+
+
+@pytest.mark.parametrize(("length", "answer"), [(0.004, "determined"), (0.006, "ambiguous"), (0.02, "ambiguous")])
+def test_a_short_pivot_would_jam_and_is_no_piston(length, answer):
+    found = decision([cylinder(length=length), disc((0, 0, -length / 2))])
+    assert (found.form.type, found.status) == ("revolute", answer)
+
+
+def test_a_stepped_shaft_leaves_its_steps_when_it_slides_and_is_no_piston():
+    steps = [cylinder(0.008, 0.006, point=(0, 0, 0.03)), cylinder(0.007, 0.003)]
+    assert types(decision([*steps, disc((0, 0, -0.0015), outer=0.006)])) == ("revolute", "determined", None)
+
+
+def test_a_square_piston_that_nothing_but_its_bottom_holds_may_slide():
+    walls = [plane(0.01 * n, n, (0.02, 0.02)) for n in (X, -X, Y, -Y)]
+    floor = plane((0, 0, -0.01), -Z, (0.02, 0.02))
+    found = decision([*walls, floor])
+    assert found.status in ("blocked", "ambiguous")
+    assert "prismatic" in (found.form.type, found.other.form.type if found.other else "")
+
+
+@pytest.mark.parametrize(("width", "status"), [(0.001, "ambiguous"), (0.012, "ambiguous"), (0.03, "determined")])
+def test_a_short_face_beside_a_finger_is_a_stop_and_a_long_one_a_fence(width, status):
+    flush = plane(size=(0.006, 0.03))
+    side = plane((0.015 - width / 2, 0.003, 0.001), Y, (0.002, width))
+    found = decision([flush, side])
+    assert (found.form.type, found.status) == ("prismatic", status)
+
+
+def test_faces_on_both_sides_of_a_finger_guide_it_however_short():
+    flush = plane(size=(0.006, 0.03))
+    sides = [plane((0.0, s * 0.003, 0.001), s * Y, (0.004, 0.004)) for s in (1, -1)]
+    assert types(decision([flush, *sides])) == ("prismatic", "determined", None)
+
+
+def test_a_lever_on_its_stop_turns_away_from_it():
+    stop = plane((0.03, -0.003, 0), -Y, (0.002, 0.002))
+    found = decision([cylinder(), ring((0, 0, 0.01)), ring((0, 0, -0.01), normal=-Z), stop])
+    assert (found.form.type, found.status) == ("revolute", "blocked")
+
+
+def test_a_lever_that_a_large_stop_holds_is_not_fused():
+    stop = plane((0.03, -0.003, 0), -Y, (0.06, 0.06))
+    found = decision([cylinder(length=0.004), ring((0, 0, 0.002)), ring((0, 0, -0.002), normal=-Z), stop])
+    assert found.status in ("blocked", "ambiguous")
+
+
+@pytest.mark.parametrize(
+    ("arc", "one_sided", "status"), [(0.3, False, "ambiguous"), (1.2, False, "determined"), (0.3, True, "ambiguous")]
+)
+def test_a_sliver_of_a_round_makes_no_hinge(arc, one_sided, status):
+    wide = plane(size=(0.1, 0.1))
+    sliver = cylinder(
+        0.01, 0.002, point=(0, 0, 0.001), arc=(0.0, arc), one_sided=one_sided, area=2e-6 if arc < 1 else 2e-4
+    )
+    assert decision([wide, sliver]).status == status
+
+
+def test_flanks_of_teeth_alone_are_no_joint():
+    flanks = [
+        cylinder(0.005, 0.004, point=(0.002 * k, 0, 0), arc=(0.2 * k, 0.2 * k + 0.3), one_sided=True, area=4e-6)
+        for k in range(4)
+    ]
+    assert decision([*flanks, plane((0, 0, 0.002), Z, (0.001, 0.002))]).status == "ambiguous"
+
+
+def test_a_flat_that_dips_into_a_hinge_makes_no_slider_of_it():
+    found = decision([plane(size=(0.05, 0.05)), plane((0.02, 0.02, 0.001), Y, (0.002, 0.002), gap=-1e-4)])
+    assert found.status == "ambiguous"
+
+
+@pytest.mark.parametrize(
+    ("uncertainty", "status"), [((1e-4, 1e-6), "determined"), ((1e-4, 5e-4), "ambiguous"), ((0.02, 1e-6), "ambiguous")]
+)
+def test_an_axis_that_the_fits_hardly_know_is_none(uncertainty, status):
+    found = decision([cylinder(uncertainty=uncertainty)])
+    assert (found.form.type, found.status) == ("cylindrical", status)
+
+
+SCENES = {
+    "piston": [cylinder(), disc()],
+    "collar": [cylinder(), ring((0, 0, -0.01), -Z)],
+    "finger": [plane(size=(0.006, 0.03)), plane((0.0145, 0.003, 0.0005), Y, (0.001, 0.001))],
+    "sliver": [plane(size=(0.1, 0.1)), cylinder(0.01, 0.002, arc=(0.0, 0.3), area=2e-6)],
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+@given(
+    turn=st.integers(0, 2**31 - 1),
+    scale=st.sampled_from([1e-3, 0.37, 1.0, 1e3]),
+    shift=st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
+)
+def test_attitude_size_and_place_do_not_matter(name, turn, scale, shift):
+    turn = Rotation.random(random_state=turn)
+    there = [moved(p, turn, scale, scale * np.array(shift)) for p in SCENES[name]]
+    assert types(decision(there, 5e-4 * scale)) == types(decision(SCENES[name]))
