@@ -40,7 +40,7 @@ def render(design: Design) -> RenderableType:
     if contacts.suggestions:
         applied = "not applied; [fasteners] infer = true does"
         if design.assembly.infer_fasteners:
-            applied = "applied, except where contact decides or a joint is stated"
+            applied = "applied, except where contact decides, or groups or stated joints keep apart"
         hints = Rows("part", "part", "suggests", "confidence", "evidence", title=f"\nSuggestions ({applied})", keys=2)
         for hint in contacts.suggestions:
             hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.confidence, hint.evidence)

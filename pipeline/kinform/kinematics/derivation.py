@@ -16,10 +16,16 @@ from kinform.kinematics.axes.proportions import fit_proportions
 from kinform.kinematics.axes.snapping import snap_axes
 from kinform.kinematics.bodies.classification import Pairs, decide_all
 from kinform.kinematics.bodies.extents import Extents
-from kinform.kinematics.bodies.fasteners import fasten, label_inferred, turn_about_suggested_axes
+from kinform.kinematics.bodies.fasteners import (
+    fasten,
+    fastenings,
+    harmless,
+    label_inferred,
+    turn_about_suggested_axes,
+)
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.readings import choose_readings
-from kinform.kinematics.bodies.stated_joints import intended_joints, stated_joints
+from kinform.kinematics.bodies.stated_joints import Pair, intended_joints, stated_joints
 from kinform.kinematics.constants import MOST_BASIS_NUMBERS
 from kinform.kinematics.loops.assembly_closure import Closure, body_twists
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -30,14 +36,14 @@ from kinform.kinematics.mobility.joint_redundancy import redundancy_within
 from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restrict_closure
-from kinform.kinematics.pair.question import bare_patches
+from kinform.kinematics.pair.question import Answer, bare_patches
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
 from kinform.kinematics.separation.separations import links_between, separations
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts, Patch
+from kinform.model.contacts import Contacts, Patch, Suggestion
 from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Kinematics, Misfit, Mobility, Separation
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
@@ -81,12 +87,10 @@ def derive(
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function]. What is asked of
     single pairs, and of all together, may be known to `answers`.
     """
-    merger, extents = Merger(assembly), Extents(assembly)
+    extents = Extents(assembly)
     patches, size = bare_patches(contacts.patches), extents.assembly
     pairs = Pairs(assembly, contacts, patches, extents, answers)
-    decided = decide_all(pairs, merger)
-    if fasten(assembly, contacts, merger):
-        decided = decide_all(pairs, merger)
+    merger, decided, hints = _fuse_and_decide(pairs, contacts)
     bodies = merger.bodies()
     decided = choose_readings(assembly, _body_of_part(bodies), decided, size)
     stated = stated_joints(assembly, _body_of_part(bodies))
@@ -106,7 +110,7 @@ def derive(
         assembly=assembly,
         graph=JointGraph(bodies, aligned),
         size=size,
-        clusters=_clusters(assembly, contacts),
+        clusters=_clusters(assembly, hints),
         patches=patches,
         strict={name: answer.strict for name, answer in by_contact.items() if answer.strict is not None},
         balls=touching_balls(assembly, surfaces, contacts.patches),
@@ -151,10 +155,32 @@ def _body_of_part(bodies: Sequence[Body]) -> dict[PartName, BodyName]:
     return {part: body.name for body in bodies for part in body.parts}
 
 
-def _clusters(assembly: Assembly, contacts: Contacts) -> tuple[Body, ...]:
+def _fuse_and_decide(
+    pairs: Pairs, contacts: Contacts
+) -> tuple[Merger, dict[Pair, tuple[Answer, Joint]], list[Suggestion]]:
+    """Which parts are one body, what each pair of bodies that touch may do, and the suggestions that were believed.
+
+    Suggestions are applied to what contact alone makes of the parts. Where contact then fuses what the manifest keeps
+    apart, it is started again without those that led to it.
+    """
+    merger = Merger(pairs.assembly)
+    decided = decide_all(pairs, merger)
+    hints = fastenings(pairs.assembly, contacts, merger)
+    while True:
+        joined = merger.copy()
+        if not fasten(hints, joined):
+            return merger, decided, hints
+        anew = decide_all(pairs, joined)
+        believed = harmless(hints, pairs.assembly, merger, joined)
+        if len(believed) == len(hints):
+            return joined, anew, hints
+        hints = believed
+
+
+def _clusters(assembly: Assembly, hints: Sequence[Suggestion]) -> tuple[Body, ...]:
     """Bodies as they would be if contact fused nothing."""
     merger = Merger(assembly)
-    fasten(assembly, contacts, merger)
+    fasten(hints, merger)
     return merger.bodies()
 
 

@@ -69,7 +69,7 @@ class Interference:
     place: Place
     """(3,) m: centroid of the overlap."""
     mated: bool
-    """True: all of it lies at mating patches within the contact tolerance (a press fit)."""
+    """True: all of it lies at mating patches within the contact tolerance, and can be pressed (a press fit)."""
     method: str
     """"manifold" or "facets"."""
 

@@ -3,6 +3,9 @@
 An error between parts that move relative to each other, a warning between parts of one body (threads,
 pressed or screwed parts are often drawn so), a note where `[[assume]] ignore = true` covers the pair.
 
+A shaft that is larger than its bore is a fit where it can be pressed: by up to 3 % of the diameter, beyond what the
+facets leave open. More is an overlap like any other, and the message says by how much it is more.
+
 Why it matters: the parts cannot be assembled as drawn, and what looks like a contact inside the overlap
 may decide a joint wrongly.
 
@@ -15,6 +18,8 @@ from __future__ import annotations
 
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
+from kinform.contacts.constants import PRESS_SHARE
+from kinform.contacts.presses import beyond_press, press_limit
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
@@ -32,12 +37,27 @@ def _finding(context: Context, overlap: Interference) -> Finding:
     relation, severity = _relation(context, overlap.parts)
     return RULE.at(severity).finding(
         overlap.parts,
-        f"{quoted(overlap.parts)} overlap by {size}{relation}",
+        f"{quoted(overlap.parts)} overlap by {size}{_press(context, overlap.parts)}{relation}",
         found=size if measured else f"{size}; volume unknown, a mesh is not closed",
         intended="no overlap",
         place=overlap.place,
         declared=context.assembly.part(overlap.parts[0]).source,
         remedy="Move or reshape one of the parts; if the overlap is meant, join them in a [[group]].",
+    )
+
+
+def _press(context: Context, parts: tuple[str, str]) -> str:
+    """What is said of a shaft that is too large for its bore to be pressed into it; nothing where there is none."""
+    tight = [patch for patch in context.contacts.patches if patch.parts == parts and beyond_press(patch)]
+    if not tight:
+        return ""
+    patch = max(tight, key=lambda patch: -patch.gap - press_limit(patch))
+    bore = 2.0 * min(patch.radii)
+    more, bore_in_words = (length(value, context.units, 3) for value in (-2.0 * patch.gap, bore))
+    most = length(2.0 * press_limit(patch), context.units, 2)
+    return (
+        f": a diameter that is {more} larger than the {bore_in_words} that it goes into, where at most {most} can be "
+        f"pressed ({100.0 * PRESS_SHARE:g} % and what the facets leave open)"
     )
 
 

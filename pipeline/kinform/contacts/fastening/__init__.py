@@ -4,5 +4,5 @@ from kinform.contacts.fastening.suggest import fastened, suggest
 
 __all__ = ["CODE_VERSION", "fastened", "suggest"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3
 """Raised when the same input would give other suggestions."""

@@ -21,6 +21,7 @@ from kinform.contacts.fastening.bores import (
     occupied,
 )
 from kinform.contacts.fastening.rims import rims_of
+from kinform.contacts.presses import beyond_press
 from kinform.foundation.algebra.vectors import canonical_sign, widest_gap
 from kinform.model.arrays import Array, freeze
 from kinform.model.assembly import Assembly, Part
@@ -136,9 +137,9 @@ def _pivoted(plane: Patch, patches: list[Patch], tolerance: float) -> bool:
 
 
 def _pressed(pair: Pair, firm: list[Patch]) -> list[Suggestion]:
-    """A shaft that is larger than its bore."""
+    """A shaft that is larger than its bore, by no more than can be pressed at any of their round patches."""
     tight = [patch for patch in firm if patch.kind == "cylinder" and patch.fit == "interference"]
-    if not tight:
+    if not tight or any(beyond_press(patch) for patch in firm):
         return []
     patch = max(tight, key=lambda patch: patch.area)
     size = f"{-2e3 * patch.gap:.3g} mm in diameter {2e3 * min(patch.radii):.4g} mm"

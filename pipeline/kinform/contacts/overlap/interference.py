@@ -14,6 +14,7 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.overlap.solids import Piece, SolidStore
+from kinform.contacts.presses import beyond_press
 from kinform.contacts.search.pair_view import PairView, PartView
 from kinform.model.arrays import Array, Flags, Ints, freeze
 from kinform.model.contacts import Interference, Patch
@@ -45,7 +46,7 @@ class _Allowance:
         return np.asarray(self.chords[0][i] + self.chords[1][j] + self.floor)
 
     def unexplained(self, samples: _Samples) -> tuple[Flags, bool]:
-        """Samples deeper than what tessellation explains, and whether they all lie at mates."""
+        """Samples deeper than what tessellation explains, and whether they all lie at mates that can be pressed."""
         i, j = samples.surfaces.T
         present = (set(i.tolist()), set(j.tolist()))
         mates = [p for (s, t), p in self.mates.items() if s in present[0] and t in present[1]]
@@ -55,7 +56,8 @@ class _Allowance:
         deep = samples.depth > allowed
         at_mate = np.array([pair in self.mates for pair in zip(i.tolist(), j.tolist(), strict=True)], bool)
         pressed = max((p.chord - min(p.gap, 0.0) + p.offset for p in mates), default=-1.0) + self.floor
-        mated = bool(mates) and bool(
+        mated = bool(mates) and not any(beyond_press(patch) for patch in mates)
+        mated &= bool(
             (
                 (samples.depth[deep] <= constants.MATING_REACH * self.tolerance)
                 & (at_mate[deep] | (samples.depth[deep] <= pressed))

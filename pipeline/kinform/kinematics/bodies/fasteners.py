@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.bodies.kept_apart import contradicted, kept_apart
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.constants import SUGGESTED_AXIS
 from kinform.kinematics.pair.joint import stated_joint
@@ -19,38 +22,46 @@ INFERRED = "inferred: "
 """How the reason begins for which a suggestion made parts one body."""
 
 
-def fasten(assembly: Assembly, contacts: Contacts, merger: Merger) -> bool:
-    """Make one body of the parts that suggestions hold together, where the manifest asks for it; whether that
-    changed anything.
-
-    What contact holds already is left as it is. A joint that an assumption or the function states between two
-    bodies outweighs a suggestion that would make them one.
-    """
+def fastenings(assembly: Assembly, contacts: Contacts, merger: Merger) -> list[Suggestion]:
+    """The suggestions that make parts one body, where the manifest asks for it: all but those that would join what it
+    keeps apart. `merger` knows what contact has joined without them."""
     if not assembly.infer_fasteners:
-        return False
-    stated = _stated_apart(assembly)
+        return []
+    hints = [hint for hint in contacts.suggestions if hint.fastens]
+    refused = contradicted(hints, kept_apart(assembly), merger.root)
+    return [hint for index, hint in enumerate(hints) if index not in refused]
+
+
+def fasten(hints: Sequence[Suggestion], merger: Merger) -> bool:
+    """Make one body of the parts that these suggestions hold together; whether that changed anything. What is one body
+    already is left as it is."""
     changed = False
-    fastening = [hint for hint in contacts.suggestions if hint.fastens]
-    for hint in [hint for hint in fastening if merger.root(hint.parts[0]) != merger.root(hint.parts[1])]:
-        ends = {merger.root(part) for part in hint.parts}
-        if all({merger.root(first), merger.root(second)} != ends for first, second in stated):
-            merger.fuse(*hint.parts, f"{INFERRED}{'~'.join(hint.parts)}: {hint.evidence}")
-            changed = True
+    for hint in [hint for hint in hints if merger.root(hint.parts[0]) != merger.root(hint.parts[1])]:
+        merger.fuse(*hint.parts, f"{INFERRED}{'~'.join(hint.parts)}: {hint.evidence}")
+        changed = True
     return changed
 
 
-def _stated_apart(assembly: Assembly) -> list[tuple[PartName, PartName]]:
-    """Parts between whose bodies somebody states a joint that moves."""
-    stated = [(a.between, a.type) for a in assembly.assumptions if a.type is not None]
-    stated += [(joint.between, joint.type) for joint in assembly.function.joints]
-    sides = [[assembly.parts_of(name)[0] for name in between] for between, type_ in stated if type_ != "fixed"]
-    return [(first, second) for first, second in sides]
+def harmless(hints: Sequence[Suggestion], assembly: Assembly, before: Merger, after: Merger) -> list[Suggestion]:
+    """Those of the suggestions, all of which were applied between `before` and `after`, from which nothing followed
+    that contact then held together although the manifest keeps it apart."""
+    joined = {
+        after.root(first)
+        for first, second in (apart.parts for apart in kept_apart(assembly))
+        if before.root(first) != before.root(second) and after.root(first) == after.root(second)
+    }
+
+    def led_there(first: PartName, second: PartName) -> bool:
+        return before.root(first) != before.root(second) and after.root(first) in joined
+
+    return [hint for hint in hints if not led_there(*hint.parts)]
 
 
 def turn_about_suggested_axes(
     assembly: Assembly, contacts: Contacts, joints: list[Joint], bodies: tuple[Body, ...]
 ) -> list[Joint]:
-    """The joints, planar ones as revolute about the axis that rims or bolt circles suggest, where there is one."""
+    """The joints, planar ones as revolute about the axis that rims or bolt circles suggest, where there is one, and
+    where nothing else is stated of the two bodies."""
     if not assembly.infer_fasteners:
         return joints
     of_part: dict[PartName, BodyName] = {part: body.name for body in bodies for part in body.parts}
@@ -59,7 +70,30 @@ def turn_about_suggested_axes(
         first, second = sorted(of_part[part] for part in hint.parts)
         if not hint.fastens and first != second:
             hints.setdefault((first, second), []).append(hint)
-    return [_revolute(joint, hints.get(joint.bodies, [])) for joint in joints]
+    settled = _stated_otherwise(assembly, of_part)
+    return [joint if settled(joint) else _revolute(joint, hints.get(joint.bodies, [])) for joint in joints]
+
+
+def _stated_otherwise(assembly: Assembly, of_part: Mapping[PartName, BodyName]) -> Callable[[Joint], bool]:
+    """Whether something else than a turn is stated between the bodies of a joint: another joint, or that they are one
+    body, if need be by way of others."""
+    stated = [(joint.between, joint.type) for joint in assembly.function.joints]
+    stated += [(assumption.between, assumption.type or "") for assumption in assembly.assumptions]
+    names = sorted(set(of_part.values()))
+    index = {name: number for number, name in enumerate(names)}
+    whole, others = UnionFind(len(names)), set()
+    for between, kind in stated:
+        first, second = (index[of_part[assembly.parts_of(name)[0]]] for name in between)
+        if kind == "fixed":
+            whole.union(first, second)
+        elif kind not in ("revolute", ""):
+            others.add(frozenset((first, second)))
+
+    def settled(joint: Joint) -> bool:
+        first, second = (index[name] for name in joint.bodies)
+        return whole.find(first) == whole.find(second) or frozenset((first, second)) in others
+
+    return settled
 
 
 def _revolute(joint: Joint, hints: list[Suggestion]) -> Joint:

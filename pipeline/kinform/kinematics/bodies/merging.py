@@ -36,6 +36,12 @@ class Merger:
         """Make the bodies that contain the two parts one."""
         self._join([first, second], reason)
 
+    def copy(self) -> Merger:
+        """The same parts, to be merged further on their own."""
+        out = Merger(self._assembly)
+        out._sets.parent, out._reasons = list(self._sets.parent), list(self._reasons)
+        return out
+
     def root(self, part: PartName) -> int:
         """A number that two parts share exactly when they are one body."""
         return self._sets.find(self._index[part])
