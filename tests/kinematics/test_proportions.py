@@ -45,7 +45,7 @@ def graph_of(joints):
 
 def bounds_of(sigma):
     """Bounds of three standard uncertainties, well within any alignment."""
-    return MoveBounds(sigma, 3.0 * sigma)
+    return MoveBounds(sigma, np.full_like(sigma, 0.003), np.zeros_like(sigma))
 
 
 def gap(joints, angle=1.2):

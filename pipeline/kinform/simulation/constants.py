@@ -54,6 +54,11 @@ CROSSING_AROUND = 0.1
 CROSSING_NARROWINGS = 12
 """Times that this is narrowed, to two thirds each."""
 
+CORNER_TURN = 0.05
+"""Curvature of the motion times the margin from which on it turns from one branch of the loops into another. At the
+tip of such a corner it is 0.2 to 3, wherever lengths differ by 1e-12 to 1e-3 of themselves; where branches cross it is
+the margin times the curvature of either, below 0.005."""
+
 # kernel.crossings: how a step is laid across a singular pose.
 
 WIDEST_GAP = 0.4667
@@ -154,6 +159,20 @@ LOOK = 250
 """Steps after which the run is looked at for stiffness."""
 REPORTS = 50
 """Times at least that the progress of a run is told."""
+
+# mechanism.mechanism, solver.follow, kernel.explicit: what is known of lengths.
+
+CORNER_MARGIN = 2.0
+"""Margin of a corner over the root of the difference in lengths that makes it, as a share of the mechanism's length:
+at most."""
+
+LENGTH_SIGMAS = 3.0
+"""Standard uncertainties by which lengths may be off: beyond it chance is below 1 %."""
+ONE_DIRECTION = 1e-12
+"""Sine between axes that were made parallel: rounding."""
+LENGTHS_ROUNDED = 1e-13
+"""Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
+roundings, as poses are products of many factors."""
 
 # solver.implicit: stiff models.
 

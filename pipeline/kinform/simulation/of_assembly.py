@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from kinform.model.simulation import Simulation
 from kinform.simulation.levels import choose, notes_of_drives, notes_of_joints, notes_of_level, notes_of_teeth
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.mechanism.uncertainty import loop_uncertainty
 from kinform.simulation.of_system import Course, run_course
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.start import Stated
@@ -44,6 +46,7 @@ def simulate_assembly(
     if behaviour.failures:
         return refuse("the model is not complete", behaviour.failures)
     mechanism, adrift = assemble(behaviour.system)
+    mechanism = replace(mechanism, uncertain=loop_uncertainty(kinematics, mechanism.length))
     formless = all(part.mesh is None for part in assembly.parts)
     choice = choose(asked, behaviour, mechanism, adrift, formless)
     if choice.failures:

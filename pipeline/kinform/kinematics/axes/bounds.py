@@ -5,7 +5,8 @@ within it but beyond the alignment is not known to be meant: a short journal of 
 uncertain by degrees, and turning it into line with its neighbours would be a guess. A tolerance of directions says of
 places what it says at the joint's own ends: a line that is turned by the alignment about the middle of the contact
 misses its old place by the alignment times the contact's extent, and no more is forgiven to a shift. So no absolute
-length decides: the bound grows with the joint.
+length decides: the bound grows with the joint. How uncertain a line is depends on where: lines that are made to meet
+are shifted by no more than they are uncertain at the point where they meet, which their tilt has part in.
 """
 
 from __future__ import annotations
@@ -30,24 +31,31 @@ class MoveBounds:
 
     sigma: Array
     """(joints, 2) standard uncertainty."""
-    most: Array
-    """(joints, 2) the most that it may be moved by."""
+    allowed: Array
+    """(joints, 2) the most that the alignment allows."""
+    used: Array
+    """(joints, 2) what of that moves have used."""
+
+    @property
+    def most(self) -> Array:
+        """(joints, 2) the most that it may still be moved by: by alignment and uncertainty, where it is."""
+        return np.maximum(np.minimum(SIGMAS * self.sigma, self.allowed) - self.used, 0.0)
 
     def after(self, moves: Sequence[Move], joints: Sequence[Joint]) -> MoveBounds:
-        """What is left of the bounds of these joints after moves."""
+        """The bounds of these joints after moves, all of them."""
         made = {move.joint: (move.angle, move.distance) for move in moves}
         used = np.array([made.get(joint.name, (0.0, 0.0)) for joint in joints]).reshape(-1, 2)
-        return replace(self, most=np.maximum(self.most - used, 0.0))
+        return replace(self, used=used)
 
 
 def move_bounds(joints: Sequence[Joint], patches: Sequence[Patch], alignment: float, reach: float) -> MoveBounds:
     """The bounds of joints; `alignment` (rad) of the tolerances, `reach`: size of the assembly (m)."""
-    sigma, most = np.zeros((len(joints), 2)), np.zeros((len(joints), 2))
+    sigma, allowed = np.zeros((len(joints), 2)), np.zeros((len(joints), 2))
     for k, joint in enumerate(joints):
         touching = [patches[p] for p in joint.patches]
         sigma[k] = _uncertainty(joint, touching, reach)
-        most[k] = np.minimum(SIGMAS * sigma[k], [alignment, alignment * _extent(touching, reach)])
-    return MoveBounds(sigma, most)
+        allowed[k] = alignment, alignment * _extent(touching, reach)
+    return MoveBounds(sigma, allowed, np.zeros_like(sigma))
 
 
 def uncertainties(joints: Sequence[Joint], patches: Sequence[Patch]) -> Array:

@@ -30,7 +30,9 @@ class Locus:
     """m: uncertainty of the place, at `point`."""
     bodies: frozenset[str]
     room: float = np.inf
-    """m: the most that it may be shifted by."""
+    """m: the most that it may be shifted by, whatever its uncertainty."""
+    shifted: float = 0.0
+    """m: by how much it was shifted already."""
 
     def uncertainty(self, place: Array) -> float:
         """m: of the line beside a place (3,)."""
@@ -80,7 +82,7 @@ def _shifts(loci: Sequence[Locus], points: list[tuple[list[int], Array]], sigmas
 
 def _excess(locus: Locus, shift: Array, uncertain: float) -> float:
     """A shift (3,) over the most that it may be."""
-    size, most = float(np.linalg.norm(shift)), min(uncertain, locus.room)
+    size, most = float(np.linalg.norm(shift)), min(uncertain - locus.shifted, locus.room)
     return 0.0 if size == 0.0 else size / most if most > 0.0 else np.inf
 
 

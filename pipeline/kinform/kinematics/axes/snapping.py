@@ -40,8 +40,10 @@ class _Axis:
     angle: float
     position: float
     most_angle: float
-    """rad, and m: the most that it may be moved by in all."""
+    """rad, and m: the most that it may be moved by in all, by alignment and uncertainty."""
     most_distance: float
+    allowed: float
+    """m: the most that it may be shifted by in all, by the alignment alone."""
 
     @property
     def direction(self) -> Array:
@@ -75,7 +77,9 @@ class _Line:
     def locus(self, joints: Sequence[Joint]) -> Locus:
         lead = self.members[0]
         bodies = frozenset(str(body) for member in self.members for body in joints[member.joint].bodies)
-        return Locus(self.place, self.direction, lead.angle, lead.position, bodies, self.room())
+        shifts = [member.shift(self.at(member)) for member in self.members]
+        room = min(member.allowed - shift for member, shift in zip(self.members, shifts, strict=True))
+        return Locus(self.place, self.direction, lead.angle, lead.position, bodies, room, max(shifts))
 
     @property
     def place(self) -> Array:
@@ -86,10 +90,6 @@ class _Line:
         """(3,) where the joint of a member is on the line."""
         along = 0.0 if self.direction is None else self.direction * float(self.direction @ (member.point - self.place))
         return np.asarray(self.place + along)
-
-    def room(self) -> float:
-        """m by which it may still be shifted."""
-        return max(0.0, min(member.most_distance - member.shift(self.at(member)) for member in self.members))
 
     def shift(self, shift: Array) -> _Line:
         return replace(self, foot=self.place + shift) if np.any(shift) else self
@@ -130,16 +130,18 @@ def _axis(index: int, joint: Joint, bounds: MoveBounds) -> _Axis | None:
     if joint.type in ("general", "universal") or (joint.axis is None and joint.type != "spherical"):
         return None
     (angle, position), (most_angle, most_distance) = bounds.sigma[index], bounds.most[index]
+    allowed = float(bounds.allowed[index, 1])
     return _Axis(
         joint=index,
         name=joint.name,
         axis=joint.axis,
         point=np.zeros(3) if joint.point is None else joint.point,
         line=joint.type in LINES,
-        angle=float(angle),
+        angle=0.0 if joint.axis is None else float(angle),
         position=float(position),
         most_angle=float(most_angle),
         most_distance=float(most_distance),
+        allowed=allowed,
     )
 
 

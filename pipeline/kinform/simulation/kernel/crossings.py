@@ -5,13 +5,20 @@ vanishing numbers. Their limit is finite where the motion goes straight through,
 with the inverse square of the distance, and shorter steps only bring the method's evaluations nearer.
 So a step is laid such that the pose falls into the widest gap between its evaluations.
 
+Where branches part just before they would meet, by lengths that differ less than they are known, the motion turns a
+corner of the size of the margin there (`turns_corner`): such a run ends, as either branch would be a guess.
+
 The margin, smallest over largest pivot, falls and rises there like a V, whose tip is found from the margins
 at the evaluations of a step.
 """
 
 from __future__ import annotations
 
+import math
+
+from kinform.model.arrays import Ints
 from kinform.simulation.constants import (
+    CORNER_TURN,
     CROSSING_AHEAD,
     CROSSING_CLEAR,
     CROSSING_PASSED,
@@ -21,10 +28,10 @@ from kinform.simulation.constants import (
 )
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    COEFFICIENTS,
-    C_ROW, ORDER_ROW,
-    NOW, CROSSING, SPAN, MARGINS,
-    Row, Nums,
+    COUNTS, SCALE, COEFFICIENTS, STAGES,
+    POSITIONS, RATES, C_ROW, ORDER_ROW, AT_END, NEW,
+    NOW, CROSSING, SPAN, MARGINS, NARROW,
+    Row, Nums, Work,
 )  # fmt: skip
 
 
@@ -72,3 +79,25 @@ def laid(step: float, distance: float) -> float:
     if distance <= WIDEST_GAP * step:
         return distance / WIDEST_GAP
     return max(distance - WIDEST_GAP * step, NEAREST_APPROACH * distance)
+
+
+def turns_corner(ints: Ints, nums: Nums, work: Work, clock: Row) -> bool:
+    """Whether the motion turns, at the end of the step, from one branch into another where both nearly meet.
+
+    Branches that meet are straight on the scale of their distance, the margin; those that part just before bend with
+    about that radius. Curvature of the motion is |a⊥| over |v|², in rad and shares of the length.
+    """
+    margin, state, slopes = clock[MARGINS + AT_END], work[STAGES][NEW], work[STAGES][AT_END]
+    if margin >= clock[NARROW]:
+        return False
+    first, size, along, bend = ints[COUNTS][0][POSITIONS], 0.0, 0.0, 0.0
+    for k in range(ints[COUNTS][0][RATES]):
+        unit = 1.0 / (nums[SCALE][k][0] * nums[SCALE][k][0])
+        size += unit * state[first + k] * state[first + k]
+        along += unit * state[first + k] * slopes[first + k]
+    if size == 0.0:
+        return False
+    for k in range(ints[COUNTS][0][RATES]):
+        across = (slopes[first + k] - along / size * state[first + k]) / nums[SCALE][k][0]
+        bend += across * across
+    return math.sqrt(bend) * margin > CORNER_TURN * size

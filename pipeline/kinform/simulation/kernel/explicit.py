@@ -35,7 +35,7 @@ from kinform.simulation.constants import (
     STOP_PASSED,
     TURN_HALVINGS,
 )
-from kinform.simulation.kernel.crossings import laid, tip
+from kinform.simulation.kernel.crossings import laid, tip, turns_corner
 from kinform.simulation.kernel.equations import derivative, project
 from kinform.simulation.kernel.steps import interpolate, prepare, roundings, slope, try_step
 
@@ -46,7 +46,7 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     NOW, END, STEP, CLOSED, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING, SPAN, REACHED, ERROR, WEAR,
     GROWTH, MARGINS,
     STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS,
-    DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED,
+    DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED, TURNED,
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
@@ -288,6 +288,8 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
             continue
         if status != TAKEN:
             return status
+        if turns_corner(ints, nums, work, clock):
+            return TURNED
         fastest = fastest_decay(ints, work, clock, tally)
         if pass_through(ints, nums, work, y, clock, tally, outputs) == STOPPED:
             return STOPPED

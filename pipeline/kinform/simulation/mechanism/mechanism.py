@@ -19,6 +19,7 @@ from kinform.behaviour.joints import JointKind
 from kinform.behaviour.primitives import OneFreedom
 from kinform.foundation.algebra.spatial import along_motion, multiply, rotation_vector, to_matrix
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import CORNER_MARGIN, LENGTHS_ROUNDED
 
 IDENTITY = np.eye(4)
 
@@ -88,6 +89,8 @@ class Mechanism:
     """(G, n) rows of couplings on rates."""
     gear_q: Array
     """(G, nq) the same on positions."""
+    uncertain: float = 0.0
+    """rad, and shares of `length`: by how much loops may be off, as far as geometry is known; 0: it is exact."""
 
     @property
     def rates(self) -> int:
@@ -102,6 +105,28 @@ class Mechanism:
             if slot.has_ball:
                 q[slot.q.start] = 1.0
         return q
+
+    @property
+    def narrow(self) -> float:
+        """The margin (smallest singular value or pivot of the loops over the largest) below which what is known of
+        lengths does not tell whether branches of the motion meet, or part just before."""
+        return CORNER_MARGIN * float(np.sqrt(max(self.uncertain, LENGTHS_ROUNDED)))
+
+    def folds(self, q: Array, rank: int) -> bool:
+        """Whether branches of the motion meet at positions q (nq,), or part just before, as far as is known of lengths:
+        there the loops are singular for all rates, those that are led included. At the end of a driven joint's reach
+        only the others are."""
+        values = np.linalg.svd(self.closure_at(q) * self.scale, compute_uv=False)
+        return bool(rank) and bool(values[rank - 1] < self.narrow * values[0])
+
+    def doubt(self) -> str:
+        """That the motion has come to where its branches are not told apart, in words."""
+        off = max(self.uncertain, LENGTHS_ROUNDED) * self.length
+        return (
+            "the loops come to a singular pose, and which of the branches that meet there they go on in is not known: "
+            f"lengths are known to {1e3 * off:.2g} mm, and smaller differences decide it (drive a second joint, or "
+            "keep the motion away from this pose)"
+        )
 
     @property
     def closed(self) -> bool:

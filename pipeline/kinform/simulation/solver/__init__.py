@@ -32,7 +32,9 @@ is projected too: the error of accelerations grows with the inverse square of th
 Singular poses. Where the margin falls to zero within a step like a V, accelerations are 0/0 with a finite limit,
 and shorter steps only bring evaluations nearer to it. `kernel.crossings` finds the tip of the V from the margins at
 the twelve evaluations and lays the step so that the tip falls into the widest gap between them (0.4667 of the
-step). A run that passes a pose below `doubtful` says so, as the loops could go on in several ways.
+step). A run that passes a pose below `doubtful` says so, as the loops could go on in several ways. Where lengths differ
+by ε from those whose branches meet, the margin falls to about √ε and the motion turns there from one branch into the
+other; where ε is within what is known of the lengths, the run ends (TURNED).
 
 What interrupts. Laws are smooth between knots, so a stretch ends at each knot and the next begins with a short step
 (`dynamic`). An end stop that the dense output passes is found by halving, and the step ends there (`stops`): rates

@@ -140,6 +140,10 @@ class _Driver:
             return f"after t = {t:.6g} s forces or laws of motion are not numbers"
         if status == layout.MASSLESS:
             return f"after t = {t:.6g} s a free motion moves no mass"
+        if status == layout.TURNED:
+            t = float(run.clock[layout.REACHED])
+        if status == layout.TURNED or (status == layout.STUCK and run.folds()):
+            return f"at t = {t:.6g} s {run.dynamics.mechanism.doubt()}{run.loops()}"
         if status == layout.OPENED:
             return f"at t = {t:.6g} s the loops cannot be closed any more: the pose is singular{run.loops()}"
         return (

@@ -48,6 +48,7 @@ class Follower:
     def __init__(self, mechanism: Mechanism, led: Led, q: Array, settings: SolverSettings):
         self.mechanism, self.led, self.settings = mechanism, led, settings
         self.q = q.copy()
+        self._tightest = np.inf
         self.unknown: Ints = np.setdiff1d(np.arange(mechanism.rates), led.v)
         rows = mechanism.closure_at(self.q)
         scale = mechanism.scale
@@ -102,8 +103,12 @@ class Follower:
             if why is None:
                 place += step
                 step *= 2.0
-                if self._margin() < self.settings.singular:
+                margin = self._margin()
+                if margin < self.settings.singular:
                     return PathEnd(place, self._singular())
+                if self._tightest < min(margin, self.mechanism.narrow) and self.mechanism.folds(self.q, self.rank):
+                    return PathEnd(place, self.mechanism.doubt())
+                self._tightest = margin
                 continue
             step *= 0.5
             if step < shortest:

@@ -38,6 +38,7 @@ class Run:
             np.inf,
             STIFF_PATIENCE if settings.method == "auto" else np.inf,
         )
+        self.clock[layout.NARROW] = dynamics.mechanism.narrow
         self.notes: list[str] = []
         dynamics.place(start.q, start.v)
 
@@ -106,6 +107,10 @@ class Run:
         touched = np.abs(mechanism.closure_at(self.dynamics.tables.unpack(self.y)[0])).max(axis=0) > 0.0
         names = [slot.name for slot in mechanism.slots if touched[slot.v].any()]
         return f", in the loops of {', '.join(names)}"
+
+    def folds(self) -> bool:
+        """Whether branches of the motion meet at the present pose, as far as lengths are known."""
+        return self.dynamics.mechanism.folds(self.dynamics.tables.unpack(self.y)[0], self.dynamics.rank)
 
     def record(self, stopped: str) -> Record:
         """What there is, with a warning where the loops came close to a singular pose."""
