@@ -172,7 +172,8 @@ SLIVER_ARC = math.radians(30.0)
 SLIVER_SHARE = 0.01
 """... with less than this share of the contact area, decide nothing. So do planes that only facets rest on."""
 SLIVER_ARC_ONE_SIDED = math.radians(90.0)
-"""rad: the same, whatever the share, where only facets of no known surface run on the round: flanks of teeth."""
+"""rad: the same, whatever the share, where only facets of no known surface run on the round: flanks of teeth. Below the
+share, whatever the arc."""
 DIP = 0.1
 """Share of the contact tolerance from which on a flat that overlaps dips into the other part, ..."""
 DIP_SHARE = 0.05
@@ -228,6 +229,10 @@ SUGGESTED_AXIS = 1e-3
 
 ON_ONE_LINE = 1e-3
 """Sine between axes, and share of the assembly's size between lines, of contacts of a pin that are about one line."""
+
+READING_PLACE = 0.1
+"""Share of the size of a contact by which the place of an intended joint may be off that of the reading that it
+chooses."""
 
 # --- axes/snapping --------------------------------------------------------------------------------------------------
 

@@ -92,7 +92,7 @@ def derive(
     pairs = Pairs(assembly, contacts, patches, extents, answers)
     merger, decided, hints = _fuse_and_decide(pairs, contacts)
     bodies = merger.bodies()
-    decided = choose_readings(assembly, _body_of_part(bodies), decided, size)
+    decided = choose_readings(assembly, _body_of_part(bodies), decided, patches, size)
     stated = stated_joints(assembly, _body_of_part(bodies))
     by_contact = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated

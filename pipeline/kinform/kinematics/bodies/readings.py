@@ -14,10 +14,11 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, foot
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
-from kinform.kinematics.constants import INTENDED_AXIS, INTENDED_PLACE, ON_ONE_LINE
+from kinform.kinematics.constants import INTENDED_AXIS, ON_ONE_LINE, READING_PLACE
 from kinform.kinematics.pair.joint import reading_of
 from kinform.kinematics.pair.question import Answer
 from kinform.model.assembly import Assembly
+from kinform.model.contacts import Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
@@ -26,11 +27,11 @@ Decided = Mapping[Pair, tuple[Answer, Joint]]
 
 
 def choose_readings(
-    assembly: Assembly, of_part: Mapping[PartName, BodyName], decided: Decided, size: float
+    assembly: Assembly, of_part: Mapping[PartName, BodyName], decided: Decided, patches: Sequence[Patch], size: float
 ) -> dict[Pair, tuple[Answer, Joint]]:
     """The decided pairs, with those that may be read in two ways as what chooses reads them.
 
-    `size` (m) is that of the assembly.
+    `patches` are those of the joints, `size` (m) is that of the assembly.
     """
     wanted = {
         pair: intended
@@ -41,7 +42,7 @@ def choose_readings(
     out: dict[Pair, tuple[Answer, Joint]] = {}
     for pair, (answer, joint) in decided.items():
         if joint.readings and pair in wanted:
-            out[pair] = _as_intended(wanted[pair], answer, joint, size)
+            out[pair] = _as_intended(wanted[pair], answer, joint, patches)
         elif joint.readings and seated.intersection(pair) and joint.readings[0].cause == "stop":
             reason = f"{joint.reason}; a pin that several bodies hold about one line is seated"
             out[pair] = answer, replace(joint, status="determined", reason=reason)
@@ -50,11 +51,13 @@ def choose_readings(
     return out
 
 
-def _as_intended(intended: IntendedJoint, answer: Answer, joint: Joint, size: float) -> tuple[Answer, Joint]:
+def _as_intended(
+    intended: IntendedJoint, answer: Answer, joint: Joint, patches: Sequence[Patch]
+) -> tuple[Answer, Joint]:
     """The reading that is the intended joint, as inferred; unchanged where none is."""
     assert answer.other is not None
     first, second = joint, answer.other
-    chosen = next((j for j in (first, second) if _is(j, intended, size)), None)
+    chosen = next((j for j in (first, second) if _is(j, intended, patches)), None)
     if chosen is None:
         return answer, joint
     left = reading_of(first, "") if chosen is second else joint.readings[0]
@@ -66,8 +69,11 @@ def _as_intended(intended: IntendedJoint, answer: Answer, joint: Joint, size: fl
     return replace(answer, strict=strict), inferred
 
 
-def _is(joint: Joint, intended: IntendedJoint, size: float) -> bool:
-    """Is it the intended joint: of its type, with its axis and place as far as these are stated?"""
+def _is(joint: Joint, intended: IntendedJoint, patches: Sequence[Patch]) -> bool:
+    """Is it the intended joint: of its type, with its axis and place as far as these are stated?
+
+    By how much axes may differ is said by the contact; what is left over is a finding (KF403, KF404).
+    """
     if joint.type != intended.type:
         return False
     if joint.axis is None or intended.axis is None:
@@ -77,7 +83,8 @@ def _is(joint: Joint, intended: IntendedJoint, size: float) -> bool:
     if intended.point is None or joint.point is None or joint.type in ("prismatic", "planar"):
         return True
     apart = joint.point - foot(intended.point, joint.axis, joint.point)
-    return float(np.linalg.norm(apart)) <= INTENDED_PLACE * size
+    box = np.ptp(np.concatenate([patches[k].points for k in joint.patches]), axis=0)
+    return float(np.linalg.norm(apart)) <= READING_PLACE * float(np.linalg.norm(box))
 
 
 def _pins(decided: Decided, size: float) -> set[BodyName]:

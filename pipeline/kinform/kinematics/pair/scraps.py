@@ -37,7 +37,7 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
         arc = sum(_arc(items[k], line.axis) for k in members)
         together = float(share[members].sum())
         if all(items[k].patch.one_sided for k in members):
-            slight[members] = arc < constants.SLIVER_ARC_ONE_SIDED
+            slight[members] = arc < constants.SLIVER_ARC_ONE_SIDED or together < constants.SLIVER_SHARE
         else:
             slight[members] = arc < constants.SLIVER_ARC and together < constants.SLIVER_SHARE
     return slight
