@@ -104,8 +104,8 @@ def test_what_contact_holds_by_itself_is_not_called_inferred():
 
 
 def test_a_joint_that_follows_says_from_which_suggestion():
-    lower = plates()["lower"] - rod(3, -6, 1, 48)
-    _, derived = found(np.eye(4), infer=True, upper=plates()["upper"], lower=lower, pin=rod(3, -4.9, -0.1, 48))
+    lower = plates()["lower"] - rod(3, -4, 1, 48)
+    _, derived = found(np.eye(4), infer=True, upper=plates()["upper"], lower=lower, pin=rod(3, -3.95, -0.05, 48))
     (joint,) = derived.joints
     assert joint.status == "inferred"
     assert "lower~upper: 4 aligned empty holes" in joint.reason

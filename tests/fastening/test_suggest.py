@@ -86,8 +86,8 @@ def test_inferring_turns_the_planar_joint_about_the_rims_and_labels_it():
 
 
 def test_inferring_makes_one_body_and_labels_the_joints_that_follow():
-    lower = drilled(-5, 0, CORNERS) - rod(3, -6, 1, 48).translate((0, 0, 0))
-    pin = rod(3, -4.9, -0.1, 48)
+    lower = drilled(-5, 0, CORNERS) - rod(3, -4, 1, 48)
+    pin = rod(3, -3.95, -0.05, 48)
     _, plain = found(np.eye(4), upper=drilled(0, 5, CORNERS), lower=lower, pin=pin)
     _, derived = found(np.eye(4), infer=True, upper=drilled(0, 5, CORNERS), lower=lower, pin=pin)
     assert len(plain.bodies) == 3
