@@ -76,6 +76,14 @@ def test_round_numbers_are_not_rounded_ones():
     assert written_step([repr(v) for v in values], np.array(values)) == 0.0
 
 
+@pytest.mark.parametrize("form, step", [("%.17g", 0.0), ("%.4f", 0.0), ("%.3g", 1.0), ("%.0f", 1.0)])
+def test_whole_numbers_of_a_box_are_rounded_only_if_its_bore_is(form, step):
+    """A plate of 137 by 141 mm with a bore of 3 mm: its large coordinates say nothing by themselves."""
+    bore = 3.0 * np.cos(np.arange(40) / 7.0)
+    values = np.concatenate([[137.0, -137.0, 141.0, -141.0], bore])
+    assert written_step([form % v for v in values], values) == step
+
+
 def test_doubles_are_written_finer_than_can_be_told():
     values = np.random.default_rng(2).uniform(1e6, 1e6 + 10, 50)
     assert written_step([repr(float(v)) for v in values], values) < 1e-8

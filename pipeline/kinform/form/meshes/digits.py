@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinform.form.constants import DIGITS_READ, LARGE_COORDINATES, LAST_DIGIT_USED
-from kinform.model.arrays import Array
+from kinform.model.arrays import Array, Ints
 
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 
@@ -23,19 +23,30 @@ def written_step(tokens: Sequence[str], values: Array) -> float:
     digits do not look like rounded ones."""
     size = np.abs(values)
     large = np.flatnonzero(size >= size.max(initial=0.0) * LARGE_COORDINATES)
-    chosen = large[:: max(1, len(large) // DIGITS_READ)]
-    places: dict[str, int] = {}
-    for token in {tokens[k] for k in chosen.tolist()}:
+    coarse, every = _digits(tokens, large), _digits(tokens, np.arange(len(tokens)))
+    if not coarse or not every:
+        return 0.0
+    finest, longest = min(place for place, _ in coarse), max(count for _, count in coarse)
+    used = sum(place == finest for place, _ in coarse) / len(coarse)
+    # others that are written more finely show that neither decimals nor digits were cut
+    cut = all(place >= finest for place, _ in every) or all(count <= longest for _, count in every)
+    return 10.0**finest if used > LAST_DIGIT_USED and cut else 0.0
+
+
+def _digits(tokens: Sequence[str], indices: Ints) -> list[tuple[int, int]]:
+    """(power of ten of the last digit, number of digits) of distinct numbers among these; none where one is no number.
+
+    A sample of them, evenly chosen; noughts at either end do not count, and nought itself says nothing.
+    """
+    out = []
+    for token in {tokens[k] for k in indices[:: max(1, len(indices) // DIGITS_READ)].tolist()}:
         match = _NUMBER.match(token)
         if match is None:
-            return 0.0
-        digits = match[2].rstrip("0")
-        exponent = int(match[3] or 0)
+            return []
+        decimals = match[2].rstrip("0")
         whole = match[1].lstrip("0")
-        zeros = 0 if digits else len(whole) - len(whole.rstrip("0"))
-        places[token] = exponent - len(digits) + zeros
-    if not places:
-        return 0.0
-    finest = min(places.values())
-    used = sum(place == finest for place in places.values()) / len(places)
-    return 10.0**finest if used > LAST_DIGIT_USED else 0.0
+        zeros = 0 if decimals else len(whole) - len(whole.rstrip("0"))
+        count = len((whole + decimals).lstrip("0")) - zeros
+        if count:
+            out.append((int(match[3] or 0) - len(decimals) + zeros, count))
+    return out
