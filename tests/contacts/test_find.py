@@ -130,7 +130,7 @@ def test_pairs_that_no_longer_meet_are_not_reused():
 def test_the_broad_phase_keeps_exactly_the_pairs_whose_boxes_come_within_the_tolerance(corners):
     parts = {f"p{k}": (cube(), pose(translation=np.array(corner) * 0.7 * MM)) for k, corner in enumerate(corners)}
     design, _ = assembly(parts)
-    tolerance = design.tolerances.contact_of(*[np.sqrt(300) * MM] * 2)
+    tolerance = design.tolerances.contact_of(*[design.parts[0].mesh.size] * 2)
     expected = {
         (f"p{i}", f"p{j}"): pytest.approx(tolerance)
         for i in range(len(corners))

@@ -32,20 +32,19 @@ BENT_ALIKE = 0.25
 
 # --- comparisons/plausibility -----------------------------------------------------------------------------------------
 
-HUGE = 100.0
-"""Diagonal (m) above which the units are taken to be wrong."""
 LARGE = 20.0
 """Diagonal (m) above which the units are doubted."""
 MASSIVE = 1000.0
-"""Volume of solid material (m³) above which the units are taken to be wrong."""
-TINY: Mapping[str, float] = {"um": 1e-6}
-"""Diagonal (m) below which the units are taken to be wrong, for each unit; `TINY_ELSE` where not listed."""
-TINY_ELSE = 1e-3
+"""Volume of solid material (m³) above which the units are doubted."""
+TINY: Mapping[str, float] = {"um": 3e-6}
+"""Diagonal (m) below which the units are doubted, for each unit; `TINY_ELSE` where not listed."""
+TINY_ELSE = 3e-3
 """m."""
-SMALL = 3.0
-"""Below so many times that the units are doubted."""
 OUTLIER = 100.0
 """A part so many times larger than all others together is doubted."""
+MIXED = 1000.0
+"""Parts whose largest is so many times larger than the smallest, with a gap between two sizes of `OUTLIER`, are in
+different units: metres and millimetres."""
 
 # --- rules/kf121_mass_invalid -----------------------------------------------------------------------------------------
 

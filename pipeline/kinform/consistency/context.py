@@ -167,11 +167,9 @@ class Context:
         """Why contacts, and all that follows from them, mean nothing; None when they do."""
         if self.assembly.lost:
             return inconclusive("mesh files have lost the shapes of parts (KF111): contacts of these mean nothing")
-        if not self.meshes or self.assembly.tolerances.contact is not None:
-            return None
-        if not any(doubt.severity == "error" for doubt in self.doubts):
-            return None
-        return inconclusive("the units are implausible (KF110): contacts found at this size mean nothing")
+        if self.assembly.tolerances.contact is None and any(doubt.severity == "error" for doubt in self.doubts):
+            return inconclusive("parts are in different units (KF110): contacts between them mean nothing")
+        return None
 
     def lacks(self, need: Need) -> Outcome | None:
         """Why what a rule needs is not there: it does not apply, or nothing can be decided; None where it is there."""

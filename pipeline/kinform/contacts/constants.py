@@ -17,6 +17,8 @@ MATING_REACH = 1.02
 rounding must not decide whether those are contacts."""
 CLEARANCE_SHARE = 0.03
 """Share of its radius that a shaft may be smaller than its bore, where that is more than the contact tolerance."""
+FACE_SHARE = 0.5
+"""Share of the smaller extent of two faces beyond which a gap between them is none of contact."""
 HALF_RADIUS_SHARE = 3.0
 """A radial gap of the radius divided by this is no fit."""
 MOST_SURFACES = 3000

@@ -16,7 +16,7 @@ from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
 from kinform.model.quantities import Direction, Inertia, Metres, Place, columns
-from kinform.model.tolerances import Tolerances
+from kinform.model.tolerances import PartSize, Tolerances
 
 
 @dataclass(frozen=True)
@@ -116,6 +116,25 @@ class Mesh:
         """Length of the diagonal of the bounding box (m)."""
         low, high = self.box
         return float(np.linalg.norm(high - low))
+
+    @cached_property
+    def size(self) -> PartSize:
+        """The lengths of which tolerances are shares.
+
+        The wall is twice the volume over the area: of a plate its thickness, of a rod its radius, of a cube a third of
+        its side; that of the box where the mesh is not closed, and without bound where it is flat.
+        """
+        if self.bare is not self:
+            return self.bare.size
+        low, high = self.box
+        wall = float((high - low).min()) / 3.0
+        if self.health.watertight and len(self.faces):
+            corners = (self.vertices - 0.5 * (low + high))[self.faces]
+            across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
+            volume = abs(float(np.einsum("ij,ij->", corners[:, 0], across))) / 6.0
+            wall = 2.0 * volume / area if area > 0.0 else 0.0
+        return PartSize(self.diagonal, wall if wall > 0.0 else float("inf"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,6 +55,8 @@ class Patch:
     """clearance, touch, transition or interference, beyond chord errors and uncertainty."""
     pitch: Lead = 0.0
     """m a turn that two helicoids have in common, right-handed positive; 0 for other kinds."""
+    tolerance: Metres = 0.0
+    """m: gap or overlap up to which these two surfaces mate; 0: that of the pair."""
 
 
 @dataclass(frozen=True, eq=False)

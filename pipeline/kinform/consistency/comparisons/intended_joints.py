@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross
+from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.questions.through_helpers import motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -49,8 +50,8 @@ class Comparison:
     """Uncertainty of the found direction."""
     position_slack: float = 0.0
     """Uncertainty of the found position."""
-    tolerance: float = 0.0
-    """Contact tolerance at the joint (m)."""
+    position_limit: float = 0.0
+    """By so much the axis or centre may lie beside the intended one (m)."""
 
     @property
     def right_type(self) -> bool:
@@ -114,6 +115,8 @@ def compare_joint(
         return Comparison(intended, bodies, "absent")
     patches = [contacts.patches[k] for j in used for k in j.patches] if contacts is not None else []
     angle_slack, position_slack = _slack(patches)
+    if motion is None and direct is not None:
+        angle_slack, position_slack = direct.axis_uncertainty, direct.point_uncertainty
     form = direct if motion is None else motion.form
     assert form is not None
     state, reason = _certainty(intended, form.type, used)
@@ -132,7 +135,7 @@ def compare_joint(
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
-        tolerance=_tolerance(assembly, contacts, patches),
+        position_limit=assembly.tolerances.offset_limit(_smaller(assembly, bodies)),
     )
 
 
@@ -158,11 +161,11 @@ def _slack(patches: list[Patch]) -> tuple[float, float]:
     return max(p.uncertainty[0] for p in patches), max(p.uncertainty[1] for p in patches)
 
 
-def _tolerance(assembly: Assembly, contacts: Contacts | None, patches: list[Patch]) -> float:
-    """Contact tolerance of the pairs of parts that carry the joint: the greatest."""
-    tolerances = {} if contacts is None else contacts.tolerance
-    of_pairs = [tolerances[patch.parts] for patch in patches if patch.parts in tolerances]
-    return max(of_pairs) if of_pairs else assembly.tolerances.contact or assembly.tolerances.contact_cap
+def _smaller(assembly: Assembly, bodies: tuple[Body, Body]) -> float:
+    """Diagonal (m) of the smaller of the bodies that have one; of the assembly where none has."""
+    extents = Extents(assembly)
+    sizes = [size for body in bodies if (size := extents.diagonal(body.parts)) > 0.0]
+    return min(sizes) if sizes else extents.assembly
 
 
 def _between(a: Array, b: Array) -> float:

@@ -1,16 +1,14 @@
 """Whether the sizes of an assembly can be what the designer meant.
 
-A mesh file carries no unit, so the commonest mistake is a factor of 1000. No size proves it; these
-limits were chosen so that machines that people build, from a wrist watch to a ship's crane, stay
-clear of an error:
+A mesh file carries no unit, so the commonest mistake is a factor of 1000. Contacts, joints and mobility are the same at
+any size, and no size proves a mistake; nothing but these doubts depends on it:
 
-- more than 100 m across, or more than 1000 m³ of solid material (8000 t of steel, more than the
-  structure of the largest land machines): an error. A device of 50 mm read in metres is about 50 m
-  across and some 10 000 m³ of material;
-- below 1 mm across, unless the unit is um (then 1 um): an error. A device of 100 mm whose metres are
-  read as millimetres is 0.1 mm across;
-- more than 20 m, below 3 mm (1 um to 3 um for um), or one part a hundred times larger than all others
-  together: a warning.
+- more than 20 m across, or more than 1000 m³ of solid material (8000 t of steel, more than the structure of the
+  largest land machines): a warning. A device of 50 mm read in metres is about 50 m across, with some 10 000 m³;
+- below 3 mm across, unless the unit is um (then 3 um): a warning;
+- one part a hundred times larger than all others together: a warning;
+- parts of two sizes, a thousand times apart, with a hundred times between the two sorts: an error. Some are in metres,
+  the others in millimetres.
 """
 
 from __future__ import annotations
@@ -20,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.consistency.constants import HUGE, LARGE, MASSIVE, OUTLIER, SMALL, TINY, TINY_ELSE
+from kinform.consistency.constants import LARGE, MASSIVE, MIXED, OUTLIER, TINY, TINY_ELSE
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
@@ -42,6 +40,9 @@ def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
     of their intended joints."""
     size = extent(assembly)
     whole = _of_the_whole(assembly, size) if size is not None else None
+    mixed = _mixed(assembly)
+    if mixed is not None:
+        return (mixed,)
     return (whole,) if whole is not None else tuple(_outliers(assembly))
 
 
@@ -66,25 +67,35 @@ def _of_the_whole(assembly: Assembly, size: float) -> Doubt | None:
     material = sum(_material(part) for part in assembly.parts)
     across = f"{length(size, units)} across"
 
-    def doubt(severity: str, message: str, size_found: str = across) -> Doubt:
-        return Doubt(severity, (assembly.name,), message, size_found, assembly.source)
+    def doubt(message: str, size_found: str = across) -> Doubt:
+        return Doubt("warning", (assembly.name,), message, size_found, assembly.source)
 
-    if size > HUGE:
-        return doubt("error", f"the assembly is {across} with units = '{units}': no mechanism is that large")
     if material > MASSIVE:
         amount = volume(material, units)
         return doubt(
-            "error",
             f"the parts hold {amount} of solid material with units = '{units}': no mechanism is that heavy",
             f"{across}, {amount} of material",
         )
-    if 0.0 < size < tiny:
-        return doubt("error", f"the assembly is only {across} with units = '{units}'")
     if size > LARGE:
-        return doubt("warning", f"the assembly is {across} with units = '{units}': unusually large for a mechanism")
-    if 0.0 < size < SMALL * tiny:
-        return doubt("warning", f"the assembly is only {across} with units = '{units}': unusually small")
+        return doubt(f"the assembly is {across} with units = '{units}': unusually large for a mechanism")
+    if 0.0 < size < tiny:
+        return doubt(f"the assembly is only {across} with units = '{units}': unusually small")
     return None
+
+
+def _mixed(assembly: Assembly) -> Doubt | None:
+    """Parts that are all so much larger than the others that the two sorts are in different units."""
+    meshed = ((p.mesh.diagonal, p) for p in assembly.parts if p.mesh is not None and p.mesh.diagonal > 0.0)
+    sized = sorted(meshed, key=lambda item: (item[0], item[1].name))
+    sizes = np.array([size for size, _ in sized])
+    apart = np.flatnonzero(sizes[1:] > OUTLIER * sizes[:-1])
+    if not len(apart) or sizes[-1] < MIXED * sizes[0]:
+        return None
+    small, large = (sized[k] for k in (apart[0], apart[0] + 1))
+    few = [part for _, part in (sized[: apart[0] + 1] if 2 * apart[0] < len(sized) - 1 else sized[apart[0] + 1 :])]
+    texts = [f"{quoted([part.name])} is {length(size, assembly.units)} across" for size, part in (small, large)]
+    message = f"parts are in different units: {texts[0]}, {texts[1]}, and none is between"
+    return Doubt("error", tuple(sorted(p.name for p in few)), message, texts[0], few[0].source)
 
 
 def _outliers(assembly: Assembly) -> Iterator[Doubt]:

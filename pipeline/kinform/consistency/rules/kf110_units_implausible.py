@@ -1,15 +1,14 @@
-"""The size of the assembly says that the units are not what the manifest states.
+"""The size of the assembly, or of parts beside each other, says that the units are not what the manifest states.
 
-An error above 100 m across, above 1000 m³ of solid material, or below 1 mm across (1 um with
-`units = "um"`). A warning above 20 m, below 3 mm (3 um), or when one part is 100 times larger than all
-others together. Stick models are measured by the points of their joints.
+A warning above 20 m across, above 1000 m³ of solid material, below 3 mm (3 um with `units = "um"`), or when one
+part is 100 times larger than all others together. An error where sizes of parts differ by more than 1000, and are of two
+sorts with a factor of 100 between: rules about contacts, joints and motion are then inconclusive, unless the manifest
+states `tolerances.contact`. Stick models are measured by the points of their joints.
 
-Why it matters: mesh files carry no unit. At a wrong scale clearances are read a thousand times too
-wide, masses are wrong by 10⁹, and every result is a confident mistake. Unless the manifest states
-`tolerances.contact`, rules about contacts, joints and motion are inconclusive after an error here.
+Why it matters: mesh files carry no unit. Contacts and joints are the same at any size, but masses are wrong by 10⁹ at a
+wrong one, and so are forces and times. Parts in different units do not meet at all.
 
-What to do: correct `units` in `[assembly]`, or `units` of the part. If the size is right, state
-`tolerances.contact` for it: the default of at most 0.5 mm was made for machines that fit in a room.
+What to do: correct `units` in `[assembly]`, or `units` of the part.
 
 Example: a camera gimbal drawn in millimetres and declared with `units = "m"` is 150 m across.
 """

@@ -1,12 +1,12 @@
 """The axis of a joint points in another direction than intended.
 
-A finding when the angle exceeds `tolerances.alignment` (default 0.2°) by more than the uncertainty of the
-found axis; inconclusive when the uncertainty decides. The sense of the axis does not count. Only joints
-of the right type are compared.
+A finding when the angle exceeds `tolerances.axis_angle` (default `tolerances.alignment`, 0.2°) by more than the
+uncertainty of the found axis; inconclusive when the uncertainty decides. The sense of the axis does not count.
+Only joints of the right type are compared.
 
 Why it matters: over 100 mm, 0.5° is 0.9 mm; optical and bearing axes are rarely allowed as much.
 
-What to do: correct the bore or the shaft, or `axis` of the intended joint. Raise `tolerances.alignment`
+What to do: correct the bore or the shaft, or `axis` of the intended joint. Raise `tolerances.axis_angle`
 if the difference is acceptable.
 
 Example: the pitch axis of a gimbal was drilled 0.5° off square.
@@ -24,7 +24,7 @@ from kinform.model.findings import Finding
 
 def check(context: Context) -> Outcome:
     """Angles between intended and found axes."""
-    limit = context.assembly.tolerances.alignment
+    limit = context.assembly.tolerances.angle_limit()
     findings, unknown, count = [], [], 0
     for c in context.comparisons:
         off = c.angle

@@ -1,13 +1,14 @@
 """The axis, or the centre, of a joint lies beside the intended one.
 
-A finding when the distance exceeds the contact tolerance of the parts that carry the joint (default
-0.5 mm, or 3 % of the smaller part where that is less) by more than the uncertainty of the found axis;
-inconclusive when the uncertainty decides. Axes are lines: their least distance over the stretch between
-the intended point and the joint counts, so that a tilt alone is reported by KF403 only.
+A finding when the distance exceeds `tolerances.axis_offset` (default 0.5 % of the smaller body's diagonal)
+by more than the uncertainty of the found axis; inconclusive when the uncertainty decides. Axes are lines: their
+least distance over the stretch between the intended point and the joint counts, so that a tilt alone is reported by
+KF403 only.
 
 Why it matters: levers, strokes and clearances are computed from wrong places.
 
-What to do: correct the position of the bore or the pose of the part, or `point` of the intended joint.
+What to do: correct the position of the bore or the pose of the part, or `point` of the intended joint. Raise
+`tolerances.axis_offset` if the difference is acceptable.
 
 Example: a hinge that was moved 2 mm in the CAD model, and not in the manifest.
 """
@@ -31,9 +32,9 @@ def check(context: Context) -> Outcome:
         if off is None:
             continue
         count += 1
-        if off > c.tolerance + c.position_slack:
+        if off > c.position_limit + c.position_slack:
             findings.append(_finding(c, off, units))
-        elif off > c.tolerance:
+        elif off > c.position_limit:
             unknown.append(
                 f"'{c.intended.name}' is {length(off, units)} off, known to {length(c.position_slack, units)}"
             )
@@ -48,7 +49,7 @@ def _finding(c: Comparison, off: float, units: str) -> Finding:
     return RULE.finding(
         [c.intended.name],
         f"the {what} of joint '{c.intended.name}' is {length(off, units)} beside the intended one "
-        f"(allowed {length(c.tolerance, units)})",
+        f"(allowed {length(c.position_limit, units)})",
         found=f"through {place(c.point, units)}",
         intended=f"through {place(c.intended.point, units)}",
         place=c.point,

@@ -49,7 +49,9 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
     above_a, above_b = float((middle - on_first) @ first), float((middle - on_second) @ second)
     gap = above_a + above_b
     tilt = angle * float(np.linalg.norm(size))
-    if abs(gap) > constants.MATING_REACH * tolerance + tilt:
+    # the common box of two faces is thinnest across them: its middle side is their smaller extent
+    limit = constants.MATING_REACH * min(tolerance, constants.FACE_SHARE * float(np.sort(size)[1]))
+    if abs(gap) > limit + tilt:
         return None
     half = middle + 0.5 * (above_b - above_a) * normal
     return Mate(
@@ -61,7 +63,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
         point=half,
         gap=gap,
         gradient=first + second,
-        limit=constants.MATING_REACH * tolerance,
+        limit=limit,
         slack=surfaces.slack + tilt,
         misalignment=angle,
         uncertainty=(turn, sum(surfaces.shifts)),
@@ -74,7 +76,7 @@ def _cylinder_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     for surfaces in _nearly_coaxial(pair, overlap, "cylinder"):
         radii, side = surfaces.radii, surfaces.sides[0]
         gap = (radii[1] - radii[0]) * side
-        limit = radial_limit(pair.tolerance, min(radii))
+        limit = radial_limit(pair.play, min(radii))
         length, middle = _engaged(surfaces)
         if abs(gap) > limit or length <= 0.0:
             continue
@@ -148,7 +150,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
         (first, second), radii, side = surfaces.points, surfaces.radii, surfaces.sides[0]
         gap = (radii[1] - radii[0]) * side
         offset = float(np.linalg.norm(second - first))
-        limit = radial_limit(pair.tolerance, min(radii))
+        limit = radial_limit(pair.play, min(radii))
         spare = max(gap, 0.0) + min(sum(surfaces.shifts), pair.tolerance) + constants.MATING_OFFSET * pair.tolerance
         if abs(gap) > limit or offset > spare:
             continue

@@ -50,11 +50,11 @@ class Mate:
         return np.asarray(self.gap + (points - self.point) @ self.gradient)
 
 
-def radial_limit(tolerance: float, radius: float) -> float:
+def radial_limit(play: float, radius: float) -> float:
     """Greatest radial gap or overlap at which curved surfaces mate (m): real coaxial clearances grow
-    with the radius, and a gap of a third of the radius is no fit."""
+    with the radius, and a gap of a third of the radius is no fit. `play` (m) is that of the pair."""
     return constants.MATING_REACH * min(
-        max(tolerance, constants.CLEARANCE_SHARE * radius), radius / constants.HALF_RADIUS_SHARE
+        max(play, constants.CLEARANCE_SHARE * radius), radius / constants.HALF_RADIUS_SHARE
     )
 
 

@@ -131,6 +131,7 @@ def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> 
         uncertainty=mate.uncertainty,
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
+        tolerance=mate.limit / constants.MATING_REACH,
     )
 
 

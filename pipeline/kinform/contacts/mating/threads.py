@@ -15,7 +15,7 @@ import numpy as np
 
 from kinform.contacts import constants
 from kinform.contacts.mating.charts import plane_basis
-from kinform.contacts.mating.mate import Axes, aligned, mean_axes, radial_limit
+from kinform.contacts.mating.mate import Axes, aligned, mean_axes
 from kinform.contacts.mating.patches import classify_fit
 from kinform.contacts.search.pair_view import PairView, PartView, SurfacePair
 from kinform.foundation.algebra.vectors import cross, dot
@@ -65,7 +65,7 @@ def _fit(pair: PairView, surfaces: SurfacePair) -> tuple[Axes, float, float] | N
     turns = engaged / max(abs(first), 1e-12)
     apart = abs(first - second)
     pitch = 0.5 * (first + second)
-    limit = min(radial_limit(pair.tolerance, min(surfaces.radii)), constants.FLANK_GAP * abs(pitch))
+    limit = constants.FLANK_GAP * abs(pitch)
     if max(surfaces.turns) > constants.THREAD_AXIS_VAGUE:
         return None
     if apart > constants.PITCH_SAME * abs(first) or apart * max(turns, 1.0) > limit:

@@ -47,8 +47,8 @@ def candidate_pairs(assembly: Assembly) -> dict[Pair, float]:
     for number, part in enumerate(parts):
         assert part.mesh is not None
         low, high = part.mesh.placed_box(part.X_WP)
-        size = part.mesh.diagonal
-        grow = 2.0 * MATING_REACH * tolerances.contact_of(size, size)
+        size = part.mesh.size
+        grow = 2.0 * MATING_REACH * tolerances.widest(size)
         box = fcl.Box(*(high - low + grow))
         boxes.append(box)
         objects.append(fcl.CollisionObject(box, fcl.Transform(0.5 * (low + high))))

@@ -263,6 +263,8 @@ class PairView:
     """Surfaces of a and of b with facets near the other part."""
     tolerance: float
     """m: surfaces further apart than this do not touch."""
+    play: float
+    """m: the same of round surfaces, as far as it does not hang on their radii."""
     tolerances: Tolerances
 
     @property
@@ -327,11 +329,12 @@ def pair_view(
         )
         for part, mesh in zip(parts, (first, second), strict=True)
     )
-    reach = MATING_REACH * max(tolerance, CLEARANCE_SHARE * min(a.table.radius, b.table.radius))
+    play = max(tolerance, tolerances.radial_of(first.size, second.size))
+    reach = MATING_REACH * max(play, CLEARANCE_SHARE * min(a.table.radius, b.table.radius))
     low, high = np.maximum(a.low, b.low) - reach, np.minimum(a.high, b.high) + reach
     if (low > high).any():
         return None
     margin = max(a.table.slack, b.table.slack)
     a, b = _facing(a, b, low - margin, high + margin, reach + margin)
     near = (_near_surfaces(a, low, high), _near_surfaces(b, low, high))
-    return PairView(a, b, near, tolerance, tolerances), home.X_WP, reach
+    return PairView(a, b, near, tolerance, play, tolerances), home.X_WP, reach

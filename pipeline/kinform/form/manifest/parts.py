@@ -90,13 +90,20 @@ class TolerancesTable(Table):
 
     contact: Positive | None = Field(
         None,
-        description="gap or overlap up to which surfaces mate; default min(0.5 mm, 3 % of the smaller part)",
+        description="gap or overlap up to which surfaces mate; default by shares of the parts' sizes and walls",
     )
     weld: NonNegative | None = Field(
         None, description="vertices closer than this are one; default 1e-6 of the part's size"
     )
     alignment: Annotated[float, Field(ge=0, le=45, allow_inf_nan=False)] | None = Field(
         None, description="degrees within which two axes of one pair mate; default 0.2"
+    )
+    axis_angle: Annotated[float, Field(ge=0, le=45, allow_inf_nan=False)] | None = Field(
+        None, description="degrees by which a joint's axis may differ from the intended one; default: alignment"
+    )
+    axis_offset: NonNegative | None = Field(
+        None,
+        description="length by which a joint's axis may lie beside the intended one; default 0.5 % of the smaller body",
     )
 
 

@@ -279,5 +279,7 @@ def _tolerances(table: TolerancesTable, metres: float) -> Tolerances:
         "contact": None if table.contact is None else table.contact * metres,
         "weld": None if table.weld is None else table.weld * metres,
         "alignment": None if table.alignment is None else math.radians(table.alignment),
+        "axis_angle": None if table.axis_angle is None else math.radians(table.axis_angle),
+        "axis_offset": None if table.axis_offset is None else table.axis_offset * metres,
     }
     return replace(Tolerances(), **{key: value for key, value in stated.items() if value is not None})

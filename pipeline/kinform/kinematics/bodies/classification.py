@@ -103,5 +103,6 @@ def _scales(
     extents: Extents,
 ) -> tuple[float, float]:
     """The contact tolerance of a pair of bodies, and the diagonal of the smaller one (m)."""
-    contact = max(of_parts.get(p.parts, tolerances.contact_cap) for _, p, _ in members)
-    return contact, min(extents.diagonal(body.parts) for body in bodies)
+    size = min(extents.diagonal(body.parts) for body in bodies)
+    usual = tolerances.contact_large * size if tolerances.contact is None else tolerances.contact
+    return max(of_parts.get(p.parts, usual) for _, p, _ in members), size

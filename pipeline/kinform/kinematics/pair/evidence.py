@@ -125,7 +125,7 @@ def _stray(item: Item, total: float, contact: float) -> bool:
 def _item(index: int, patch: Patch, turned: bool, tolerances: Tolerances, contact: float) -> Item:
     """A patch with its weights, and with how far off it may be: by its fit, and by the clearance of what runs in it."""
     band = np.empty(len(patch.points))
-    relative = np.abs(patch.gaps) / contact
+    relative = np.abs(patch.gaps) / max(patch.tolerance, contact)
     for limit, weight in reversed(GAP_BANDS):
         band[relative <= limit] = weight
     weights = np.maximum(patch.weights, 1e-30) * band
