@@ -1,9 +1,9 @@
 """The size of the assembly, or of parts beside each other, says that the units are not what the manifest states.
 
 A warning above 20 m across, above 1000 m³ of solid material, below 3 mm (3 um with `units = "um"`), or when one
-part is 100 times larger than all others together. An error where sizes of parts differ by more than 1000, and are of two
-sorts with a factor of 100 between: rules about contacts, joints and motion are then inconclusive, unless the manifest
-states `tolerances.contact`. Stick models are measured by the points of their joints.
+part is 100 times larger than all others together. An error where sizes of parts differ by more than 1000, and are of
+two sorts with a factor of 100 between: rules about contacts, joints and motion are then inconclusive, unless the
+manifest states `tolerances.contact`. Stick models are measured by the points of their joints.
 
 Why it matters: mesh files carry no unit. Contacts and joints are the same at any size, but masses are wrong by 10⁹ at a
 wrong one, and so are forces and times. Parts in different units do not meet at all.
