@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from support.patches import Z, cylinder, plane, ring
+from support.patches import Z, cylinder, plane, ring, sphere
 
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather
@@ -157,3 +157,16 @@ def test_attitude_size_and_place_do_not_matter(name, turn, scale, shift):
     turn = Rotation.random(random_state=turn)
     there = [moved(p, turn, scale, scale * np.array(shift)) for p in SCENES[name]]
     assert types(decision(there, 5e-4 * scale)) == types(decision(SCENES[name]))
+
+
+def test_a_tiny_flat_holds_a_shaft_both_ways():
+    flat = plane((0, 0.004, 0), Y, (0.002, 0.002))
+    assert types(decision([cylinder(length=0.05), ring((0, 0, 0.025)), ring((0, 0, -0.025), normal=-Z), flat])) in [
+        ("fixed", "determined", None)
+    ]
+
+
+def test_a_tiny_face_against_a_ball_joint_leaves_it_a_ball_joint():
+    found = decision([sphere(0.01), plane((0.012, 0, 0.002), X, (0.0008, 0.0008))])
+    assert found.status in ("blocked", "ambiguous")
+    assert "spherical" in (found.form.type, found.other.form.type if found.other else "")

@@ -26,12 +26,16 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
     share = areas / areas.sum()
     dips = [k for k, item in enumerate(items) if _dips(item, evidence.contact) and share[k] < constants.DIP_SHARE]
     slight = np.zeros(len(items), dtype=bool)
+    planes = np.array([item.normals[0] if item.patch.kind == "plane" else np.zeros(3) for item in items])
     for k, item in enumerate(items):
         if item.patch.kind != "plane":
             continue
+        cosines = planes @ item.normals[0]
         # the two flanks of a pressed key face each other
-        faced = any(float(items[j].normals[0] @ item.normals[0]) < constants.FACED for j in dips)
-        slight[k] = (k in dips and not faced) or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE)
+        faced = bool((cosines[dips] < constants.FACED).any())
+        one_way = float(share[cosines > -constants.FACED].sum())
+        alone = not (cosines < constants.FACED).any() and one_way < constants.SLIVER_SHARE
+        slight[k] = (k in dips and not faced) or (item.patch.one_sided and share[k] < constants.SLIVER_SHARE) or alone
     for line in coaxial_lines(evidence, alignment):
         members = list(line.items)
         arc = sum(_arc(items[k], line.axis) for k in members)

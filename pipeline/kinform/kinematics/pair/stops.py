@@ -94,14 +94,12 @@ def _candidates(evidence: Evidence) -> list[tuple[int, ...]]:
 
 def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep: Flags) -> bool:
     """Is there nothing that tells the faces left out to be guides?"""
-    freed = reading.basis - strict @ (strict.T @ reading.basis)
-    vectors, sizes, _ = np.linalg.svd(freed, full_matrices=False)
-    motions = vectors[:, sizes > constants.NEW_FREEDOM]
+    motions = freed_motions(strict, reading.basis)
     guides = evidence.chosen(keep)
     faces = evidence.chosen(~keep)
     if motions.shape[1] == 2:
         return _short_flank(evidence, strict, reading, guides, faces)
-    if motions.shape[1] != 1 or not _one_sense(evidence, motions[:, 0], reading.out):
+    if motions.shape[1] != 1 or not one_sense(evidence, motions[:, 0], reading.out):
         return False
     turned = {"fixed": ("revolute",), "prismatic": ("cylindrical",)}
     if reading.form.type in turned.get(name_space(strict, evidence.frame).type, ()):
@@ -109,7 +107,13 @@ def _may_be_stop(evidence: Evidence, strict: Array, reading: OtherReading, keep:
     return reading.form.axis is not None and _ends_guide(reading.form, guides, faces)
 
 
-def _one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
+def freed_motions(strict: Array, basis: Array) -> Array:
+    """(6, n) orthonormal: what the freedoms `basis` (6, k) have beyond `strict` (6, k')."""
+    vectors, sizes, _ = np.linalg.svd(basis - strict @ (strict.T @ basis), full_matrices=False)
+    return np.asarray(vectors[:, sizes > constants.NEW_FREEDOM])
+
+
+def one_sense(evidence: Evidence, motion: Array, out: tuple[int, ...]) -> bool:
     """Do the items oppose the motion (6,) in one sense only?"""
     speeds = np.concatenate([evidence.rows[evidence.start[k] : evidence.start[k + 1]] @ motion for k in out])
     large = constants.OPPOSING_SPEED * float(np.abs(speeds).max())
