@@ -7,9 +7,9 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
-from kinform.foundation.words import counted
+from kinform.foundation.words import angle, counted, length
 from kinform.kinematics import Insight, insight
-from kinform.model.kinematics import Release
+from kinform.model.kinematics import Joint, Release
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, number, vector
 from kinform_cli.views.joints import blockers, sentence
@@ -26,6 +26,7 @@ def render(design: Design, name: str) -> RenderableType:
     ]
     if joint.point is not None:
         items.append(f"through ({lengths.point(joint.point)}) {lengths.unit}")
+    items += [*_uncertainty(joint, lengths), *(f"may be read as {reading.words}" for reading in joint.readings)]
     items += [_patches(evidence, lengths), *_values(evidence)]
     if joint.blockers:
         items += [Text("\nLeft out of the decision: they block it", style="bold"), *blockers(joint, lengths)]
@@ -35,6 +36,15 @@ def render(design: Design, name: str) -> RenderableType:
         items += [f"  {_way(release, lengths)}" for release in joint.releases]
     items += _alternatives(evidence)
     return stacked(*items)
+
+
+def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:
+    """How well the fits know its axis and place."""
+    known = [
+        *([f"axis known to {angle(joint.axis_uncertainty, 2)}"] if joint.axis_uncertainty else []),
+        *([f"place to {length(joint.point_uncertainty, lengths.unit, 2)}"] if joint.point_uncertainty else []),
+    ]
+    return [f"{', '.join(known)} (standard uncertainty, by the fits)"] if known else []
 
 
 def _patches(evidence: Insight, lengths: Lengths) -> Rows:
