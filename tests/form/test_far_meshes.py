@@ -76,12 +76,18 @@ def test_round_numbers_are_not_rounded_ones():
     assert written_step([repr(v) for v in values], np.array(values)) == 0.0
 
 
-@pytest.mark.parametrize("form, step", [("%.17g", 0.0), ("%.4f", 0.0), ("%.3g", 1.0), ("%.0f", 1.0)])
+@pytest.mark.parametrize("form, step", [("%.17g", 0.0), ("%.5f", 0.0), ("%.5g", 1.0)])
 def test_whole_numbers_of_a_box_are_rounded_only_if_its_bore_is(form, step):
-    """A plate of 137 by 141 mm with a bore of 3 mm: its large coordinates say nothing by themselves."""
+    """A plate of 13.7 by 14.1 m with a bore of 3 mm: its large coordinates say nothing by themselves."""
     bore = 3.0 * np.cos(np.arange(40) / 7.0)
-    values = np.concatenate([[137.0, -137.0, 141.0, -141.0], bore])
+    values = np.concatenate([[13701.0, -13701.0, 14103.0, -14103.0], bore])
     assert written_step([form % v for v in values], values) == step
+
+
+def test_a_box_of_whole_numbers_is_no_coarse_file(tmp_path):
+    box = np.array([[x, y, z] for x in (14.0, 190.0) for y in (-8.0, 8.0) for z in (10.0, 310.0)])
+    assert parse_obj(obj(box, "%.12g")).resolution < 1e-9
+    assert parse_obj(obj(box * 1e-3, "%.12g")).resolution < 1e-9
 
 
 def test_doubles_are_written_finer_than_can_be_told():

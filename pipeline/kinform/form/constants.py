@@ -88,6 +88,10 @@ LARGE_COORDINATES = 0.1
 DIGITS_READ = 2000
 """Coordinates of a text whose digits are looked at."""
 
+DIGITS_LEAST = 5
+"""Digits from which on the largest coordinates can have been cut: no writer keeps fewer, and parts of whole or half
+millimetres, up to some metres, have fewer."""
+
 LAST_DIGIT_USED = 0.5
 """Share of the coordinates that use the last digit, above which it is where they were rounded: nine in ten of rounded
 numbers do."""

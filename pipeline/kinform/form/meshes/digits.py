@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kinform.form.constants import DIGITS_READ, LARGE_COORDINATES, LAST_DIGIT_USED
+from kinform.form.constants import DIGITS_LEAST, DIGITS_READ, LARGE_COORDINATES, LAST_DIGIT_USED
 from kinform.model.arrays import Array, Ints
 
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
@@ -29,7 +29,9 @@ def written_step(tokens: Sequence[str], values: Array) -> float:
     finest, longest = min(place for place, _ in coarse), max(count for _, count in coarse)
     used = sum(place == finest for place, _ in coarse) / len(coarse)
     # others that are written more finely show that neither decimals nor digits were cut
-    cut = all(place >= finest for place, _ in every) or all(count <= longest for _, count in every)
+    cut = longest >= DIGITS_LEAST and (
+        all(place >= finest for place, _ in every) or all(count <= longest for _, count in every)
+    )
     return 10.0**finest if used > LAST_DIGIT_USED and cut else 0.0
 
 
