@@ -71,6 +71,31 @@ LENS_WIDTH = 0.7
 """Mean width of a lens between an arc and its chord, over the greatest (2/3), rounded up: polygons with
 different corners on one circle overlap in such lenses."""
 
+# mating/coarse: rings of flats that may be round
+
+PRISM_SIDES = 6
+"""Sides up to which bars and sockets whose flats lie on each other are prisms: hexagon keys and nuts. Nobody
+tessellates a cylinder that coarsely, and from 12 sides on strips are found to be round."""
+
+TANGENT_SHARE = 0.5
+"""Share of the gap at the corners of a bore that the gap at its flats has at most, where the bore is taken to be
+tessellated by tangents: the chord error is most of it then."""
+
+# mating/enclosing: facets that enclose the other part, and that no patch is of
+
+TOUCHING = ("point", "line")
+"""Kinds of higher pairs."""
+ENCLOSING_PROBES = 600
+"""Middles of facets of either part that are looked at."""
+ENCLOSED_HELD = 0.02
+"""Singular value below which patches leave a motion that is to be looked at."""
+ENCLOSING_SPEED = 0.3
+"""Speed along its normal, of a unit twist, from which on a facet opposes it."""
+OPENS_AGAINST = 0.2
+"""Speed up to which a facet may be approached by a slide that opens all others, ..."""
+OPENS_SHARE = 0.02
+"""... and share of the area that may be approached faster."""
+
 # mating/patches: what a patch is
 
 EXACT_GAP = 1e-3

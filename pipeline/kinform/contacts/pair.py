@@ -11,6 +11,8 @@ from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
 from kinform.contacts.mating.analytic import analytic_mates
+from kinform.contacts.mating.coarse import rounded
+from kinform.contacts.mating.enclosing import enclosing_patches
 from kinform.contacts.mating.freeform import freeform_patches
 from kinform.contacts.mating.one_sided import one_sided_mates, without_continuations
 from kinform.contacts.mating.patches import in_world, mated_patches
@@ -55,10 +57,12 @@ def pair_contacts(
     screwed = threaded_patches(pair, overlap)
     patches += freeform_patches(pair, overlap)
     patches = [*_beside(patches, screwed), *screwed]
+    patches = rounded(pair, patches, reach)
     patches = without_continuations(pair, patches)
     patches = _with_higher(pair, patches)
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
+    patches += enclosing_patches(pair, patches)
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     interference = find_interference(pair, patches, solids)
     if interference is not None:

@@ -60,3 +60,25 @@ CELLS_MOST = 48
 """Most cells along the longest side of the common box."""
 CELLS_LEAST = 8
 """Least; between them a quarter of the root of the number of boxes is added."""
+
+# meshes/rings: flats about an axis
+
+RING_SIDES = 3
+"""Flats of a ring, at least."""
+RING_TURN = (np.radians(20.0), np.radians(125.0))
+"""rad between two neighbours of a ring: of a triangle they differ by 120°; below 32° strips are found to be round, but
+not where three of them are left."""
+RING_PARALLEL = np.radians(1.0)
+"""rad by which the ridges of one ring differ in direction."""
+RING_ASKEW = np.radians(5.0)
+"""rad by which the edge of two flats may leave the line in which their planes meet: vertices scatter."""
+RING_ROUND = 5e-3
+"""Share of their distance from the axis by which corners of a ring differ."""
+RING_NOISES = 4.0
+"""The same in standard deviations of scattered vertices: one corner in 16,000 is beyond."""
+RING_OPEN = np.radians(200.0)
+"""rad: the widest angle about the axis without a flat. Half a ring, as of a half-bearing, goes round enough."""
+RING_DIRECTIONS = 24
+"""Directions of ridges that are looked at, the longest first: crumpled meshes have thousands."""
+MOST_RINGS = 64
+"""Rings along one direction that are looked at, those of the longest ridges."""

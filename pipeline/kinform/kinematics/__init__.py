@@ -36,5 +36,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 14
+CODE_VERSION = 15
 """Bumped when the results of this stage change for the same input."""

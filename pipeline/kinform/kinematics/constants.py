@@ -156,6 +156,10 @@ THREAD_LEAN = 5e-3
 THREAD_FIT = 0.75
 """Share of the squared speeds that a screw may leave where facets lean like a thread."""
 
+VAGUE_DIRECTION = 0.05
+"""rad: a surface whose direction is known no better than this does not decide alone: three degrees are more than any
+clearance tilts an axis."""
+
 # --- pair/uncertainty ------------------------------------------------------------------------------------------------
 
 SAYS_DIRECTION = 0.1

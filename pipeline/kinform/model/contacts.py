@@ -57,6 +57,13 @@ class Patch:
     """m a turn that two helicoids have in common, right-handed positive; 0 for other kinds."""
     tolerance: Metres = 0.0
     """m: gap or overlap up to which these two surfaces mate; 0: that of the pair."""
+    mismatch: Annotated[tuple[float, float], "rad, m", columns("misalignment_uncertainty", "offset_uncertainty")] = (
+        0.0,
+        0.0,
+    )
+    """Standard uncertainties of `misalignment` and `offset`: those of both fits together."""
+    sides: int = 0
+    """Flats of the prism that this cylinder may be as well; 0 where it is round, and for other kinds."""
 
 
 @dataclass(frozen=True, eq=False)

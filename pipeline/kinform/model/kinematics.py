@@ -103,7 +103,7 @@ class Reading:
     pitch: Lead | None
     freedoms: int
     cause: str
-    """What the faces are that it leaves out: stop, sliver, flank; empty where it leaves out none."""
+    """What the faces are that it leaves out: stop, sliver, flank; prism where flats are those of one; else empty."""
     words: str
     """When it holds: "cylindrical, if 314 mm² between base and rod are an end stop"."""
 

@@ -71,5 +71,5 @@ from kinform.surfaces.recovery import recover
 
 __all__ = ["CODE_VERSION", "recover", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 7
+CODE_VERSION: int = 8
 """Bumped when results change."""

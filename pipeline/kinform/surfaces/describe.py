@@ -120,7 +120,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
     chords = _chords(kind, batch, params)
     width = angular_widths(batch, placed) if kind.name == "torus" else widths(kind, batch, params)
-    sweeps = _sweeps(placed, batch, width) if has_axis else np.zeros(count)
+    sweeps = angles_covered(placed, batch, width) if has_axis else np.zeros(count)
     out = []
     for k, polygons in enumerate(members(batch.region)):
         axis, point, radius, half_angle, extent = _in_senses(kind.name, placed[k], params[k], low[k], high[k])
@@ -205,7 +205,7 @@ def _chords(kind: Kind, batch: Batch, params: Params) -> Array:
     return deepest
 
 
-def _sweeps(params: Params, batch: Batch, width: Array) -> Array:
+def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     """Length of the union of the angles that each region's polygons, in order, subtend about its axis."""
     count, region, turn = len(params), batch.region, 2 * np.pi
     mine = params[region]

@@ -176,7 +176,12 @@ def segments(part: PartView, sheet: Sheet, direction: Array, alignment: float, g
     np.minimum.at(low, back, lows[keep])
     np.maximum.at(high, back, highs[keep])
     start, end = np.divmod(key, np.int64(len(points)))
-    return Segments(points, start, end, low, high, part.surfaces.labels[lead[keep]][number])
+    # a chain of points each within the grain of the next may make one point of both ends
+    long = start != end
+    if not long.any():
+        return None
+    labels = part.surfaces.labels[lead[keep]][number]
+    return Segments(points, start[long], end[long], low[long], high[long], labels[long])
 
 
 def _faces(count: int, facets: Ints, flats: Ints) -> Ints:

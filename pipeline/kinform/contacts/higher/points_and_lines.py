@@ -22,6 +22,7 @@ from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array, Flags
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
+from kinform.model.tolerances import Tolerances
 
 _ROUND = [KINDS.index("sphere"), KINDS.index("cylinder"), KINDS.index("torus")]
 
@@ -76,9 +77,14 @@ def higher_pairs(
     return [_patch(pair, touch, holds) for touch, holds in held if holds.any()]
 
 
+def parallel_within(surfaces: SurfacePair, tolerances: Tolerances) -> float:
+    """rad up to which two surfaces lie along each other: a right angle at most, where nobody knows their axes."""
+    return min(tolerances.alignment + sum(surfaces.turns), 0.5 * math.pi)
+
+
 def _touch(view: PairView, surfaces: SurfacePair, first: bool) -> _Touch | None:
     """The touch of a convex ball or roller with a plane or another round surface, if they come close enough."""
-    met = meeting(surfaces, view.tolerances.alignment + sum(surfaces.turns))
+    met = meeting(surfaces, parallel_within(surfaces, view.tolerances))
     if met is None:
         return None
     close = np.abs(met.gaps) <= constants.CAPTIVE * view.tolerance

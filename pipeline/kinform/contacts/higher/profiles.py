@@ -206,7 +206,7 @@ def _parallel_place(first: Curve, second: Curve, s: float, t: float) -> _Place |
 def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) -> _Meeting | None:
     """The meeting of two curves near the parameters s and t, where they touch there as convex profiles do."""
     at = _parallel_place(first, second, s, t)
-    if at is None:
+    if at is None or not float(at.u @ at.w) <= constants.CURVES_OPPOSED:
         return None
     turn, kappa, lam = at.turn, at.kappa, at.lam
     mean = at.u - at.w
@@ -216,7 +216,7 @@ def _refined(first: Curve, second: Curve, s: float, t: float, tolerance: float) 
     slip = abs(float((at.q - at.p) @ mean))
     relative = float(kappa + lam)
     inner = max(tolerance, float(np.diff(first.knots).min()))
-    if float(at.u @ at.w) > constants.CURVES_OPPOSED or abs(turn) > math.sin(constants.CURVE_END_SPARE):
+    if abs(turn) > math.sin(constants.CURVE_END_SPARE):
         return None
     if abs(gap) > constants.MATING_REACH * tolerance or slip > constants.SLIP_LEAST * inner:
         return None

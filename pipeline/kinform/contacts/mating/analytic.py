@@ -67,6 +67,7 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
         slack=surfaces.slack + tilt,
         misalignment=angle,
         uncertainty=(turn, sum(surfaces.shifts)),
+        mismatch=(sum(surfaces.turns), sum(surfaces.shifts)),
         thin=min(constants.LENS_WIDTH * sum(surfaces.both("rims")), tolerance),
     )
 
@@ -74,31 +75,39 @@ def _plane_mate(surfaces: SurfacePair, angle: float, tolerance: float) -> Mate |
 def _cylinder_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
     """Shafts in bores among the surfaces flagged in `overlap` (s, t)."""
     for surfaces in _nearly_coaxial(pair, overlap, "cylinder"):
-        radii, side = surfaces.radii, surfaces.sides[0]
-        gap = (radii[1] - radii[0]) * side
-        limit = radial_limit(pair.play, min(radii))
-        length, middle = _engaged(surfaces)
-        if abs(gap) > limit or length <= 0.0:
-            continue
-        axes = mean_axes(surfaces, middle)
-        if not aligned(pair, axes, gap, length):
-            continue
-        radius = 0.5 * (radii[0] + radii[1])
-        yield Mate(
-            surfaces,
-            kind="cylinder",
-            chart=CylinderChart(axes.axis, axes.point, _base(surfaces, axes, radius), radius),
-            sign=side,
-            axis=axes.axis,
-            point=axes.point,
-            radii=radii,
-            gap=gap,
-            limit=limit,
-            slack=axes.offset + 0.5 * axes.misalignment * length + surfaces.slack,
-            misalignment=axes.misalignment,
-            offset=axes.offset,
-            uncertainty=axes.uncertainty,
-        )
+        mate = cylinder_mate(pair, surfaces)
+        if mate is not None:
+            yield mate
+
+
+def cylinder_mate(pair: PairView, surfaces: SurfacePair) -> Mate | None:
+    """The mate of a shaft and a bore, unless their radii or axes do not agree."""
+    radii, side = surfaces.radii, surfaces.sides[0]
+    gap = (radii[1] - radii[0]) * side
+    limit = radial_limit(pair.play, min(radii))
+    length, middle = _engaged(surfaces)
+    if abs(gap) > limit or length <= 0.0:
+        return None
+    axes = mean_axes(surfaces, middle)
+    if not aligned(pair, axes, gap, length):
+        return None
+    radius = 0.5 * (radii[0] + radii[1])
+    return Mate(
+        surfaces,
+        kind="cylinder",
+        chart=CylinderChart(axes.axis, axes.point, _base(surfaces, axes, radius), radius),
+        sign=side,
+        axis=axes.axis,
+        point=axes.point,
+        radii=radii,
+        gap=gap,
+        limit=limit,
+        slack=axes.offset + 0.5 * axes.misalignment * length + surfaces.slack,
+        misalignment=axes.misalignment,
+        offset=axes.offset,
+        uncertainty=axes.uncertainty,
+        mismatch=axes.mismatch,
+    )
 
 
 def _cone_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
@@ -137,6 +146,7 @@ def _cone_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
             misalignment=axes.misalignment,
             offset=axes.offset,
             uncertainty=axes.uncertainty,
+            mismatch=axes.mismatch,
         )
 
 
@@ -169,6 +179,7 @@ def _sphere_mates(pair: PairView, overlap: Flags) -> Iterator[Mate]:
             slack=surfaces.slack + offset,
             offset=offset,
             uncertainty=(0.0, shift),
+            mismatch=(0.0, sum(surfaces.shifts)),
         )
 
 

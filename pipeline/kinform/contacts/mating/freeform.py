@@ -59,7 +59,9 @@ def _probes(pair: PairView, surfaces: SurfacePair) -> tuple[Probes, Array]:
     points, normals, shares = [], [], []
     for part, facets, sense in zip(pair.parts, surfaces.facets, (1.0, -1.0), strict=True):
         centres = part.vertices[part.faces[facets]].mean(axis=1)
-        within = np.nonzero(((centres >= low) & (centres <= high)).all(axis=1))[0]
+        inside = ((centres >= low) & (centres <= high)).all(axis=1)
+        # facets without area have no normal
+        within = np.nonzero(inside & (part.index.areas(facets) > 0.0))[0]
         chosen = within[:: max(1, math.ceil(len(within) / constants.FREEFORM_PROBES))]
         areas = part.index.areas(facets[chosen])
         total = float(part.index.areas(facets[within]).sum())
@@ -128,6 +130,7 @@ def _turning(patch: Patch, pair: PairView, surfaces: SurfacePair) -> Patch:
         misalignment=axes.misalignment,
         offset=axes.offset,
         uncertainty=axes.uncertainty,
+        mismatch=axes.mismatch,
     )
 
 

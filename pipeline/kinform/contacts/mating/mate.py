@@ -35,6 +35,8 @@ class Mate:
     slack: float
     """m by which facets of either side may stand off the common surface, beyond half the gap."""
     uncertainty: tuple[float, float]
+    mismatch: tuple[float, float]
+    """Of misalignment (rad) and offset (m)."""
     radii: tuple[float, float] = (0.0, 0.0)
     gap: float = 0.0
     gradient: Array = field(default_factory=lambda: np.zeros(3))
@@ -74,6 +76,8 @@ class Axes:
     misalignment: float
     offset: float
     uncertainty: tuple[float, float]
+    mismatch: tuple[float, float]
+    """Of misalignment (rad) and offset (m)."""
 
 
 def mean_direction(first: Array, second: Array, uncertainty: tuple[float, float]) -> tuple[Array, float, float]:
@@ -104,7 +108,8 @@ def mean_axes(surfaces: SurfacePair, middle: Array) -> Axes:
         feet.append(origin + reach * direction)
         shifts.append(shift + u_axis * abs(reach))
     point, shift = mean_position(feet[0], feet[1], (shifts[0], shifts[1]))
-    return Axes(axis, point, angle, float(np.linalg.norm(feet[1] - feet[0])), (turn, shift))
+    apart = float(np.linalg.norm(feet[1] - feet[0]))
+    return Axes(axis, point, angle, apart, (turn, shift), (sum(surfaces.turns), sum(shifts)))
 
 
 def aligned(pair: PairView, axes: Axes, clearance: float, length: float) -> bool:

@@ -118,6 +118,7 @@ def _mate(view: PairView, surfaces: SurfacePair, first: bool) -> Mate | None:
         limit=limit,
         slack=limit + surfaces.both("slacks")[0],
         uncertainty=(surfaces.turns[0], surfaces.shifts[0]),
+        mismatch=(sum(surfaces.turns), sum(surfaces.shifts)),
         corners=(giver, resting) if first else (resting, giver),
     )
 

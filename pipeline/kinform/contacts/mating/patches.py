@@ -129,6 +129,7 @@ def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> 
         misalignment=mate.misalignment,
         offset=mate.offset,
         uncertainty=mate.uncertainty,
+        mismatch=mate.mismatch,
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
         tolerance=mate.limit / constants.MATING_REACH,

@@ -111,6 +111,7 @@ def _patch(pair: PairView, surfaces: SurfacePair) -> Patch | None:
         misalignment=axes.misalignment,
         offset=axes.offset,
         uncertainty=axes.uncertainty,
+        mismatch=axes.mismatch,
         chord=surfaces.chord,
         fit=classify_fit(gaps, surfaces.chord, axes.uncertainty[1], pair.tolerance),
         pitch=pitch,

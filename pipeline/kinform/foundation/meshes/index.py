@@ -16,6 +16,7 @@ from kinform.foundation.meshes.edges import shared_edges
 from kinform.foundation.meshes.fcl_adapter import fcl_model, partial_model
 from kinform.foundation.meshes.parity import Ray
 from kinform.foundation.meshes.probes import Region
+from kinform.foundation.meshes.rings import Ring, rings_of
 from kinform.foundation.meshes.surface_table import SurfaceTable
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.assembly import Mesh
@@ -37,6 +38,7 @@ class MeshIndex:
         self._rays: list[Ray] | None = None
         self._near: list[tuple[cKDTree, float]] | None = None
         self._table: SurfaceTable | None = None
+        self._rings: tuple[Ring, ...] | None = None
         self.low: Array = mesh.vertices.min(axis=0)
         self.high: Array = mesh.vertices.max(axis=0)
         """(3,) m, box in the part frame."""
@@ -103,6 +105,12 @@ class MeshIndex:
         borders = self.borders(surfaces)
         first, last = np.searchsorted(borders[:, 0], [surface, surface + 1])
         return [int(k) for k in borders[first:last, 1]]
+
+    def rings(self, surfaces: MeshSurfaces) -> tuple[Ring, ...]:
+        """Rings of flats, which may be meant as round."""
+        if self._rings is None:
+            self._rings = rings_of(self.mesh, surfaces)
+        return self._rings
 
     @property
     def shells(self) -> Ints:

@@ -61,6 +61,9 @@ def certainty(
     doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
         return Certainty("ambiguous", doubt)
+    prism = _prism_reading(evidence, basis)
+    if prism is not None:
+        return Certainty("ambiguous", _prism_words(evidence, form, prism), prism)
     other = (
         _teeth_reading(evidence, twists, preserved, basis, tolerances)
         if touching
@@ -126,8 +129,16 @@ def _loose_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tole
     firm = np.array([item.patch.kind not in HIGHER for item in evidence.items])
     if count == 0:
         firm &= [not item.patch.one_sided for item in evidence.items]
-    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
+    vague = [_vagueness(item.patch, fixed=count == 0) for item in evidence.items]
+    clear = np.array(vague) <= constants.VAGUE_DIRECTION
+    if (firm & clear).all() or ((firm & clear).any() and _count(evidence, twists, firm & clear, tolerances) <= count):
         return ""
+    if firm.all() or (firm.any() and _count(evidence, twists, firm, tolerances) <= count):
+        least = min(v for v, known, other in zip(vague, firm, clear, strict=True) if known and not other)
+        return (
+            f"{count} of 6 freedoms are left only because of surfaces whose direction is known no better than to "
+            f"{np.degrees(least):.2g}°: the vertices of the mesh scatter"
+        )
     kinds = sorted({item.patch.kind for item in evidence.chosen(~firm)})
     return f"{count} of 6 freedoms are left only because of contact along {', '.join(kinds)} without a mating surface"
 
@@ -170,6 +181,11 @@ def _teeth_reading(
         return None
     out = tuple(int(k) for k in np.flatnonzero(flanks))
     return OtherReading(name_space(firm, evidence.frame), firm, out, "flank")
+
+
+def _vagueness(patch: Patch, *, fixed: bool) -> float:
+    """rad: how well its direction is known, by the better of its surfaces, or, of what is to be fixed, by both."""
+    return max(patch.uncertainty[0], patch.mismatch[0] if fixed else 0.0)
 
 
 def _near_axes_doubt(evidence: Evidence, twists: Array, count: int, tolerances: Tolerances) -> str:
@@ -241,6 +257,28 @@ def _advance(evidence: Evidence, axis: Array, point: Array) -> float:
 
 def _about(item: Item, axis: Array) -> bool:
     return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
+
+
+def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
+    """What is left of the freedoms `basis` (6, k) where flats that are taken for a coarse cylinder are those of a
+    prism: it does not turn."""
+    if not any(item.patch.sides for item in evidence.items):
+        return None
+    _, turns, mixed = np.linalg.svd(basis[:3], full_matrices=True)
+    turning = int(np.count_nonzero(turns > constants.EXACT_PAIR))
+    if not turning:
+        return None
+    left = basis @ mixed[turning:].T
+    return OtherReading(name_space(left, evidence.frame), left, (), "prism")
+
+
+def _prism_words(evidence: Evidence, form: JointForm, other: OtherReading) -> str:
+    """Both readings, with the sides and the size of the flats."""
+    patch = max((item.patch for item in evidence.items if item.patch.sides), key=lambda patch: patch.area)
+    return (
+        f"{form.type} if the {patch.sides} flats of {2e3 * max(patch.radii):.3g} mm across their corners are a "
+        f"cylinder in a coarse mesh; {other.form.type} if they are {ROLES[other.role]}: a stated joint tells"
+    )
 
 
 def _stray_doubt(evidence: Evidence) -> str:

@@ -115,7 +115,7 @@ def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
     sine = float(np.linalg.norm(cross(a.patch.axis, b.patch.axis)))
-    if sine > np.sin(max(a.angle, b.angle, alignment)):
+    if sine > np.sin(min(max(a.angle, b.angle, alignment), 0.5 * np.pi)):
         return False
     middle = b.points.mean(axis=0)
     apart = foot(a.patch.point, a.patch.axis, middle) - foot(b.patch.point, b.patch.axis, middle)

@@ -10,7 +10,7 @@ from kinform.foundation.algebra.screws import twist_at_origin
 from kinform.foundation.algebra.vectors import canonical, cross, foot, perpendicular
 from kinform.kinematics.constants import LEAST_MISALIGNMENT, SIGMAS
 from kinform.kinematics.pair.decision import Decision
-from kinform.kinematics.pair.evidence import COAXIAL, Evidence
+from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.hypotheses import motion_words
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.stops import ROLES
@@ -138,7 +138,7 @@ def stated_joint(bodies: tuple[BodyName, BodyName], form: JointForm, evidence: s
 
 def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
     """Greatest angle (rad) and offset (m) between the two sides of the kept patches, beyond what
-    their clearance and the uncertainty of the fits allow; 0 where there is none."""
+    their clearance, their unevenness and the uncertainty of both fits allow; 0 where there is none."""
     angle = offset = 0.0
     for k in decision.kept:
         item = evidence.items[k]
@@ -148,9 +148,19 @@ def misalignment(evidence: Evidence, decision: Decision) -> tuple[float, float]:
         clearance = max(patch.gap, 0.0) if patch.kind in COAXIAL else 0.0
         engaged = float(np.ptp(item.points @ patch.axis)) if patch.kind in COAXIAL else 0.0
         allowed = 2.0 * clearance / engaged if engaged > 0.0 else 0.0
-        excess = patch.misalignment - allowed - SIGMAS * patch.uncertainty[0]
+        allowed += _unevenness(item)
+        excess = patch.misalignment - allowed - SIGMAS * max(patch.uncertainty[0], patch.mismatch[0])
         angle = max(angle, excess if excess > LEAST_MISALIGNMENT else 0.0)
         if patch.kind in (*COAXIAL, "sphere"):
-            far = patch.offset - max(patch.gap, 0.0) - SIGMAS * patch.uncertainty[1] - patch.chord
+            known = SIGMAS * max(patch.uncertainty[1], patch.mismatch[1])
+            far = patch.offset - max(patch.gap, 0.0) - known - patch.chord
             offset = max(offset, far if far > LEAST_MISALIGNMENT * evidence.frame.length else 0.0)
     return angle, offset
+
+
+def _unevenness(item: Item) -> float:
+    """rad by which facets of a plane face that is not quite flat may lean, over the extent of the patch."""
+    if item.patch.kind != "plane":
+        return 0.0
+    extent = float(np.linalg.norm(np.ptp(item.points, axis=0)))
+    return 2.0 * item.patch.chord / extent if extent > 0.0 else 0.0

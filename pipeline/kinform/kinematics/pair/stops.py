@@ -34,6 +34,7 @@ ROLES = {
     "stop": "an end stop",
     "sliver": "too slight to decide",
     "flank": "the flank of a tooth or cam, which bears nothing",
+    "prism": "those of a prism",
 }
 """What faces are that may not be meant to hold."""
 
@@ -48,7 +49,7 @@ class OtherReading:
     out: tuple[int, ...]
     """Items that are left out."""
     role: str
-    """What those are then: stop, sliver or flank."""
+    """What those are then: stop, sliver or flank. prism: nothing is left out; flats do not let the bodies turn."""
 
 
 def stop_reading(

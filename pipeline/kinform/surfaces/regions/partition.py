@@ -23,10 +23,13 @@ from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
 from kinform.surfaces.polygons.noise import Scale
 from kinform.surfaces.polygons.patchwork import Patchwork
+from kinform.surfaces.regions.chords import decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
 from kinform.surfaces.regions.territory import Territory
 
-CURVED: tuple[Kind, ...] = (Cylinder(), Cone(), Sphere(), Torus())
+CYLINDER = Cylinder()
+
+CURVED: tuple[Kind, ...] = (CYLINDER, Cone(), Sphere(), Torus())
 """The curved kinds, simplest first. A new kind is one more entry."""
 
 SIMPLE = tuple(kind for kind in CURVED if not kind.saddle)
@@ -76,6 +79,9 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
         regions += chosen
         if sum(work.area[region.polygons].sum() for region in chosen) < constants.WORTH * total:
             break
+    for factor in constants.CHORD_FITS:
+        batch, side = _pieces(territory, link, link.alike)
+        regions += _choose([decimated(territory, CYLINDER, batch, side, factor)], territory)
     return Partition(tuple(regions), *_remainder(territory))
 
 

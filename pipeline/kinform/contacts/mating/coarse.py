@@ -1,0 +1,193 @@
+"""Shafts and bores that are tessellated so coarsely that they are prisms: rings of flats that stand for cylinders.
+
+An 8-gon between collars in a round bore touches the bore with its corners only; no surface of one lies on a surface of
+the other, and yet the bore holds it on all sides. From flats that do not mate nothing may be concluded. So a ring of
+flats that a bore or a shaft encloses within the tolerance is a cylinder here, with a large chord error:
+
+- a ring in a bore, or about a shaft, that is round: the two turn, whatever the ring was meant to be. Bars of up to
+  `PRISM_SIDES` sides touch along few lines, and stay in doubt;
+- a ring in a ring whose flats lie on those of the other. Up to `PRISM_SIDES` sides they are prisms (hexagon keys, nut
+  traps), unless their play lets the corners pass the flats. From there on, nobody can tell prisms from coarse
+  cylinders: the patch is a cylinder that says how many `sides` it has, and the joint is in doubt where that matters;
+- a ring in a ring whose flats do not meet: two tessellations of one cylinder;
+- a shaft in a bore that was tessellated by tangents, so that its flats fit and its corners are too far away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.mating.analytic import cylinder_mate
+from kinform.contacts.mating.mate import Mate, radial_limit
+from kinform.contacts.mating.patches import mated_patches
+from kinform.contacts.search.pair_view import NearSurfaces, PairView, PartView, SurfacePair
+from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.foundation.meshes.rings import Ring
+from kinform.foundation.meshes.surface_table import SurfaceTable
+from kinform.model.arrays import Array, Ints
+from kinform.model.contacts import Patch
+from kinform.model.surfaces import KINDS
+
+_CYLINDER = KINDS.index("cylinder")
+
+
+@dataclass(frozen=True, eq=False)
+class _Round:
+    """A cylinder near the other part, or a ring of flats that may be one, in the frame of the pair (m)."""
+
+    axis: Array
+    point: Array
+    corner: float
+    flats: tuple[float, float]
+    """Distances of the corners, and of the nearest and the farthest flat, from the axis."""
+    side: float
+    sides: int
+    """Of a ring; 0: a cylinder."""
+    surfaces: Ints
+    low: Array
+    high: Array
+    row: int
+    """Among the near surfaces, of a cylinder."""
+    ring: Ring | None = None
+    facets: Ints | None = None
+
+
+def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
+    """The patches, with those of rings of flats that are or may be cylinders in place of what their flats say."""
+    sides = [_rounds(part, near) for part, near in zip(pair.parts, pair.near, strict=True)]
+    for first, second in _coaxial(sides, reach):
+        patches = _read(pair, patches, first, second)
+    return patches
+
+
+def _rounds(part: PartView, near: NearSurfaces) -> list[_Round]:
+    """Cylinders and rings of one part that have facets near the other."""
+    out = [
+        _Round(
+            near.axes[k], near.points[k], float(near.radii[k]), (float(near.radii[k] - near.chords[k]),) * 2,
+            float(near.sides[k]), 0, near.ids[k : k + 1], near.lows[k], near.highs[k], int(k),
+        )
+        for k in near.of_kind("cylinder")
+    ]  # fmt: skip
+    ids = near.ids.tolist()
+    R_FP, p_FP = part.X_FP[:3, :3], part.X_FP[:3, 3]
+    for ring in part.index.rings(part.surfaces):
+        rows = [ids.index(k) for k in ring.surfaces.tolist() if k in ids]
+        if not rows:
+            continue
+        facets = np.concatenate([near.facets[k] for k in rows])
+        facets = facets[np.isin(facets, ring.facets)]
+        if not len(facets):
+            continue
+        low, high = facet_boxes(part.vertices, part.faces[facets])
+        out.append(
+            _Round(
+                R_FP @ ring.axis, R_FP @ ring.point + p_FP, ring.corner, ring.flats, float(ring.side), ring.sides,
+                ring.surfaces, low.min(axis=0), high.max(axis=0), -1, ring, facets,
+            )
+        )  # fmt: skip
+    return out
+
+
+def _coaxial(sides: list[list[_Round]], reach: float) -> Iterator[tuple[_Round, _Round]]:
+    """Pairs of which one may enclose the other, the largest first."""
+    met = []
+    for a in sides[0]:
+        for b in sides[1]:
+            if a.side * b.side > 0.0:
+                continue
+            apart = np.maximum(a.low - b.high, b.low - a.high).max()
+            if apart > reach or abs(float(a.axis @ b.axis)) < np.cos(constants.TILT_LIKELY * constants.MATING_TILT):
+                continue
+            met.append((a, b))
+    yield from sorted(met, key=lambda ab: (-ab[0].corner, int(ab[0].surfaces[0]), int(ab[1].surfaces[0])))
+
+
+def _read(pair: PairView, patches: list[Patch], first: _Round, second: _Round) -> list[Patch]:
+    """The patches with the reading of these two."""
+    bar, socket = (first, second) if first.side > 0.0 else (second, first)
+    # the bar comes near all flats of the socket, or both are chords of circles that fit
+    radius = min(socket.flats[1], socket.corner, key=lambda r: abs(r - bar.corner))
+    if abs(radius - bar.corner) > radial_limit(pair.play, min(bar.corner, radius)):
+        return patches
+    if first.ring is None and second.ring is None and not _by_tangents(pair, bar, socket):
+        return patches
+    between = [_between(patch, first, second) for patch in patches]
+    flats = any(
+        inside and patch.kind in ("plane", "other") and not patch.one_sided
+        for patch, inside in zip(patches, between, strict=True)
+    )
+    sides = max(bar.sides, socket.sides)
+    if flats and sides <= constants.PRISM_SIDES and bar.corner > socket.flats[0]:
+        return patches
+    found = _patches(pair, first, second, {id(socket): radius, id(bar): bar.corner})
+    if not found:
+        return patches
+    doubtful = flats or (sides and min(n for n in (bar.sides, socket.sides) if n) <= constants.PRISM_SIDES)
+    found = [replace(patch, sides=sides if doubtful else 0) for patch in found]
+    return [patch for patch, inside in zip(patches, between, strict=True) if not inside] + found
+
+
+def _by_tangents(pair: PairView, bar: _Round, socket: _Round) -> bool:
+    """Whether two cylinders do not mate as such, only because the corners of the bore stand off its flats."""
+    apart = abs(socket.corner - bar.corner)
+    near = abs(socket.flats[1] - bar.corner)
+    return apart > radial_limit(pair.play, bar.corner) and near <= constants.TANGENT_SHARE * apart
+
+
+def _between(patch: Patch, first: _Round, second: _Round) -> bool:
+    """Whether a patch lies between surfaces of these two."""
+    return patch.surfaces[0] in first.surfaces and patch.surfaces[1] in second.surfaces
+
+
+def _patches(pair: PairView, first: _Round, second: _Round, radii: dict[int, float]) -> list[Patch]:
+    """What touches of these two as cylinders of these radii."""
+    parts, rows = [], []
+    for part, near, one in zip(pair.parts, pair.near, (first, second), strict=True):
+        parts.append(_relabelled(part, one))
+        rows.append(_only(near, one.row, radii[id(one)]) if one.ring is None else _row(one, radii[id(one)]))
+    view = replace(pair, a=parts[0], b=parts[1])
+    surfaces = SurfacePair(rows[0], rows[1], 0, 0)
+    mate: Mate | None = cylinder_mate(view, surfaces)
+    return [] if mate is None else mated_patches(view, [mate])
+
+
+def _relabelled(part: PartView, one: _Round) -> PartView:
+    """The part with the flats of a ring as one surface."""
+    if one.ring is None:
+        return part
+    labels = part.surfaces.labels.copy()
+    labels[one.ring.facets] = one.surfaces[0]
+    return replace(part, surfaces=replace(part.surfaces, labels=labels))
+
+
+def _only(near: NearSurfaces, row: int, radius: float) -> NearSurfaces:
+    """One of the near surfaces, a cylinder, with this radius (m)."""
+    columns = {field.name: getattr(near, field.name)[row : row + 1] for field in fields(NearSurfaces)}
+    return NearSurfaces(**columns | {"radii": np.array([radius])})
+
+
+def _row(one: _Round, radius: float) -> NearSurfaces:
+    """A ring as a cylinder of this radius (m)."""
+    ring = one.ring
+    assert ring is not None
+    assert one.facets is not None
+    chord = max(abs(one.corner - radius), abs(radius - one.flats[0]))
+    numbers = {
+        "radii": radius, "minor_radii": 0.0, "half_angles": 0.0, "pitches": 0.0, "sides": one.side,
+        "axis_uncertainty": ring.turn, "point_uncertainty": ring.shift, "slacks": chord + ring.shift, "chords": chord,
+        "rims": 0.0, "areas": 0.0,
+    }  # fmt: skip
+    table = SurfaceTable(
+        kinds=np.array([_CYLINDER]),
+        axes=one.axis[None],
+        points=one.point[None],
+        extents=np.array([ring.extent]),
+        **{name: np.array([value]) for name, value in numbers.items()},
+    )
+    columns = {field.name: getattr(table, field.name) for field in fields(SurfaceTable)}
+    return NearSurfaces(**columns, ids=one.surfaces[:1], lows=one.low[None], highs=one.high[None], facets=(one.facets,))

@@ -1,0 +1,201 @@
+"""Facets that enclose the other part, and of which no patch says anything.
+
+A shaft whose vertices scatter is no cylinder any more, and its bore none; that no surface of one mates with one of the
+other does not mean that nothing holds them. So facets of either part that face the other within the tolerance are
+looked at once more. Where they oppose, in both senses, a motion that all patches leave, what they say is a patch of
+kind "freeform": too coarse to decide, and enough to make the answer doubtful. What opposes a motion in one sense only
+is a stop, and says nothing of what holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.contacts import constants
+from kinform.contacts.mating.patches import classify_fit
+from kinform.contacts.search.pair_view import PairView
+from kinform.foundation.algebra.screws import Frame, rows
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.contacts import Patch
+
+
+@dataclass(frozen=True, eq=False)
+class _Near:
+    """Middles of facets of either part that face the other part."""
+
+    points: Array
+    """(n, 3) half-way between the two (m)."""
+    normals: Array
+    """(n, 3) out of a."""
+    gaps: Array
+    areas: Array
+    """(n,) m² that each stands for."""
+    surfaces: Ints
+    """(n, 2) of a and of b."""
+
+    def where(self, rows: Flags) -> _Near:
+        """Some of them."""
+        return _Near(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+
+
+def enclosing_patches(pair: PairView, patches: list[Patch]) -> list[Patch]:
+    """What encloses one of the parts beside these patches, as one patch at most.
+
+    Beside none there is nothing to doubt. Cams and teeth, which touch along lines, come near each other elsewhere too.
+    """
+    kinds = {patch.kind for patch in patches}
+    if not kinds or ("line" in kinds and kinds <= set(constants.TOUCHING)):
+        return []
+    unread = _unread(pair, patches)
+    if not unread.any():
+        return []
+    near = _near(pair, unread)
+    if near is None or not _encloses(near, patches, pair.tolerance):
+        return []
+    return [_patch(pair, near)]
+
+
+def _unread(pair: PairView, patches: list[Patch]) -> Flags:
+    """(s, t): near surfaces of a and b that come within the tolerance, and that no patch is of, nor one of either and a
+    neighbour of the other: a fillet beside a face says nothing that the face does not say."""
+    flags = pair.overlap(constants.MATING_REACH * pair.tolerance)
+    rows_, columns = ({int(k): row for row, k in enumerate(side.ids)} for side in pair.near)
+    a, b = pair.parts
+    for patch in patches:
+        i, j = patch.surfaces
+        pairs = [(i, j)]
+        pairs += [(k, j) for k in a.index.neighbours(a.surfaces, i)]
+        pairs += [(i, k) for k in b.index.neighbours(b.surfaces, j)]
+        for first, second in pairs:
+            if first in rows_ and second in columns:
+                flags[rows_[first], columns[second]] = False
+    return flags
+
+
+def _near(pair: PairView, unread: Flags) -> _Near | None:
+    """Middles of facets that face a facet of the other part within the tolerance, of surfaces flagged in `unread`."""
+    found = [_facing(pair, unread), _facing(pair.swapped, unread.T)]
+    sides = [
+        _Near(near.points, -near.normals, near.gaps, near.areas, near.surfaces[:, ::-1]) if turned else near
+        for near, turned in zip(found, (False, True), strict=True)
+        if near is not None
+    ]
+    if not sides:
+        return None
+    return _Near(*(np.concatenate([getattr(s, name) for s in sides]) for name in _Near.__dataclass_fields__))
+
+
+def _facing(view: PairView, unread: Flags) -> _Near | None:
+    """Those of the first part."""
+    (own, other), (a, b) = view.near, view.parts
+    reach = constants.MATING_REACH * view.tolerance
+    rows_ = np.flatnonzero(unread.any(axis=1))
+    columns = np.flatnonzero(unread.any(axis=0))
+    low = other.lows[columns].min(axis=0) - reach
+    high = other.highs[columns].max(axis=0) + reach
+    facets = np.concatenate([own.facets[k] for k in rows_])
+    of_row = np.repeat(rows_, [len(own.facets[k]) for k in rows_])
+    corners = a.vertices[a.faces[facets]]
+    areas = a.index.areas(facets)
+    inside = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1) & (areas > 0.0)
+    facets, of_row, areas, corners = facets[inside], of_row[inside], areas[inside], corners[inside]
+    if not len(facets):
+        return None
+    chosen, weight = _evenly(areas, constants.ENCLOSING_PROBES)
+    facets, of_row = facets[chosen], of_row[chosen]
+    points, normals = corners[chosen].mean(axis=1), a.normals(facets)
+    reaches = np.full(len(points), reach)
+    hits = b.region.cast(b.to_part(points), b.turn_to_part(normals), reaches)
+    column = {int(k): number for number, k in enumerate(other.ids)}
+    of_column = np.array([column.get(int(k), -1) for k in b.surfaces.labels[hits.facet]], dtype=np.int64)
+    wanted = (hits.facing < -constants.FACING_LEAST) & (of_column >= 0)
+    wanted[wanted] = unread[of_row[hits.probe[wanted]], of_column[wanted]]
+    kept = np.flatnonzero(wanted)
+    if not len(kept):
+        return None
+    kept = kept[np.lexsort((hits.facet[kept], np.abs(hits.along[kept]), hits.probe[kept]))]
+    probe, first = np.unique(hits.probe[kept], return_index=True)
+    along, row, col = hits.along[kept[first]], of_row[probe], of_column[kept[first]]
+    return _Near(
+        points[probe] + 0.5 * along[:, None] * normals[probe],
+        normals[probe],
+        along,
+        0.5 * weight[probe],
+        np.column_stack([own.ids[row], other.ids[col]]),
+    )
+
+
+def _evenly(areas: Array, count: int) -> tuple[Ints, Array]:
+    """At most `count` of the facets of these areas (n,), evenly by area, and the area that each stands for."""
+    reached = np.cumsum(areas)
+    shares = (np.arange(count) + 0.5) / count * reached[-1]
+    chosen = np.unique(np.searchsorted(reached, shares).clip(0, len(areas) - 1))
+    following = np.searchsorted(reached[chosen], reached).clip(0, len(chosen) - 1)
+    return chosen, np.bincount(following, areas, len(chosen)).astype(np.float64)
+
+
+def _encloses(near: _Near, patches: list[Patch], tolerance: float) -> bool:
+    """Whether they oppose a motion that the patches leave, in both senses, with areas that are no stray touch."""
+    frame = Frame.of(np.concatenate([near.points, *(patch.points for patch in patches)]))
+    shares = [np.sqrt(patch.weights / patch.weights.sum() / len(patches))[:, None] for patch in patches]
+    held = np.concatenate(
+        [share * rows(patch.points, patch.normals, frame) for patch, share in zip(patches, shares, strict=True)]
+    )
+    triangle = np.linalg.qr(held, mode="r") if len(held) > 6 else held
+    _, values, right = np.linalg.svd(np.vstack([triangle, np.zeros((6, 6))]))
+    left = right[:6][values[:6] < constants.ENCLOSED_HELD]
+    if not len(left) or _opens(near, left):
+        return False
+    speeds = rows(near.points, near.normals, frame) @ left.T
+    _, _, motions = np.linalg.svd(np.sqrt(near.areas)[:, None] * speeds, full_matrices=False)
+    for motion in motions:
+        along = speeds @ motion
+        large = np.abs(along) > constants.ENCLOSING_SPEED
+        senses = [float(near.areas[large & (along * sense > 0.0)].sum()) for sense in (1.0, -1.0)]
+        if min(senses) >= constants.PATCH_AREA * tolerance**2:
+            return True
+    return False
+
+
+def _opens(near: _Near, left: Array) -> bool:
+    """Whether some slide among the motions (k, 6) that are left takes the parts off each other everywhere: a wall, or
+    two at a corner, enclose nothing."""
+    _, turns, mixed = np.linalg.svd(left[:, :3].T, full_matrices=True)
+    slides = (mixed[int(np.count_nonzero(turns > constants.ENCLOSED_HELD)) :] @ left)[:, 3:]
+    mean = near.areas @ near.normals / near.areas.sum()
+    away = slides.T @ (slides @ mean)
+    if np.linalg.norm(away) < constants.ENCLOSING_SPEED:
+        return False
+    along = near.normals @ (away / np.linalg.norm(away))
+    against = float(near.areas[along < -constants.OPENS_AGAINST].sum())
+    return against <= constants.OPENS_SHARE * float(near.areas.sum())
+
+
+def _patch(pair: PairView, near: _Near) -> Patch:
+    """What encloses, as one patch, of the two surfaces that face each other most."""
+    keys, number = np.unique(near.surfaces, axis=0, return_inverse=True)
+    most = keys[int(np.argmax(np.bincount(number.ravel(), near.areas)))]
+    chord = float(sum(part.table.slacks[k] for part, k in zip(pair.parts, most, strict=True)))
+    area = float(near.areas.sum())
+    return Patch(
+        parts=pair.names,
+        surfaces=(int(most[0]), int(most[1])),
+        kind="freeform",
+        one_sided=True,
+        points=near.points,
+        normals=near.normals,
+        gaps=near.gaps,
+        weights=near.areas,
+        area=area,
+        gap=float(near.areas @ near.gaps / area),
+        axis=np.zeros(3),
+        point=near.areas @ near.points / area,
+        radii=(0.0, 0.0),
+        misalignment=0.0,
+        offset=0.0,
+        uncertainty=(constants.FREEFORM_ANGLE, chord),
+        chord=chord,
+        fit=classify_fit(near.gaps, chord, 0.0, pair.tolerance),
+    )

@@ -1,0 +1,50 @@
+"""Shafts and bores of decimated meshes, whose vertices are on chords as well as on the surface.
+
+Programs that thin meshes put the vertex that is left of an edge in its middle: on a chord, up to the chord error inside
+the surface, which is far more than the vertices of a tessellator are off. Closed rounds of strips are therefore tried
+once more with wider tolerances. What goes most of the way round an axis, and whose vertices are off by no more than
+its facets are, is a cylinder; arcs are left alone, because a tooth's flank is nearly one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinform.model.arrays import Flags, Ints
+from kinform.surfaces import constants
+from kinform.surfaces.describe import angles_covered
+from kinform.surfaces.groups import quantile
+from kinform.surfaces.kinds.cylinder import Cylinder
+from kinform.surfaces.kinds.kind import Batch
+from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.regions.growth import Growth, whole
+from kinform.surfaces.regions.territory import Territory
+
+
+def decimated(territory: Territory, kind: Cylinder, batch: Batch, side: Ints, factor: float) -> Growth:
+    """Cylinders among the pieces `batch`, held to `factor` times the tolerance of fits."""
+    loose = _wider(territory.scale, factor)
+    enough = batch.size >= constants.LEAST_CHORDS
+    growth = whole(replace(territory, scale=loose), kind, batch.select(enough[batch.region]), side)
+    return replace(growth, batch=growth.batch.select(_round(kind, growth, territory.scale)[growth.batch.region]))
+
+
+def _wider(scale: Scale, factor: float) -> Scale:
+    return replace(scale, noise=factor * scale.noise, fit=factor * scale.fit)
+
+
+def _round(kind: Cylinder, growth: Growth, scale: Scale) -> Flags:
+    """(R,) which regions go most of the way round, their vertices no farther off than chords of their facets."""
+    batch, params = growth.batch, growth.surfaces.params
+    _, _, even = kind.evident(batch, params, scale)
+    widths = kind.widths(batch, params)
+    sweep = angles_covered(params, batch, widths)
+    width = quantile(batch.region, widths, batch.count, 0.5)
+    chord = params[:, 6] * (1.0 - np.cos(0.5 * width))
+    owner, _ = batch.corners
+    off = np.zeros(batch.count)
+    region = batch.region[owner]
+    np.maximum.at(off, region, np.abs(kind.probe(params[region], batch.points).distance))
+    return np.asarray(even & (sweep >= constants.ROUND_CHORDS) & (off <= constants.ON_CHORD * chord))
