@@ -76,3 +76,31 @@ def test_energy_that_bodies_exchange_among_each_other_alone_raises_no_doubt():
     )
     assert np.ptp(run.energy[:, 0]) < 1e-9 * run.energy[0, 0]
     assert not [note for note in run.assumptions if "not to be trusted" in note]
+
+
+@pytest.mark.parametrize("speed", [-9.0, 0.7, 5.0])
+@pytest.mark.parametrize("crank", [0.4, 2.78 / 2.01])
+def test_a_parallelogram_turns_as_one_through_many_flat_poses_or_says_that_it_may_not(crank, speed):
+    """Steps that come too near to such a pose are given up, and the motion is continued across it."""
+    model = parallelogram(crank, 0.535)
+    model.motion("drive", "a", Ramp(0.0, speed))
+    run = simulate_system(model.system("parallelogram"), Course(8.0 * np.pi / abs(speed), 0.05, (0, -9.81, 0)))
+    driver, follower = (run.joint_position[:, run.joint_names.index(name)] for name in "ad")
+    np.testing.assert_allclose(follower, driver, atol=1e-8)
+    assert run.status == "done" or "which of the branches" in run.reason
+    # the first flat pose is passed in any case
+    assert abs(driver[-1]) > np.pi
+
+
+def parallelogram(crank, start):
+    """On a base of 1 m."""
+    foot, pin = np.array([1.0, 0.0, 0.0]), crank * np.array([np.cos(start), np.sin(start), 0.0])
+    model = Model()
+    model.ground("base")
+    for name, first, second in (("crank", 0 * pin, pin), ("coupler", pin, foot + pin), ("rocker", foot, foot + pin)):
+        turning = np.linalg.norm(second - first) ** 2 / 12
+        model.body(name, 1.0, (first + second) / 2, (1e-4, 1e-4, turning))
+    pins = (("a", "base", "crank", 0 * pin), ("b", "crank", "coupler", pin), ("c", "coupler", "rocker", foot + pin))
+    for name, one, other, point in (*pins, ("d", "base", "rocker", foot)):
+        model.joint(name, one, other, "revolute", axis=(0, 0, 1), point=point)
+    return model

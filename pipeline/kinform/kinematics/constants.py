@@ -302,7 +302,8 @@ WAY_LOST = 1e-3
 DOUBTFUL_MOTION = 3.0
 """A motion that the rows miss by less than this many times what is allowed is doubtful."""
 MOST_TURNED = 0.1
-"""Share of a motion that may lie outside the space of the pair that is turned to contain it."""
+"""Share of a motion that may lie outside the space of a pair that nearly contains it: up to the alignment the space is
+turned, beyond it the pair is ambiguous. Of the fixtures and twelve robots none is turned by more than 1e-14."""
 
 # --- loops/block_closure --------------------------------------------------------------------------------------------
 

@@ -174,6 +174,22 @@ LENGTHS_ROUNDED = 1e-13
 """Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
 roundings, as poses are products of many factors."""
 
+# solver.leap: across singular poses.
+
+APPROACHED = 3e-3
+"""Margin below which a step that ends there was not laid across a singular pose ahead, but came too near."""
+LEAP_MARGIN = 0.02
+"""Margin of the nearest node before a singular pose, and of the landing behind it: accelerations are known to about
+1e-13 over its square, and what the polynomial leaves out goes with its sixth power."""
+LEAP_NODES = 3
+"""States that the polynomial goes through: more of them magnify the noise of their slopes."""
+LEAP_TOLERANCE = 1e-12
+"""Relative and absolute error a step of the way back to them."""
+LEAP_ASTRAY = 1e-6
+"""Share of the state by which loops closed behind the pose may leave the polynomial: more is another motion."""
+CROSSED_GAP = 1e-12
+"""What is open at a pose in which branches cross exactly (rad, shares of the length): the polynomial's rounding."""
+
 # solver.implicit: stiff models.
 
 FAST_DECAY = 0.4

@@ -72,7 +72,7 @@ def align_higher_pairs(graph: JointGraph, patches: Sequence[Patch], size: float,
                 joints[pair.index] = replace(joints[pair.index], status="ambiguous", reason=doubt)
             elif len(preserved):
                 relative = preserved @ pair.relative[motions]
-                joints[pair.index] = _turn_space(joints[pair.index], relative, pair.frame)
+                joints[pair.index] = _turn_space(joints[pair.index], relative, pair.frame, alignment)
     return tuple(joints)
 
 
@@ -138,13 +138,21 @@ def _preserved_motions(pairs: Sequence[_Pair], motions: list[int]) -> tuple[Arra
     return kept, ""
 
 
-def _turn_space(joint: Joint, motions: Array, frame: Frame) -> Joint:
-    """The joint with its space (f, 6) turned to contain the relative motions (r, 6), where it nearly does."""
+def _turn_space(joint: Joint, motions: Array, frame: Frame, alignment: float) -> Joint:
+    """The joint with its space (f, 6) turned to contain the relative motions (r, 6), where it does within the alignment
+    (rad); ambiguous where it nearly does."""
     wanted = span(scaled(motions.T, frame)) if np.any(motions) else np.zeros((6, 0))
     space = span(scaled(joint.twists.T, frame))
     outside = wanted - space @ (space.T @ wanted)
-    if wanted.shape[1] == 0 or wanted.shape[1] > space.shape[1] or float(np.abs(outside).max()) > MOST_TURNED:
+    missed = float(np.abs(outside).max(initial=0.0))
+    if wanted.shape[1] == 0 or wanted.shape[1] > space.shape[1] or missed > MOST_TURNED:
         return joint
+    if missed > np.sin(alignment):
+        reason = (
+            f"teeth or cams leave the motion of the joints around them but for {np.degrees(np.arcsin(missed)):.2g}°, "
+            f"which is more than the alignment of {np.degrees(alignment):.2g}°"
+        )
+        return replace(joint, status="ambiguous", reason=reason)
     rest = space - wanted @ (wanted.T @ space)
     left, _, _ = np.linalg.svd(rest, full_matrices=False)
     basis = np.hstack([wanted, left[:, : space.shape[1] - wanted.shape[1]]])

@@ -115,12 +115,20 @@ def coaxial_lines(evidence: Evidence, alignment: float) -> list[Line]:
 
 def _coaxial(a: Item, b: Item, alignment: float) -> bool:
     sine = float(np.linalg.norm(cross(a.patch.axis, b.patch.axis)))
-    if sine > np.sin(min(max(a.angle, b.angle, alignment), 0.5 * np.pi)):
+    if sine > np.sin(min(max(_tilt(a, alignment), _tilt(b, alignment)), 0.5 * np.pi)):
         return False
     middle = b.points.mean(axis=0)
     apart = foot(a.patch.point, a.patch.axis, middle) - foot(b.patch.point, b.patch.axis, middle)
     reach = float(np.linalg.norm(middle - a.points.mean(axis=0)))
     return float(np.linalg.norm(apart)) <= a.position + b.position + a.angle * reach
+
+
+def _tilt(item: Item, alignment: float) -> float:
+    """rad by which the axis of a patch may be off a line that it supports: its own `angle`, but no more than alignment,
+    clearance and what an axis that is known at all is uncertain by."""
+    engaged = float(np.ptp(item.points @ item.patch.axis))
+    play = 2.0 * max(item.patch.gap, 0.0) / engaged if engaged > 0.0 else 0.0
+    return max(alignment, min(item.angle, alignment + play + constants.SIGMAS * constants.VAGUE_AXIS))
 
 
 def _fit_line(items: list[Item], indices: list[int]) -> Line:

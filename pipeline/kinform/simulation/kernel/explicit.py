@@ -44,9 +44,9 @@ from kinform.simulation.kernel.layout import (  # isort: skip
     RANK, POSITIONS, RATES, SIZE, STOP_Q, STOP_V, SENSE, HELD, AT_END, TRIED, NEW, FAILED,
     ACC, NEED, GIVEN, KEPT,
     NOW, END, STEP, CLOSED, OPEN, MARGIN, TIGHTEST, KEEP, LEAST, PATIENCE, CROSSING, SPAN, REACHED, ERROR, WEAR,
-    GROWTH, MARGINS,
+    GROWTH, MARGINS, APPROACH,
     STEPS, BUDGET, NEXT, PAUSE, STIFF, SLOPES, FRESH, HIT, LAYINGS,
-    DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED, TURNED,
+    DONE, PAUSED, STUCK, STIFFENED, MASSLESS, OPENED, STOPPED, SPENT, WORN, TAKEN, REJECTED, TURNED, NEARING,
     Row, Counts, Nums, Work,
 )  # fmt: skip
 
@@ -293,7 +293,10 @@ def advance(ints: Ints, nums: Nums, work: Work, y: Row, clock: Row, tally: Count
         fastest = fastest_decay(ints, work, clock, tally)
         if pass_through(ints, nums, work, y, clock, tally, outputs) == STOPPED:
             return STOPPED
+        nearing = clock[MARGINS + AT_END] < clock[APPROACH] and clock[MARGINS + AT_END] < clock[MARGINS]
         accept(ints, work, y, clock, fastest)
+        if nearing:
+            return NEARING
         if clock[WEAR] < clock[KEEP]:
             return WORN
         if tally[STIFF] >= clock[PATIENCE]:

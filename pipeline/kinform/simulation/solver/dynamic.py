@@ -16,6 +16,7 @@ from kinform.simulation.kernel.calls import Engine, engine, ready
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.implicit import is_stiff, run_implicit
+from kinform.simulation.solver.leap import leap
 from kinform.simulation.solver.record import Record
 from kinform.simulation.solver.run_state import Run
 from kinform.simulation.solver.start import Start
@@ -37,8 +38,10 @@ def run_dynamic(dynamics: Dynamics, start: Start, times: Array, conduct: Conduct
     return run.record("")
 
 
-_GOING = (layout.DONE, layout.PAUSED, layout.SPENT, layout.STIFFENED, layout.WORN)
+_GOING = (layout.DONE, layout.PAUSED, layout.SPENT, layout.STIFFENED, layout.WORN, layout.NEARING)
 """The kernel came back, and the run goes on."""
+_AT_SINGULAR_POSES = (layout.NEARING, layout.TURNED, layout.STUCK)
+"""It came back where the pose may be singular."""
 
 
 class _Driver:
@@ -69,6 +72,12 @@ class _Driver:
                 status = layout.SPENT
             if status == layout.DONE and run.clock[layout.NOW] >= run.clock[layout.END]:
                 return ""
+            crossed = leap(run) if status in _AT_SINGULAR_POSES else ""
+            if crossed is None:
+                continue
+            if crossed:
+                return crossed
+            run.look_ahead(status != layout.NEARING)
             if status == layout.STOPPED:
                 why = self.contact.strike()
             elif status in (layout.STIFFENED, layout.SPENT, layout.PAUSED) and self._stiff():

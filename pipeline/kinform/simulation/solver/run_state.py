@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
+from kinform.simulation.constants import APPROACHED, FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import Engine, engine
 from kinform.simulation.mechanism.closure import rank_of
@@ -39,6 +39,7 @@ class Run:
             STIFF_PATIENCE if settings.method == "auto" else np.inf,
         )
         self.clock[layout.NARROW] = dynamics.mechanism.narrow
+        self.clock[layout.APPROACH] = APPROACHED
         self.notes: list[str] = []
         dynamics.place(start.q, start.v)
 
@@ -107,6 +108,14 @@ class Run:
         touched = np.abs(mechanism.closure_at(self.dynamics.tables.unpack(self.y)[0])).max(axis=0) > 0.0
         names = [slot.name for slot in mechanism.slots if touched[slot.v].any()]
         return f", in the loops of {', '.join(names)}"
+
+    def look_ahead(self, wanted: bool) -> None:
+        """Whether the kernel is to come back where a step ends near a singular pose; after one that could not be leaped
+        over, not before it is far behind."""
+        if wanted and self.clock[layout.MARGINS] > self.settings.near:
+            self.clock[layout.APPROACH] = APPROACHED
+        elif not wanted:
+            self.clock[layout.APPROACH] = 0.0
 
     def folds(self) -> bool:
         """Whether branches of the motion meet at the present pose, as far as lengths are known."""
