@@ -40,14 +40,14 @@ def cylinder(rng):
     return vertices @ turn.T, faces, turn[:, 2], radius
 
 
-def as_mesh(vertices, faces):
+def as_mesh(vertices, faces, resolution=0.0):
     health = MeshHealth(len(faces), len(vertices), True, True, "NoError", 1.0, 0, 0, 0, 0, 1, 1e-7)
-    return Mesh(vertices, faces, health, "random", None, "random")
+    return Mesh(vertices, faces, health, "random", None, "random", resolution=resolution)
 
 
-def found(vertices, faces):
-    """The largest cylinder of the mesh."""
-    surfaces = recover(as_mesh(vertices, faces), Tolerances()).surfaces
+def found(vertices, faces, resolution=0.0):
+    """The largest cylinder of the mesh, whose coordinates go in steps of `resolution` (m)."""
+    surfaces = recover(as_mesh(vertices, faces, resolution), Tolerances()).surfaces
     return next((s for s in surfaces if s.kind == "cylinder"), None)
 
 
@@ -76,7 +76,7 @@ def main(trials: int) -> None:
         offset = rng.normal(size=3)
         offset /= np.linalg.norm(offset)
         stored = (vertices + offset).astype(np.float32).astype(np.float64)
-        rounded = found(stored, faces)
+        rounded = found(stored, faces, float(np.finfo(np.float32).eps * np.abs(stored).max()))
         if rounded is not None:
             inside += (
                 tilt(rounded, axis) <= rounded.axis_uncertainty

@@ -165,6 +165,8 @@ RATE_SAME = 0.99
 """Rates of an idle freedom from this share of the greatest are the same but for rounding, and go by their order."""
 TURNED_ROUND = 2.0 * math.pi - 0.2
 """rad: a joint of a motion that comes back, and turned by more, goes round and round."""
+LEVEL = 1e-12
+"""m a radian by which a turn may advance and keep heights, over its reach and the distance of its axis: rounding."""
 LOOP_STOP = 1e-3
 """Share of a step to which a contact along a motion of loops is found."""
 

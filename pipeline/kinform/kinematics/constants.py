@@ -21,6 +21,8 @@ own."""
 CLOSED = 1e-7
 """Relative singular value below which a combination of joint rates closes its loops; the axes have been made exactly
 parallel and coaxial before, so true zeros are rounding."""
+PART_OF_TURN = 1e-3
+"""Share of the fastest turn of a joint's freedoms below which a combination of them is a slide."""
 FAR_AXIS = 1e-9
 """A twist whose axis is farther away than the size of the assembly over this is a slide."""
 MET = 1e-15

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinform.collisions.constants import LEVEL
 from kinform.foundation.algebra.vectors import cross, perpendicular
 from kinform.foundation.meshes.boxes import facet_boxes
 from kinform.foundation.meshes.proximity import near_boxes
@@ -27,9 +28,10 @@ class Profile:
         self._flat = away @ across
         self._radius = np.linalg.norm(self._flat, axis=1)
         self._heights = away @ axis
-        self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < 1e-12
         self.largest: float = float(self._radius.max(initial=0.0))
         """m: greatest distance from the axis of a turn."""
+        rounding = LEVEL * max(self.largest, float(np.linalg.norm(twist[3:])))
+        self._level = self._turning and abs(float(twist[:3] @ twist[3:])) < rounding
 
     @property
     def span(self) -> tuple[float, float]:

@@ -146,7 +146,7 @@ def _rollers(surfaces: SurfacePair, parallel: float) -> Meeting | None:
     feet = q + ((on - q) @ e)[:, None] * e
     apart = on - feet
     distance = np.linalg.norm(apart, axis=1)
-    if distance.min() <= 1e-12:
+    if distance.min() <= 1e-12 * sum(radii):
         return None
     normals, gaps = apart / distance[:, None], distance - sum(radii)
     return Meeting(on - (radii[0] + 0.5 * gaps)[:, None] * normals, normals, gaps, True, (high - low) / ROLLER_SAMPLES)

@@ -95,7 +95,7 @@ def loop_matrix(spaces: Sequence[Array], cycles: Sequence[Cycle], frame: Frame, 
 def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     """Centre and size of the axes of some joints, so that turns and slides compare. Axes that meet have
     no size of their own: then a share of the assembly's counts."""
-    turns = np.array([t for space in spaces for t in space if _turns(t, size)]).reshape(-1, 6)
+    turns = np.array([t for space in spaces for t in _by_turn(space) if _turns(t, size)]).reshape(-1, 6)
     if not len(turns):
         return Frame(np.zeros(3), size)
     # the point of an axis nearest to the origin may be far away: take those nearest to the middle of all axes
@@ -107,6 +107,16 @@ def axes_frame(spaces: Sequence[Array], size: float) -> Frame:
     centre = start + np.linalg.lstsq(across.sum(axis=0), missing, rcond=constants.AXES_RANK)[0]
     frame = Frame.of(np.vstack([_feet(turns, centre), centre]))
     return Frame(frame.centre, max(frame.length, constants.LEAST_FRAME * size))
+
+
+def _by_turn(space: Array) -> Array:
+    """The same twists (f, 6) combined so that what turns and what slides are apart: of a turn and a slide, each with a
+    part of the other, the axis may be anywhere."""
+    if len(space) < 3:
+        return space
+    left, values, _ = np.linalg.svd(space[:, :3])
+    turning = int(np.count_nonzero(values > constants.PART_OF_TURN * values[0])) if values[0] > 0.0 else 0
+    return np.asarray(left.T[:turning] @ space) if 0 < turning < len(space) else space
 
 
 def _turns(twist: Array, size: float) -> bool:
