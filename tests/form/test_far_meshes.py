@@ -90,6 +90,12 @@ def test_a_box_of_whole_numbers_is_no_coarse_file(tmp_path):
     assert parse_obj(obj(box * 1e-3, "%.12g")).resolution < 1e-9
 
 
+def test_whole_millimetres_of_a_frame_are_no_rounded_numbers():
+    frame = [0, 40, 1210, 1250, 600, 640, 980, 1000, 35, 1215, 1245, 605, 635, 985, 25, 15, 1225]
+    assert written_step([str(v) for v in frame], np.array(frame, dtype=float)) == 0.0
+    assert written_step(["0", "1"] * 12, np.array([0.0, 1.0] * 12)) == 0.0
+
+
 def test_doubles_are_written_finer_than_can_be_told():
     values = np.random.default_rng(2).uniform(1e6, 1e6 + 10, 50)
     assert written_step([repr(float(v)) for v in values], values) < 1e-8
