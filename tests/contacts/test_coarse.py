@@ -91,6 +91,13 @@ def test_a_square_bar_in_its_square_hole_beside_round_holes_stays_a_prism():
     assert (joint.type, joint.status) == ("prismatic", "determined")
 
 
+def test_a_neck_between_collars_is_no_socket_for_the_block_around_it():
+    """Collars and a flat of an octagon meet in two corners, which lie on many circles."""
+    shaft, block = spool(8, radius=2.54, collar=4.06, half=2.6), sleeve(2.7, 8, half=2.4, size=6.05)
+    joint = joint_of(shaft, block, 5)
+    assert joint.status == "ambiguous"
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_what_encloses_a_crumpled_shaft_makes_its_joint_doubtful(seed):
     """Vertices of the shaft scatter by as much as its facets are wide: its collars are all that is left of it."""

@@ -127,7 +127,9 @@ def _read(pair: PairView, patches: list[Patch], first: _Round, second: _Round) -
     found = _patches(pair, first, second, {id(socket): radius, id(bar): bar.corner})
     if not found:
         return patches
-    doubtful = flats or (sides and min(n for n in (bar.sides, socket.sides) if n) <= constants.PRISM_SIDES)
+    few = min((n for n in (bar.sides, socket.sides) if n), default=constants.PRISM_SIDES + 1) <= constants.PRISM_SIDES
+    alike = bar.sides == socket.sides > 0 and bar.corner > socket.flats[0]
+    doubtful = flats or few or alike
     found = [replace(patch, sides=sides if doubtful else 0) for patch in found]
     return [patch for patch, inside in zip(patches, between, strict=True) if not inside] + found
 

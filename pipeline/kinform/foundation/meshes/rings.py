@@ -131,6 +131,10 @@ def _along(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, ridges: _Ridges) -> 
 
 def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges: _Ridges) -> Ring | None:
     """The ring of these pieces of planes, unless their corners are on no circle or do not go round it."""
+    met = len(np.unique(np.sort(ridges.pieces, axis=1), axis=0))
+    if met < 3 or (met == 3 and len(pieces) > 3):
+        # two lines are on many circles, and three of an open row are on one whatever they are
+        return None
     sense = np.sign(ridges.direction @ ridges.direction[0])
     axis = canonical((sense * ridges.length) @ ridges.direction)
     corners = mesh.vertices[np.unique(ridges.ends)]
@@ -150,14 +154,18 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges:
     if widest_gap(normals, axis) > constants.RING_OPEN:
         return None
     point = middle + x * u + y * v
-    reach = np.array([abs(float((plane.point - point) @ plane.axis)) for plane in planes])
+    side = 1 if ridges.convex[0] else -1
+    reach = np.array([side * float((plane.point - point) @ plane.axis) for plane in planes])
+    if reach.min() <= 0.0:
+        # the walls and the rims of a hole make a ring too, inside out
+        return None
     heights = (mesh.vertices[np.unique(mesh.faces[facets])] - point) @ axis
     return Ring(
         axis=axis,
         point=point,
         corner=corner,
         flats=(float(reach.min()), float(reach.max())),
-        side=1 if ridges.convex[0] else -1,
+        side=side,
         sides=len(labels),
         extent=(float(heights.min()), float(heights.max())),
         surfaces=labels,
