@@ -63,6 +63,10 @@ CELLS_LEAST = 8
 
 # meshes/rings: flats about an axis
 
+RING_FEW = 6
+"""Up to so many flats a ring is round only where ..."""
+RING_EVEN = 0.05
+"""... their distances from the axis differ by no more than this share of that of the corners: those of a box do not."""
 RING_SIDES = 3
 """Flats of a ring, at least."""
 RING_TURN = (np.radians(20.0), np.radians(125.0))

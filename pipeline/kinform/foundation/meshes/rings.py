@@ -159,6 +159,9 @@ def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges:
     if reach.min() <= 0.0:
         # the walls and the rims of a hole make a ring too, inside out
         return None
+    if len(planes) <= constants.RING_FEW and reach.max() - reach.min() > constants.RING_EVEN * corner:
+        # the corners of every box are on a circle
+        return None
     heights = (mesh.vertices[np.unique(mesh.faces[facets])] - point) @ axis
     return Ring(
         axis=axis,
