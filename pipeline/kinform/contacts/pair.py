@@ -63,6 +63,7 @@ def pair_contacts(
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
     patches += enclosing_patches(pair, patches)
+    patches = [_of_scattered(pair, patch) for patch in patches]
     patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
     interference = find_interference(pair, patches, solids)
     if interference is not None:
@@ -105,6 +106,14 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     if not all(i in pieces[0] and j in pieces[1] for i, j in (patch.surfaces for patch in others)):
         return patches
     return rest + profiles + ([] if rest else higher_pairs(pair, pieces))
+
+
+def _of_scattered(pair: PairView, patch: Patch) -> Patch:
+    """The patch; points and lines of contact of meshes whose vertices scatter are of facets, and of no known curves."""
+    if patch.kind not in ("point", "line"):
+        return patch
+    scatters = any(part.surfaces.noise > pair.tolerances.fit * part.index.mesh.diagonal for part in pair.parts)
+    return replace(patch, one_sided=patch.one_sided or scatters)
 
 
 def _across(patch: Patch, along: Array) -> bool:

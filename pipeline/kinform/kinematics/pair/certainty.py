@@ -81,6 +81,8 @@ def certainty(
 def meets(patches: Sequence[Patch]) -> bool:
     """Whether all contact is along points and lines, beside nothing but planes across the lines: a cam that rubs."""
     lines = [patch.axis for patch in patches if patch.kind == "line"]
+    if any(patch.kind in TOUCHING and patch.one_sided for patch in patches):
+        return False  # nobody knows where facets touch next
     return any(patch.kind in TOUCHING for patch in patches) and all(
         patch.kind in TOUCHING
         or (
