@@ -414,10 +414,11 @@ MOST_STATEMENTS = 4
 
 # --- mobility/idle --------------------------------------------------------------------------------------------------
 
-IDLE_SECTORS = 12
-"""Parts of a turn that a ring is looked at in, ..."""
-IDLE_LEAST_SECTOR = 0.25
-"""... and share of their mean area that each must have."""
+IDLE_MIDDLE = 0.2
+"""Distance of the middle of a face from an axis, over that of its points, beyond which it does not turn onto itself,
+..."""
+IDLE_OPEN = math.radians(60.0)
+"""... and angle about the axis without any of it."""
 IDLE_AXIS = 1e-3
 """Sine between axes, and part of a unit turn outside a joint's freedoms, that is none."""
 IDLE_PLACE = 1e-4
@@ -509,6 +510,9 @@ MIDDLE_STRIDE = 0.1
 """Speed that such a step gives to the worst row."""
 MOST_OPENING_ROWS = 12_000
 """Rows of one block's program beyond which it would take minutes: 400 bricks in a wall, 5,000 rows, take 3 s."""
+ROUNDED_ROW = 1e-7
+"""Entries of unit rows below this are rounding to HiGHS, which with them may not end: a hand of 146 parts did not in
+ten minutes."""
 MOST_TOGETHER = 8
 """Bodies up to which those are told that leave together."""
 LARGEST_TWIST = 1.0 / CONE_HELD

@@ -23,6 +23,8 @@ def written_step(tokens: Sequence[str], values: Array) -> float:
     digits do not look like rounded ones."""
     size = np.abs(values)
     large = np.flatnonzero(size >= size.max(initial=0.0) * LARGE_COORDINATES)
+    if _shortest([tokens[k] for k in large.tolist()]):
+        return 0.0
     coarse, every = _digits(tokens, large), _digits(tokens, np.arange(len(tokens)))
     if not coarse or not every:
         return 0.0
@@ -33,6 +35,15 @@ def written_step(tokens: Sequence[str], values: Array) -> float:
         all(place >= finest for place, _ in every) or all(count <= longest for _, count in every)
     )
     return 10.0**finest if used > LAST_DIGIT_USED and cut else 0.0
+
+
+def _shortest(tokens: Sequence[str]) -> bool:
+    """Whether numbers are written as the shortest text that reads back as the same double, so that nothing is lost.
+
+    Such a writer puts ".0" behind whole numbers, and one of few digits nothing; one of one decimal writes others too.
+    """
+    whole = [token.endswith(".0") for token in tokens]
+    return any(whole) and (all(whole) or any(len(token.partition(".")[2]) > 1 for token in tokens))
 
 
 def _digits(tokens: Sequence[str], indices: Ints) -> list[tuple[int, int]]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.screws import Frame, rotation, scaled, span, twist_at_origin
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.bodies.stated_joints import Pair, pair_between
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -161,14 +161,13 @@ def _invariant(patch: Patch, axis: Array, point: Array, size: float) -> bool:
         return parallel and away <= abs(patch.gap) + constants.IDLE_PLACE * size
     if patch.kind != "plane" or float(np.linalg.norm(cross(patch.axis, axis))) > constants.IDLE_AXIS:
         return False
-    u, v = perpendicular(axis)
+    # the middle of what turns onto itself is on the axis, whatever the attitude; and it goes all round
     arm = patch.points - point
-    sector = (
-        np.floor(np.arctan2(arm @ v, arm @ u) / (2.0 * np.pi) * constants.IDLE_SECTORS).astype(int)
-        % constants.IDLE_SECTORS
-    )
-    area = np.bincount(sector, weights=patch.weights, minlength=constants.IDLE_SECTORS)
-    return bool(area.min() > constants.IDLE_LEAST_SECTOR * area.mean())
+    arm = arm - np.outer(arm @ axis, axis)
+    reach = float(patch.weights @ np.linalg.norm(arm, axis=1))
+    if float(np.linalg.norm(patch.weights @ arm)) > constants.IDLE_MIDDLE * reach:
+        return False
+    return widest_gap(arm, axis) < constants.IDLE_OPEN
 
 
 def _names(wanted: IntendedJoint, axis: Array, point: Array, leaf: bool, size: float) -> bool:

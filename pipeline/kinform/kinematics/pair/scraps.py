@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.algebra.vectors import widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.hypotheses import coaxial_lines
@@ -56,6 +56,4 @@ def _arc(item: Item, axis: Array) -> float:
     """rad: angle about the axis (3,) that the normals of a patch cover."""
     if item.patch.kind not in COAXIAL:
         return 0.0
-    u, v = perpendicular(axis)
-    angles = np.sort(np.arctan2(item.normals @ v, item.normals @ u))
-    return float(2.0 * np.pi - np.diff(angles, append=angles[0] + 2.0 * np.pi).max())
+    return 2.0 * np.pi - widest_gap(item.normals, axis)

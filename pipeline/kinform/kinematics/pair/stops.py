@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.vectors import cross, perpendicular
+from kinform.foundation.algebra.vectors import cross, perpendicular, widest_gap
 from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms
@@ -140,10 +140,9 @@ def _ends_guide(form: JointForm, guides: list[Item], faces: list[Item]) -> bool:
     if all(length < constants.SLIDES_FROM * 2.0 * half for length, half in sections):
         return False
     reach = max(half for _, half in sections)
-    far = at_end[np.linalg.norm(at_end, axis=1) > constants.ROUND_FROM * face_reach]
-    angles = np.sort(np.arctan2(far[:, 1], far[:, 0]))
-    gap = float(np.diff(angles, append=angles[0] + 2.0 * np.pi).max())
-    return face_reach <= constants.INSIDE_GUIDE * reach or gap > constants.BESIDE_AXIS
+    far = (ends - centre)[np.linalg.norm(at_end, axis=1) > constants.ROUND_FROM * face_reach]
+    beside = widest_gap(far, axis) > constants.BESIDE_AXIS
+    return face_reach <= constants.INSIDE_GUIDE * reach or beside
 
 
 def _across(points: Array, centre: Array, axis: Array) -> Array:

@@ -23,7 +23,7 @@ from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.kinematics.answers import Answers, ask
-from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, MOST_OPENING_ROWS, MOST_TOGETHER
+from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, MOST_OPENING_ROWS, MOST_TOGETHER, ROUNDED_ROW
 from kinform.kinematics.separation.cone import rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
@@ -158,7 +158,7 @@ def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix
         numbers = np.arange(count, count + len(rows))
         for sign, column in ((-1.0, a), (1.0, b)):
             if column >= 0:
-                data.append((sign * rows).ravel())
+                data.append(np.where(np.abs(rows) > ROUNDED_ROW, sign * rows, 0.0).ravel())
                 i.append(np.repeat(numbers, 6))
                 j.append(np.tile(np.arange(column, column + 6), len(rows)))
         if slack >= 0:
@@ -168,7 +168,9 @@ def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix
         count += len(rows)
     if not count:
         return None
-    return coo_matrix((np.concatenate(data), (np.concatenate(i), np.concatenate(j))), (count, columns)).tocsr()
+    stacked = coo_matrix((np.concatenate(data), (np.concatenate(i), np.concatenate(j))), (count, columns)).tocsr()
+    stacked.eliminate_zeros()
+    return stacked
 
 
 def _common(frames: Sequence[Frame]) -> Frame:
