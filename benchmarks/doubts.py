@@ -74,15 +74,15 @@ def robot(folder: Path) -> Case:
     truth = json.loads((folder / "truth.json").read_text())
     groups = [tuple(sorted(group)) for group in truth["rigid_groups"]]
     joints = []
-    for item in truth["joints"]:
+    for item in [*truth["joints"], *truth["loops"]]:
         kind = {"continuous": "revolute"}.get(item["type"], item["type"])
-        sides = item.get("parent_group"), item.get("child_group")
+        sides = item.get("parent_group", item.get("group_a")), item.get("child_group", item.get("group_b"))
         if None in sides or kind not in ("revolute", "prismatic", "cylindrical", "spherical", "planar"):
             continue
         axis = None if kind == "spherical" else np.asarray(item["axis"], dtype=float)
         roles = (groups[sides[0]][0], groups[sides[1]][0])
         unit = None if axis is None else axis / np.linalg.norm(axis)
-        joints.append(TrueJoint(roles, kind, unit, np.asarray(item["origin"], dtype=float)))
+        joints.append(TrueJoint(roles, kind, unit, np.asarray(item.get("origin", item.get("point")), dtype=float)))
     stated = tuple(group for group in groups if len(group) > 1)
     # 0.2 % of this size is 0.2 mm
     return Case(0, f"robot/{folder.name}", "m", 0.1, (), stated, tuple(groups), tuple(joints))
