@@ -1,5 +1,5 @@
 # Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks but for
-# the few tests that take minutes, which `make test-slow` runs.
+# the few tests that take minutes, which `make test-slow` runs, and the copies of all fixtures of `make test-sweep`.
 # Tests that need other programs (GHDL, rumoca, MuJoCo, Drake, …) skip unless `make validators` has installed them.
 PYTHON ?= python3
 VENV ?= .venv
@@ -10,7 +10,7 @@ DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
 WORKERS ?= 2
 
-.PHONY: demo test test-slow lint validators lock fixtures docs clean
+.PHONY: demo test test-slow test-sweep lint validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -26,6 +26,9 @@ test: lint
 
 test-slow: $(VENV)/.developing
 	$(BIN)/python -m pytest -n $(WORKERS) -m slow
+
+test-sweep: $(VENV)/.developing
+	$(BIN)/python -m pytest -n $(WORKERS) -m sweep
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

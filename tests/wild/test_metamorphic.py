@@ -134,21 +134,21 @@ MANY = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @pytest.mark.parametrize("change", EXACT)
 @pytest.mark.parametrize("name", MANY)
 def test_every_fixture_is_the_same_in_every_exact_copy(plain, name, change, tmp_path):
     same(plain(name), name, EXACT[change], tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @pytest.mark.parametrize("noise", [1e-6, 1e-5, 1e-4])
 @pytest.mark.parametrize("name", MANY)
 def test_every_fixture_with_noise_is_the_same_or_in_doubt(plain, name, noise, tmp_path):
     no_other_answer(plain(name), name, Change(noise=noise, seed=3), tmp_path, 0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @pytest.mark.parametrize("worn", WORN)
 @pytest.mark.parametrize("kind", sorted({(family, f.__name__) for family, kinds in FAMILIES.items() for f in kinds}))
 def test_every_kind_of_random_assembly_is_right_or_in_doubt(kind, worn, tmp_path):
