@@ -174,19 +174,44 @@ LENGTHS_ROUNDED = 1e-13
 """Share of the mechanism's length by which lengths that are exact in double precision may be off: a few hundred
 roundings, as poses are products of many factors."""
 
-# solver.leap: across singular poses.
+# solver.leap, solver.collocation: across singular poses.
 
 APPROACHED = 3e-3
 """Margin below which a step that ends there was not laid across a singular pose ahead, but came too near."""
+FAR_BEHIND = 3.0 * APPROACHED
+"""Margin above which a pose that could not be leaped over is behind, and others are looked for: a choice. Forty
+four-bars in a row never come above 0.05."""
 LEAP_MARGIN = 0.02
-"""Margin of the nearest node before a singular pose, and of the landing behind it: accelerations are known to about
-1e-13 over its square, and what the polynomial leaves out goes with its sixth power."""
-LEAP_NODES = 3
-"""States that the polynomial goes through: more of them magnify the noise of their slopes."""
+"""Margin, by singular values, below which a singular pose may be ahead; and below which rows of the loops are about to
+depend on others: a choice."""
+LEAP_REACHES = (0.025, 0.05, 0.1, 0.2, 0.4)
+"""How far a step reaches from the pose to either side, tried from the first on: rad, or lengths, that the fastest joint
+moves. The error of the stages' slopes goes with the inverse square of it, what the polynomial leaves out with its
+twelfth power; for chains of 2 to 40 four-bars the first that are tried agree to 1e-12."""
+LEAP_SHORTEST = 0.5
+"""A step begins so much farther before the pose than the run has come to, as a share of that distance."""
+LEAP_COARSE, LEAP_FINE = 6, 8
+"""Stages of the two steps that are compared: even, as none may lie in the middle."""
+LEAP_ACCURATE = 1e-12
+"""Difference between them (rad, lengths, also a second, or a share of that where it is more) that is good enough: a
+hundredth of the tolerance of a step."""
+LEAP_ERROR = 1e-8
+"""Difference beyond which the run is left as it is: what a run of ten seconds gathers at the default tolerance."""
+LEAP_NEARER = 100.0
+"""A step that errs so many times as much as one that is shorter is too long, and longer ones are not tried."""
+LEAP_TURNED = 0.1
+"""Share of itself that the least singular value must have as its negative behind the pose: straight on it has all."""
 LEAP_TOLERANCE = 1e-12
-"""Relative and absolute error a step of the way back to them."""
-LEAP_ASTRAY = 1e-6
-"""Share of the state by which loops closed behind the pose may leave the polynomial: more is another motion."""
+"""Relative and absolute error a step of the way back."""
+LEAP_EVALUATIONS = 4000
+"""Evaluations of a way back before it is given up; a hundred are usual."""
+COLLOCATION_ROUNDS = 40
+"""Iterations of the stages; five to ten are usual."""
+COLLOCATION_SETTLED = 1e-15
+"""Change of a state (rad, lengths, also a second) by one that ends them; below its root they also end where the noise
+of slopes keeps it from falling to half."""
+NODE_ROUNDING = 1e-16
+"""Newton's last correction of a node: below its last bit."""
 CROSSED_GAP = 1e-12
 """What is open at a pose in which branches cross exactly (rad, shares of the length): the polynomial's rounding."""
 

@@ -1,138 +1,203 @@
 """Takes a run across a singular pose in which branches of its motion cross exactly, where steps did not get across.
 
 Near such a pose accelerations are 0/0: evaluated too near they are noise, and steps that shrink come ever nearer. But
-the motion is smooth there. So it is followed backwards to where it is well known, three states and their slopes make a
-polynomial, and that is followed to as far beyond the pose as the nearest state lies before it, and closed there.
+the motion is smooth there. So it is followed backwards to as far before the pose as one step of collocation reaches
+beyond it (`collocation`). Too short a step has its stages in the noise, too long a one leaves more out: steps of
+several lengths are made, each with two numbers of stages, and taken is the first in which both agree to rounding, or
+that in which they agree best. Where none agrees well enough, the run is left as it is. So nothing larger than these
+errors hangs on which steps came before, and on last bits.
 
-Whether branches do cross is asked first: at the pose the polynomial would leave the loops open by ε where lengths are
-off by ε. What is rounding is crossed; what is less than lengths are known is a doubt, and ends the run; what is more is
-a corner that the motion turns indeed.
+Whether branches do cross is asked too: at the pose the polynomial would leave the loops open by ε where lengths are off
+by ε. What is rounding is crossed; what is less than lengths are known is a doubt, and ends the run; what is more is a
+corner that the motion turns indeed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from kinform.model.arrays import Array
 from kinform.simulation.constants import (
     CROSSED_GAP,
-    LEAP_ASTRAY,
+    LEAP_ACCURATE,
+    LEAP_COARSE,
+    LEAP_ERROR,
+    LEAP_EVALUATIONS,
+    LEAP_FINE,
     LEAP_MARGIN,
-    LEAP_NODES,
+    LEAP_NEARER,
+    LEAP_REACHES,
+    LEAP_SHORTEST,
     LEAP_TOLERANCE,
+    LEAP_TURNED,
+    STOP_PASSED,
 )
 from kinform.simulation.kernel import layout
+from kinform.simulation.solver.collocation import Passage, pass_over, places_of
 from kinform.simulation.solver.run_state import Run
 
 
 def leap(run: Run) -> str | None:
     """Put the run beyond the singular pose ahead: None when it is there, "" where it is left as it is, else why it
     ends."""
-    mechanism, now = run.dynamics.mechanism, float(run.clock[layout.NOW])
-    if run.dynamics.actuation.stops or not mechanism.closed:
+    mechanism = run.dynamics.mechanism
+    if not mechanism.closed or run.dynamics.tables.ints[layout.STOPS][:, layout.HELD].any():
         return ""
-    margin, pace = _margin(run, run.y), _pace(run)
-    if not 0.0 < margin < LEAP_MARGIN or pace == 0.0:
+    pose = _pose_ahead(run)
+    if pose is None:
         return ""
-    before = now - margin / pace
-    if before <= run.times[0]:
+    best: tuple[float, Passage] | None = None
+    for passage, error in _passages(run, pose):
+        if best is None or error < best[0]:
+            best = error, passage
+        elif error > LEAP_NEARER * best[0]:
+            break
+        if best[0] < LEAP_ACCURATE:
+            break
+    run.choose()
+    if best is None or best[0] > LEAP_ERROR:
         return ""
-    earlier = _states_before(run, [before])
-    rise = (_margin(run, earlier[0]) - margin) / (now - before) if earlier else 0.0
-    if not rise > 0.0:
-        return ""
-    pose, reach = now + margin / rise, LEAP_MARGIN / rise
-    nodes = [pose - k * reach for k in range(1, LEAP_NODES + 1)]
-    if nodes[-1] <= run.times[0] or pose + reach >= run.clock[layout.END]:
-        return ""
-    states = _states_before(run, nodes)
-    if not states:
-        return ""
-    ahead = _polynomial(run, nodes, states, pose)
-    gap = _gap(run, ahead(pose))
+    gap = _gap(run, best[1].state_at(0.5))
     if gap > CROSSED_GAP:
         return f"at t = {pose:.6g} s {mechanism.doubt()}{run.loops()}" if gap <= mechanism.uncertain else ""
-    return None if _land(run, ahead, pose, reach) else ""
+    _land(run, best[1])
+    return None
 
 
-def _states_before(run: Run, times: Sequence[float]) -> list[Array]:
-    """States at earlier times, descending: the motion followed backwards from the present, loops closed; none where it
-    cannot be."""
-    from scipy.integrate import solve_ivp
+def _pose_ahead(run: Run) -> float | None:
+    """When (s) the margin, which falls like one side of a V, comes to nothing; None where it does not."""
+    now, pace = float(run.clock[layout.NOW]), _pace(run, run.y)
+    margin, at = _margin(run, run.y), run.y
+    if not 0.0 < margin < LEAP_MARGIN or pace == 0.0:
+        return None
+    # First a look at how fast it falls, and with that one from twice as far, where it is known better.
+    pose, before = now, now - margin / pace
+    for _ in range(2):
+        if before <= run.times[0]:
+            return None
+        earlier = _back(run, now, at, before)
+        rise = _margin(run, earlier) - margin if earlier is not None else 0.0
+        if not rise > 0.0:
+            return None
+        pose = now + margin * (now - before) / rise
+        before = now - (pose - now)
+    return pose
+
+
+def _passages(run: Run, pose: float) -> Iterator[tuple[Passage, float]]:
+    """Steps across the pose, one longer than the other, with their errors."""
+    t, y = float(run.clock[layout.NOW]), run.y
+    unit = 1.0 / max(_pace(run, y), np.sqrt(_pull(run, t, y)))
+    for reach in (share * unit for share in LEAP_REACHES):
+        begin, end = pose - reach, pose + reach
+        if begin > t - LEAP_SHORTEST * (pose - t):
+            continue
+        if begin <= run.times[0] or end >= run.clock[layout.END]:
+            return
+        state = _back(run, t, y, begin)
+        if state is None:
+            return
+        t, y = begin, state
+        run.dynamics.place(*run.dynamics.tables.unpack(y))
+        coarse = pass_over(run, y, begin, end - begin, np.repeat(_slope(run, t, y)[None], LEAP_COARSE, axis=0))
+        fine = None
+        if coarse is not None:
+            fine = pass_over(run, y, begin, end - begin, coarse.slopes_at(places_of(LEAP_FINE)))
+        if coarse is None or fine is None or not _goes_straight(run, fine) or _stopped(run, fine):
+            continue
+        yield fine, float(np.max(np.abs(fine.end - coarse.end) / np.maximum(1.0, np.abs(fine.end))))
+
+
+def _back(run: Run, now: float, y: Array, time: float) -> Array | None:
+    """The state at an earlier time, loops closed: the motion followed backwards from y at `now`."""
+    from scipy.integrate import DOP853
+
+    made = 0
 
     def rates(t: float, y: Array) -> Array:
-        dy = np.zeros_like(y)
-        run.derivative(t, y.copy(), dy)
-        return dy
+        nonlocal made
+        made += 1
+        return _slope(run, t, y)
 
-    now = float(run.clock[layout.NOW])
-    way = solve_ivp(
-        rates, (now, times[-1]), run.y.copy(), "DOP853", t_eval=list(times), rtol=LEAP_TOLERANCE, atol=LEAP_TOLERANCE
-    )
-    if not way.success:
-        return []
-    states = [np.ascontiguousarray(y) for y in way.y.T]
-    for t, y in zip(times, states, strict=True):
-        run.project(t, y)
-    return states
+    with np.errstate(all="ignore"):
+        way = DOP853(rates, now, y.copy(), time, rtol=LEAP_TOLERANCE, atol=LEAP_TOLERANCE)
+        while way.status == "running" and made < LEAP_EVALUATIONS:
+            way.step()
+    if way.status != "finished":
+        return None
+    state = np.ascontiguousarray(way.y)
+    gap, _ = run.project(time, state)
+    return state if 0.0 <= gap < run.settings.open else None
 
 
-def _polynomial(run: Run, nodes: Sequence[float], states: Sequence[Array], pose: float) -> Callable[[float], Array]:
-    """States by time, through those at the nodes with their slopes."""
-    from scipy.interpolate import KroghInterpolator
-
-    rows = []
-    for t, y in zip(nodes, states, strict=True):
-        dy = np.zeros_like(y)
-        run.derivative(t, y.copy(), dy)
-        rows += [y, dy]
-    through = KroghInterpolator(np.repeat(nodes, 2) - pose, np.array(rows))
-    return lambda t: np.ascontiguousarray(through(t - pose))
+def _slope(run: Run, t: float, y: Array) -> Array:
+    slope = np.zeros_like(y)
+    run.derivative(t, y.copy(), slope)
+    return slope
 
 
 def _positions(run: Run, y: Array) -> Array:
     return run.dynamics.tables.unpack(y)[0]
 
 
+def _scaled_rows(run: Run, y: Array) -> Array:
+    mechanism = run.dynamics.mechanism
+    return np.asarray(mechanism.closure_at(_positions(run, y)) * mechanism.scale)
+
+
 def _margin(run: Run, y: Array) -> float:
     """How far the loops are from a singular pose for all rates: least singular value that counts over the largest."""
-    mechanism, rank = run.dynamics.mechanism, run.dynamics.rank
-    values = np.linalg.svd(mechanism.closure_at(_positions(run, y)) * mechanism.scale, compute_uv=False)
+    rank = run.dynamics.rank
+    values = np.linalg.svd(_scaled_rows(run, y), compute_uv=False)
     return float(values[rank - 1] / values[0]) if rank else 1.0
 
 
-def _pace(run: Run) -> float:
-    """rad/s, and lengths a second: how fast the joints move."""
-    rates = run.dynamics.tables.unpack(run.y)[1] / run.dynamics.mechanism.scale
-    return float(np.linalg.norm(rates))
+def _pace(run: Run, y: Array) -> float:
+    """rad/s, and lengths a second, of the fastest joint in the state y; of a slope, what its rates change by."""
+    return float(np.abs(run.dynamics.tables.unpack(y)[1] / run.dynamics.mechanism.scale).max(initial=0.0))
+
+
+def _pull(run: Run, t: float, y: Array) -> float:
+    """rad/s², and lengths a second²: how fast the rates change."""
+    return _pace(run, _slope(run, t, y))
 
 
 def _gap(run: Run, y: Array) -> float:
-    """What is open in the row that is about to depend on the others (rad, shares of the length)."""
-    mechanism, q = run.dynamics.mechanism, _positions(run, y)
-    left, _, _ = np.linalg.svd(mechanism.closure_at(q) * mechanism.scale)
-    return abs(float(left[:, run.dynamics.rank - 1] @ mechanism.gap(mechanism.poses(q), q)))
+    """What is open in the rows that are about to depend on the others (rad, shares of the length)."""
+    mechanism, q, rank = run.dynamics.mechanism, _positions(run, y), run.dynamics.rank
+    left, values, _ = np.linalg.svd(_scaled_rows(run, y))
+    loose = left[:, :rank][:, values[:rank] < LEAP_MARGIN * values[0]]
+    return float(np.abs(loose.T @ mechanism.gap(mechanism.poses(q), q)).max(initial=0.0))
 
 
-def _land(run: Run, ahead: Callable[[float], Array], pose: float, reach: float) -> bool:
-    """Goes on beyond the pose, outputs on the way filled; False where the other side is not as it should be."""
-    later = pose + reach
-    landing = ahead(later)
-    y = landing.copy()
-    gap, _ = run.project(later, y)
-    if not gap < run.settings.open or np.abs(y - landing).max() > LEAP_ASTRAY * max(1.0, float(np.abs(y).max())):
-        return False
-    if _margin(run, y) < 0.5 * LEAP_MARGIN:
-        return False
+def _goes_straight(run: Run, passage: Passage) -> bool:
+    """Whether what was the least singular value has changed its sign: a motion that turns back leaves it."""
+    left, values, right = np.linalg.svd(_scaled_rows(run, passage.start))
+    k = run.dynamics.rank - 1
+    after = float(left[:, k] @ _scaled_rows(run, passage.end) @ right[k])
+    return after < -LEAP_TURNED * float(values[k])
+
+
+def _stopped(run: Run, passage: Passage) -> bool:
+    """Whether an end stop is in the way."""
+    stops = run.dynamics.actuation.stops
+    places = (*places_of(len(passage.slopes)), 1.0) if stops else ()
+    values = [_positions(run, passage.state_at(place)) for place in places]
+    return any(stop.sense * (q[stop.q] - stop.limit) > STOP_PASSED for q in values for stop in stops)
+
+
+def _land(run: Run, passage: Passage) -> None:
+    """Goes on from the end of the passage, outputs on the way filled."""
+    later = passage.begin + passage.span
     while run.tally[layout.NEXT] < len(run.times) and run.times[run.tally[layout.NEXT]] <= later:
         k = int(run.tally[layout.NEXT])
-        run.sample(float(run.times[k]), ahead(float(run.times[k])), run.out[k])
+        place = (float(run.times[k]) - passage.begin) / passage.span
+        run.sample(float(run.times[k]), passage.state_at(place), run.out[k])
         run.tally[layout.NEXT] += 1
-    run.y[:] = y
-    run.clock[layout.NOW], run.clock[layout.STEP] = later, reach
-    run.clock[layout.MARGIN], run.clock[layout.TIGHTEST] = 0.0, pose
+    run.y[:] = passage.end
+    run.clock[layout.NOW], run.clock[layout.STEP] = later, 0.5 * passage.span
+    run.clock[layout.MARGIN], run.clock[layout.TIGHTEST] = 0.0, passage.begin + 0.5 * passage.span
     run.tally[layout.FRESH], run.tally[layout.STIFF] = 1, 0
     run.choose()
-    return True

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
-from kinform.simulation.constants import APPROACHED, FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
+from kinform.simulation.constants import APPROACHED, FAR_BEHIND, FIRST_STEP, PASSED_BEFORE_STOP, STIFF_PATIENCE
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import Engine, engine
 from kinform.simulation.mechanism.closure import rank_of
@@ -112,7 +112,7 @@ class Run:
     def look_ahead(self, wanted: bool) -> None:
         """Whether the kernel is to come back where a step ends near a singular pose; after one that could not be leaped
         over, not before it is far behind."""
-        if wanted and self.clock[layout.MARGINS] > self.settings.near:
+        if wanted and self.clock[layout.MARGINS] > FAR_BEHIND:
             self.clock[layout.APPROACH] = APPROACHED
         elif not wanted:
             self.clock[layout.APPROACH] = 0.0
