@@ -54,6 +54,12 @@ def test_the_resolution_of_binary_numbers_is_a_step_of_the_largest():
     assert built(far).digest != built(far.astype(float)).digest
 
 
+def step_of(tokens, values):
+    """In blocks of a few, as in a file."""
+    texts = [token.encode() for token in tokens]
+    return written_step((texts[k : k + 7] for k in range(0, len(texts), 7)), values)
+
+
 @pytest.mark.parametrize(
     ("form", "offset", "step"),
     [
@@ -67,13 +73,13 @@ def test_the_resolution_of_binary_numbers_is_a_step_of_the_largest():
 def test_the_resolution_of_a_text_is_that_of_its_digits(form, offset, step):
     rng = np.random.default_rng(1)
     values = rng.uniform(0, 5 if step < 1 else 90, 60) + offset
-    assert written_step([form % v for v in values], values) == pytest.approx(step)
-    assert parse_obj(obj(values[:12].reshape(4, 3), form)).resolution == pytest.approx(step)
+    assert step_of([form % v for v in values], values) == pytest.approx(step)
+    assert parse_obj(obj(values[:12].reshape(4, 3), form).encode()).resolution == pytest.approx(step)
 
 
 def test_round_numbers_are_not_rounded_ones():
     values = [1000000.0, 1000010.0, 1000020.0, 1000030.0, 1000000.5]
-    assert written_step([repr(v) for v in values], np.array(values)) == 0.0
+    assert step_of([repr(v) for v in values], np.array(values)) == 0.0
 
 
 @pytest.mark.parametrize("form, step", [("%.17g", 0.0), ("%.5f", 0.0), ("%.5g", 1.0)])
@@ -81,24 +87,24 @@ def test_whole_numbers_of_a_box_are_rounded_only_if_its_bore_is(form, step):
     """A plate of 13.7 by 14.1 m with a bore of 3 mm: its large coordinates say nothing by themselves."""
     bore = 3.0 * np.cos(np.arange(40) / 7.0)
     values = np.concatenate([[13701.0, -13701.0, 14103.0, -14103.0], bore])
-    assert written_step([form % v for v in values], values) == step
+    assert step_of([form % v for v in values], values) == step
 
 
 def test_a_box_of_whole_numbers_is_no_coarse_file(tmp_path):
     box = np.array([[x, y, z] for x in (14.0, 190.0) for y in (-8.0, 8.0) for z in (10.0, 310.0)])
-    assert parse_obj(obj(box, "%.12g")).resolution < 1e-9
-    assert parse_obj(obj(box * 1e-3, "%.12g")).resolution < 1e-9
+    assert parse_obj(obj(box, "%.12g").encode()).resolution < 1e-9
+    assert parse_obj(obj(box * 1e-3, "%.12g").encode()).resolution < 1e-9
 
 
 def test_whole_millimetres_of_a_frame_are_no_rounded_numbers():
     frame = [0, 40, 1210, 1250, 600, 640, 980, 1000, 35, 1215, 1245, 605, 635, 985, 25, 15, 1225]
-    assert written_step([str(v) for v in frame], np.array(frame, dtype=float)) == 0.0
-    assert written_step(["0", "1"] * 12, np.array([0.0, 1.0] * 12)) == 0.0
+    assert step_of([str(v) for v in frame], np.array(frame, dtype=float)) == 0.0
+    assert step_of(["0", "1"] * 12, np.array([0.0, 1.0] * 12)) == 0.0
 
 
 def test_doubles_are_written_finer_than_can_be_told():
     values = np.random.default_rng(2).uniform(1e6, 1e6 + 10, 50)
-    assert written_step([repr(float(v)) for v in values], values) < 1e-8
+    assert step_of([repr(float(v)) for v in values], values) < 1e-8
 
 
 def test_a_mesh_far_away_lies_in_the_world_where_the_file_puts_it(tmp_path):

@@ -53,7 +53,7 @@ def test_binary_stl_gives_back_its_corners(facets):
 @given(st.lists(st.lists(st.floats(-1e6, 1e6), min_size=9, max_size=9), min_size=1, max_size=8))
 def test_ascii_stl_gives_back_its_corners_and_names_its_solids(facets):
     corners = np.array(facets).reshape(-1, 3, 3)
-    raw = parse_ascii(ascii_of("one", corners) + ascii_of("two", corners))
+    raw = parse_ascii((ascii_of("one", corners) + ascii_of("two", corners)).encode())
     assert np.array_equal(raw.vertices[raw.faces], np.concatenate([corners, corners]))
     assert raw.labellings[0].names == ("one", "two")
 
@@ -63,7 +63,7 @@ def test_obj_with_quads_negative_indices_slashes_and_two_objects():
         "o first\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1/1 2/1/1 3//1 4\n"
         "o second\nv 0 0 1\nv 1 0 1\nv 1 1 1\nf -3 -2 \\\n-1\n"
     )
-    raw = parse_obj(text)
+    raw = parse_obj(text.encode())
     assert len(raw.faces) == 3
     assert raw.faces[2].tolist() == [4, 5, 6]
     assert raw.labellings[0].names == ("first", "second")
@@ -72,7 +72,7 @@ def test_obj_with_quads_negative_indices_slashes_and_two_objects():
 def test_a_concave_polygon_keeps_its_area():
     arrow = [(0, 0), (2, 0), (2, 2), (1, 0.5), (0, 2)]
     text = "".join(f"v {x} {y} 0\n" for x, y in arrow) + "f 1 2 3 4 5\n"
-    raw = parse_obj(text)
+    raw = parse_obj(text.encode())
     p = raw.vertices[raw.faces]
     area = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])[:, 2] / 2
     assert (area > 0).all()
@@ -82,15 +82,15 @@ def test_a_concave_polygon_keeps_its_area():
 @pytest.mark.parametrize("index", ["9", "-9", "0", "x"])
 def test_a_wrong_index_is_told_with_its_line(index):
     with pytest.raises(MeshError) as caught:
-        parse_obj(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n")
+        parse_obj(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n".encode())
     assert caught.value.faults[0].line == 4
 
 
 def test_a_wrong_index_is_told_how_many_vertices_there_are():
     with pytest.raises(MeshError, match="out of range at line 4: the file has 3 vertices"):
-        parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+        parse_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
     with pytest.raises(MeshError, match="out of range at line 2: 1 vertex precede it"):
-        parse_obj("v 0 0 0\nf -2 1 1\n")
+        parse_obj(b"v 0 0 0\nf -2 1 1\n")
 
 
 def test_facts_about_a_cube():

@@ -115,8 +115,11 @@ def _with_lock(design: Design, lock: Path, manifest_folder: Path | None) -> Desi
 
 def _read(path: Path, what: str, command: str) -> str:
     """The text of a file that findings are compared with; an error names the command that writes one."""
+    from kinform.foundation.constants import JSON_BYTES
+    from kinform.foundation.texts import TextError, read_text
+
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "is not UTF-8 text"
-        raise refuse(f"the {what} cannot be read: {reason}", file=path, remedy=f"write it first: {command}") from None
+        return read_text(path, JSON_BYTES, f"a {what}")
+    except TextError as error:
+        remedy = f"write it first: {command}"
+        raise refuse(f"the {what} {error.message}", file=path, remedy=remedy) from None

@@ -21,6 +21,7 @@ from kinform.changes.constants import DIRECTION_PLACES, GRAIN_SHARE, LENGTH_ERRO
 from kinform.changes.tolerance import Tolerance
 from kinform.design import Design
 from kinform.errors import InputError, Problem
+from kinform.foundation.texts import parse_json
 from kinform.model.findings import CheckReport, Finding
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def write_lock(behaviour: Snapshot, tolerance: Tolerance = ACCEPTED) -> str:
 def read_lock(text: str, file: str) -> Lock:
     """The lock in a text; raises InputError, naming `file`, where it is none."""
     try:
-        lock = json.loads(text)
+        lock = parse_json(text)
         if not isinstance(lock, dict) or lock.get("schema") != SCHEMA:
             stated = lock.get("schema") if isinstance(lock, dict) else None
             raise ValueError(f"its schema is {stated!r}, not {SCHEMA!r}")

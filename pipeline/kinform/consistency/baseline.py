@@ -16,6 +16,7 @@ from typing import Any
 
 from kinform.consistency.control import outcome_without
 from kinform.errors import InputError, Problem
+from kinform.foundation.texts import parse_json
 from kinform.model.findings import SEVERITIES, CheckReport, Finding, Ignored
 
 SCHEMA = "kinform/baseline/1"
@@ -55,7 +56,7 @@ def read_baseline(text: str, file: str) -> Baseline:
     """The baseline in a file's text. Raises InputError."""
     remedy = "write it anew: kinform check F.h5 --write-baseline B.json"
     try:
-        document = json.loads(text)
+        document = parse_json(text)
     except ValueError as error:
         raise InputError([Problem(f"is not JSON: {error}", file, None, remedy)]) from None
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:

@@ -54,7 +54,8 @@ def find(
     reused = {p for p in reuse.candidates if p in reuse_pairs and p in tolerance} if reuse is not None else set()
     wanted = [pair for pair in tolerance if pair not in reused]
     work = _Work(assembly, surfaces, tolerance)
-    computed = map_in_processes(work.contacts, wanted, jobs, progress)
+    name = lambda pair: f"contacts of {pair[0]} and {pair[1]}"
+    computed = map_in_processes(work.contacts, wanted, jobs, progress, name)
     done: dict[Pair, PairContacts] = dict(zip(wanted, computed, strict=True))
     if reuse is not None:
         done |= _earlier_contacts(reuse, reused)

@@ -5,10 +5,56 @@ What users may set is in `Tolerances`. Where no measurement is named, a number i
 
 from __future__ import annotations
 
+# ---- limits of what is read: beyond them input is refused before it costs memory or time
+
+LARGEST_NUMBER = 1e18
+"""The largest magnitude of a stated number, coordinates of meshes included: sixth powers of it, in whatever unit, are
+still finite, in our code and in FCL's. A thousand million kilometres in micrometres is no more."""
+
+COUNT_MOST = 1_000_000
+"""The largest mobility that can be stated: more than six times the parts that a design may have."""
+
+NAME_LENGTH = 255
+"""Characters of a name, and of a key of a table: what a file system lets a file's name have."""
+
+PATH_LENGTH = 4095
+"""Characters of the path of a file: what Linux takes."""
+
+MANIFEST_BYTES = 2 << 20
+"""Bytes of a manifest: 10,000 parts with poses. Values, places and complaints take 200 times that at worst, 400 MB."""
+
+MANIFEST_DEPTH = 8
+"""Tables in tables, arrays in arrays, and keys between dots: schema 1 goes six deep."""
+
+BARE_LENGTH = 255
+"""Characters of a bare key, a number or a date in TOML: doubles take 25 at most, and names have quotes."""
+
+PROBLEMS_MOST = 1000
+"""Problems of the input that are told: who has more repairs these first."""
+
+TABLE_BYTES = 8 << 20
+"""Bytes of a CSV file: half a million rows. A row of 8 bytes takes 300 as numbers, so that all take 300 MB."""
+
+SCOPES_MOST = 10_000
+"""Sub-assemblies of a design, counted each time that they are placed: of files that place each other twice there could
+be more than atoms."""
+
+SCOPES_DEEP = 32
+"""Sub-assemblies in each other."""
+
+PARTS_MOST = 100_000
+"""Parts of a design: twenty times what the largest measured design has."""
+
+SMALLEST_MESH = 1e-12
+"""Diagonal (m) of the smallest mesh: an atom is a hundred times larger, and cubes of its lengths are still numbers."""
+
 # ---- problems
 
 CLOSE_NAMES = 0.6
 """Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
+
+CHOICES_COMPARED = 500
+"""Known names that a wrong one is compared with: each takes ten microseconds."""
 
 MEANT_NAMES = 2
 """Names that are proposed, at most."""
@@ -80,6 +126,11 @@ FAR = 8.0
 """A mesh whose middle lies this many of its diagonals from the origin of its file, along one axis, is moved to its own:
 nearer ones lose no more than four bits, of the 29 that doubles have more than single precision."""
 
+# ---- meshes.blocks
+
+BLOCK_BYTES = 1 << 18
+"""Bytes of a text that are taken apart at a time: where each line is a letter they take 40 MB then."""
+
 # ---- meshes.digits
 
 LARGE_COORDINATES = 0.1
@@ -103,6 +154,10 @@ NO_TRIANGLE = 1e-9
 
 CUT_AREA = 1e-6
 """Share of a polygon's area that its triangles may miss or have twice."""
+
+FAULTS_KEPT = 1000
+"""Faults of one mesh file that are kept, to find those of the first lines among them; a file with more is read no
+further."""
 
 FAULTS_SHOWN = 10
 """Faults of one mesh file that are listed, at most."""

@@ -111,7 +111,12 @@ class DesignFiles:
             remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
             self.problems.add(f"{what} {stated} lies outside the manifest's folder", file, line, remedy)
             return None
-        if not path.is_file():
+        try:
+            there = path.is_file()
+        except OSError as error:
+            self.problems.add(f"{what} {stated} cannot be looked for: {error.strerror}", file, line, "correct its name")
+            return None
+        if not there:
             near = [p.name for p in path.parent.iterdir() if p.is_file()] if path.parent.is_dir() else []
             remedy = (
                 did_you_mean(path.name, near, "the files there") if near else f"there is no folder {path.parent.name}"

@@ -5,6 +5,15 @@ from __future__ import annotations
 
 import numpy as np
 
+# texts
+
+JSON_DEPTH = 32
+"""Brackets in each other in a JSON file: those that kinform writes go five deep."""
+JSON_DIGITS = 18
+"""Digits of a whole number in a JSON file: more is no count."""
+JSON_BYTES = 16 << 20
+"""Bytes of a JSON file (a lock, a baseline): a hundred thousand entries. Values take 25 times that at worst, 400 MB."""
+
 # meshes/boxes
 
 CHUNK = 48

@@ -1,11 +1,18 @@
-"""The same function of many things, in several processes where the system can fork."""
+"""The same function of many things, in several processes where the system can fork; and what a crash there becomes.
+
+Native code can end a process without a word. One that ends so in a worker is found out by doing what was left again,
+each in a process of its own, and told as a `Crash` with what it was about.
+"""
 
 from __future__ import annotations
 
+import os
+import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
+from kinform.errors import KinformError
 from kinform.foundation.progress import Progress
 
 Item = TypeVar("Item")
@@ -15,25 +22,45 @@ _function: Callable[[Any], Any] | None = None
 """What a worker does; a fork has it, and all that it holds, without being sent it."""
 
 
+class Crash(KinformError):
+    """A process ended without an answer: `cause` is the signal, or the exit code; `subject` what it was at work on."""
+
+    def __init__(self, cause: str, subject: str = ""):
+        self.cause, self.subject = cause, subject
+        of = f"{subject}: " if subject else ""
+        super().__init__(
+            f"{of}the process that computed this was ended by {cause}; "
+            "look at the mesh (kinform show F.h5 assembly), export it again, or leave the part out"
+        )
+
+
 def map_in_processes(
-    function: Callable[[Item], Result], items: Sequence[Item], jobs: int, progress: Progress | None = None
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    jobs: int,
+    progress: Progress | None = None,
+    name: Callable[[Item], str] = str,
 ) -> Iterator[Result]:
     """The function of each item, in their order, whatever the number of `jobs`; `progress(done, total)` counts items.
 
     Items and results are sent between processes, the function is not. Where the system cannot fork, threads do it.
+    Raises Crash, with the `name` of the item, where a process of several ends without an answer.
     """
-    for done, result in enumerate(_results(function, items, jobs), start=1):
+    for done, result in enumerate(_results(function, items, jobs, name), start=1):
         if progress is not None:
             progress(done, len(items))
         yield result
 
 
-def _results(function: Callable[[Item], Result], items: Sequence[Item], jobs: int) -> Iterator[Result]:
+def _results(
+    function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str]
+) -> Iterator[Result]:
     if jobs <= 1 or len(items) < 2:
         yield from map(function, items)
         return
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
 
     pool: Any
     task: Callable[[Item], Result]
@@ -42,10 +69,26 @@ def _results(function: Callable[[Item], Result], items: Sequence[Item], jobs: in
         pool, task = ProcessPoolExecutor(jobs, context, initializer=_begin, initargs=(function,)), _in_worker
     else:
         pool, task = ThreadPoolExecutor(jobs), function
+    done = 0
     try:
-        yield from pool.map(task, items)
+        for result in pool.map(task, items):
+            yield result
+            done += 1
+    except BrokenProcessPool:
+        yield from _one_by_one(function, items[done:], name)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _one_by_one(
+    function: Callable[[Item], Result], items: Sequence[Item], name: Callable[[Item], str]
+) -> Iterator[Result]:
+    """The function of each item, each in a process of its own; raises Crash with the name of the first that ends it."""
+    for item in items:
+        try:
+            yield in_own_process(lambda item=item: function(item))  # type: ignore[misc]
+        except Crash as crash:
+            raise Crash(crash.cause, name(item)) from None
 
 
 def _begin(function: Callable[[Any], Any]) -> None:
@@ -58,3 +101,55 @@ def _begin(function: Callable[[Any], Any]) -> None:
 def _in_worker(item: Any) -> Any:
     assert _function is not None
     return _function(item)
+
+
+def in_own_process(function: Callable[[], Result]) -> Result:
+    """The function's result, computed in a fork; raises what it raises, and Crash where the fork ends without one.
+
+    Where the system cannot fork it is called here.
+    """
+    if not hasattr(os, "fork"):
+        return function()
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        _answer(function, reading, writing)
+    os.close(writing)
+    try:
+        with os.fdopen(reading, "rb") as stream:
+            answer = stream.read()
+    except BaseException:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        raise
+    _, status = os.waitpid(child, 0)
+    if status != 0:
+        raise Crash(_cause(status))
+    succeeded, value = pickle.loads(answer)
+    if not succeeded:
+        raise value
+    result: Result = value
+    return result
+
+
+def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
+    """In the fork: send what the function gives or raises, and end without touching anything of the parent."""
+    code = 1
+    try:
+        os.close(reading)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            answer = pickle.dumps((True, function()))
+        except Exception as error:
+            answer = pickle.dumps((False, error))
+        with os.fdopen(writing, "wb") as stream:
+            stream.write(answer)
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def _cause(status: int) -> str:
+    """What ended a process, from the status of waitpid."""
+    code = os.waitstatus_to_exitcode(status)
+    return f"signal {-code} ({signal.Signals(-code).name})" if code < 0 else f"exit code {code}"

@@ -53,7 +53,8 @@ def surfaces(
     shapes = sorted(
         {copies[k].of if k in copies else k for k in wanted} - set(result), key=lambda k: (-len(meshes[k].faces), k)
     )
-    recovered = map_in_processes(recover, [meshes[k] for k in shapes], jobs, progress)
+    name = lambda mesh: f"surfaces of {mesh.path}"
+    recovered = map_in_processes(recover, [meshes[k] for k in shapes], jobs, progress, name)
     result.update(zip(shapes, recovered, strict=True))
     for key in wanted:
         if key in copies:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from kinform.form.constants import COUNT_MOST
 from kinform.form.manifest.common import Finite, JointType, Name, NonNegative, Pair, Positive, Reference, Table, Vector
 from kinform.form.manifest.requirements import Require
 
@@ -19,9 +20,7 @@ class IntendedJointTable(Table):
     axis: Vector | None = Field(None, description="direction of the axis; the normal of a planar joint")
     axis2: Vector | None = Field(None, description="second axis of a universal joint")
     point: Vector | None = Field(None, description="point on the axis; the centre of a spherical joint")
-    pitch: float | None = Field(
-        None, allow_inf_nan=False, description="length a turn of a screw, right-handed positive"
-    )
+    pitch: Finite | None = Field(None, description="length a turn of a screw, right-handed positive")
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
         None, description="[lower, upper] in degrees (prismatic: lengths); inf for a free side"
     )
@@ -143,7 +142,9 @@ class Load(Table):
 class FunctionTable(Table):
     """`[function]`: what the device is for."""
 
-    mobility: Annotated[int, Field(ge=0)] | None = Field(None, description="compared with the effective mobility")
+    mobility: Annotated[int, Field(ge=0, le=COUNT_MOST)] | None = Field(
+        None, description="compared with the effective mobility"
+    )
     joint: list[IntendedJointTable] = Field([], description="intended joints")
     coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
     drive: list[Drive] = Field([], description="what acts on joints")

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from kinform.form.manifest.common import (
+    Finite,
     JointType,
     Matrix,
     Name,
@@ -79,9 +80,7 @@ class Assume(Table):
     axis: Vector | None = Field(None, description="direction of the axis; the normal of a planar joint")
     axis2: Vector | None = Field(None, description="second axis of a universal joint")
     point: Vector | None = Field(None, description="point on the axis; the centre of a spherical joint")
-    pitch: float | None = Field(
-        None, allow_inf_nan=False, description="length a turn of a screw, right-handed positive"
-    )
+    pitch: Finite | None = Field(None, description="length a turn of a screw, right-handed positive")
     reason: str = Field("", description="why; shown wherever the assumption has an effect")
 
 

@@ -8,7 +8,7 @@ Round numbers (a box of whole millimetres) are not rounded ones, and say nothing
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
@@ -18,14 +18,26 @@ from kinform.model.arrays import Array, Ints
 _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eEdD]([+-]?\d+))?$")
 
 
-def written_step(tokens: Sequence[str], values: Array) -> float:
-    """Unit of the last digit of the largest of the coordinates `values` (n,), written as `tokens` (n); 0 where the
-    digits do not look like rounded ones."""
+def written_step(blocks: Iterable[Sequence[bytes]], values: Array) -> float:
+    """Unit of the last digit of the largest of the coordinates `values` (n,), which are written as the tokens of these
+    blocks, in order; 0 where the digits do not look like rounded ones, or where there are not n of them."""
     size = np.abs(values)
-    large = np.flatnonzero(size >= size.max(initial=0.0) * LARGE_COORDINATES)
-    if _shortest([tokens[k] for k in large.tolist()]):
+    is_large = size >= size.max(initial=0.0) * LARGE_COORDINATES
+    chosen = _sample(np.flatnonzero(is_large)), _sample(np.arange(len(values)))
+    wanted, first = np.union1d(*chosen), 0
+    picked: dict[int, str] = {}
+    shortest = _Shortest()
+    for tokens in blocks:
+        here = is_large[first : first + len(tokens)]
+        if len(here) < len(tokens):
+            return 0.0
+        shortest.look([tokens[k] for k in np.flatnonzero(here).tolist()])
+        for k in wanted[slice(*np.searchsorted(wanted, [first, first + len(tokens)]))].tolist():
+            picked[k] = tokens[k - first].decode("utf-8", errors="replace")
+        first += len(tokens)
+    if first != len(values) or shortest.certain:
         return 0.0
-    coarse, every = _digits(tokens, large), _digits(tokens, np.arange(len(tokens)))
+    coarse, every = (_digits({picked[k] for k in indices.tolist()}) for indices in chosen)
     if not coarse or not every:
         return 0.0
     finest, longest = min(place for place, _ in coarse), max(count for _, count in coarse)
@@ -37,22 +49,40 @@ def written_step(tokens: Sequence[str], values: Array) -> float:
     return 10.0**finest if used > LAST_DIGIT_USED and cut else 0.0
 
 
-def _shortest(tokens: Sequence[str]) -> bool:
+def _sample(indices: Ints) -> Ints:
+    """Some of the indices, evenly chosen."""
+    return indices[:: max(1, len(indices) // DIGITS_READ)]
+
+
+class _Shortest:
     """Whether numbers are written as the shortest text that reads back as the same double, so that nothing is lost.
 
     Such a writer puts ".0" behind whole numbers, and one of few digits nothing; one of one decimal writes others too.
     """
-    whole = [token.endswith(".0") for token in tokens]
-    return any(whole) and (all(whole) or any(len(token.partition(".")[2]) > 1 for token in tokens))
+
+    def __init__(self) -> None:
+        self._whole = self._broken = self._long = False
+
+    def look(self, tokens: Sequence[bytes]) -> None:
+        """Look at more of them."""
+        whole = [token.endswith(b".0") for token in tokens]
+        self._whole = self._whole or any(whole)
+        self._broken = self._broken or not all(whole)
+        self._long = self._long or any(len(token.partition(b".")[2]) > 1 for token in tokens)
+
+    @property
+    def certain(self) -> bool:
+        """Whether those that were looked at are written so."""
+        return self._whole and (not self._broken or self._long)
 
 
-def _digits(tokens: Sequence[str], indices: Ints) -> list[tuple[int, int]]:
-    """(power of ten of the last digit, number of digits) of distinct numbers among these; none where one is no number.
+def _digits(tokens: Collection[str]) -> list[tuple[int, int]]:
+    """(power of ten of the last digit, number of digits) of these numbers; none where one is no number.
 
-    A sample of them, evenly chosen; noughts at either end do not count, and nought itself says nothing.
+    Noughts at either end do not count, and nought itself says nothing.
     """
     out = []
-    for token in {tokens[k] for k in indices[:: max(1, len(indices) // DIGITS_READ)].tolist()}:
+    for token in tokens:
         match = _NUMBER.match(token)
         if match is None:
             return []

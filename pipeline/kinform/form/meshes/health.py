@@ -8,11 +8,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, WELD_SHARE, WELD_STEPS
+from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, SMALLEST_MESH, WELD_SHARE, WELD_STEPS
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
 from kinform.foundation.meshes.shells import shells_of
+from kinform.foundation.processes import Crash, in_own_process
+from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh, MeshHealth
 
@@ -32,6 +34,9 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
         raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
     used, kept = used_only(vertices, kept)
     shape: Array = np.ascontiguousarray(used, dtype=np.float64)
+    diagonal = float(np.linalg.norm(np.ptp(shape, axis=0)))
+    if diagonal < SMALLEST_MESH:
+        raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
     if solid and _thickness(shape) <= max(FLAT * float(np.linalg.norm(np.ptp(shape, axis=0))), 0.0):
         raise MeshError([Fault(
             "has zero thickness: all its vertices lie in one plane",
@@ -106,7 +111,7 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
         vertices=len(vertices),
         watertight=watertight,
         consistent_winding=bool(np.all(edges.balance[edges.counts % 2 == 0] == 0)),
-        manifold_status=_manifold_status(vertices, faces),
+        manifold_status=_manifold_status(vertices, faces, edges),
         volume=float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0),
         degenerate_facets=len(raw.faces) - len(faces) + slivers,
         duplicate_facets=duplicates,
@@ -131,11 +136,31 @@ def _duplicates(faces: Ints, count: int) -> int:
     return len(facets) - len(np.unique(np.stack([pair[facets], middle[facets]], axis=1), axis=0))
 
 
-def _manifold_status(vertices: Array, faces: Ints) -> str:
-    """What manifold3d says of the mesh, scaled to unit size."""
-    from manifold3d import Manifold, Mesh64
+def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable) -> str:
+    """What manifold3d says of the mesh, scaled to unit size.
 
+    It pairs the half-edges of an edge that run against each other, and reads beyond its tables where they are not as
+    many one way as the other (3.5.4, signal 11): of such a mesh we say ourselves what it means to say. Where more than
+    two facets meet at an edge it takes them apart, at length: that is tried in a process of its own.
+    """
+    if (edges.balance != 0).any():
+        return "NotManifold"
     size = float(np.ptp(vertices, axis=0).max()) or 1.0
     scaled = np.ascontiguousarray((vertices - vertices.mean(axis=0)) / size)
-    mesh = Mesh64(vert_properties=scaled, tri_verts=np.ascontiguousarray(faces.astype(np.uint64)))
-    return str(Manifold(mesh).status().name)
+    corners = np.ascontiguousarray(faces.astype(np.uint64))
+    if not edges.overused:
+        return _asked_status(scaled, corners)
+    try:
+        return in_own_process(lambda: _asked_status(scaled, corners))
+    except Crash as crash:
+        raise MeshError([Fault(
+            f"cannot be told to be a solid: manifold3d ended by {crash.cause} on it, and "
+            f"{counted(edges.overused, 'edge')} of it are shared by more than two facets",
+            "repair these edges, or export the mesh again",
+        )]) from None  # fmt: skip
+
+
+def _asked_status(vertices: Array, corners: NDArray[np.uint64]) -> str:
+    from manifold3d import Manifold, Mesh64
+
+    return str(Manifold(Mesh64(vert_properties=vertices, tri_verts=corners)).status().name)

@@ -1,68 +1,128 @@
 """Wavefront OBJ: vertices, polygons, and the objects and groups that divide them.
 
-Read line by line here rather than with trimesh, whose reader (5.2) counts negative indices from the end of
-the file instead of from the face, cuts concave polygons as fans, and passes over index 0, faces of two
-corners and tabs without a word. Free-form geometry is refused, never skipped.
+Read line by line here, some thousands of lines at a time, rather than with trimesh, whose reader (5.2) counts
+negative indices from the end of the file instead of from the face, cuts concave polygons as fans, and passes over
+index 0, faces of two corners and tabs without a word. Free-form geometry is refused, never skipped.
 """
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import FAULTS_SHOWN
+from kinform.form.constants import FAULTS_KEPT, FAULTS_SHOWN, LARGEST_NUMBER
+from kinform.form.meshes.blocks import NEWLINE, blocks, coordinate, with_newlines
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.polygons import triangulate
-from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh
+from kinform.form.meshes.raw import REEXPORT, Fault, Labelling, MeshError, RawMesh, is_coordinate
 from kinform.foundation.words import counted
 
 _SKIPPED = frozenset(
-    "vt vn vp s l p usemtl mtllib usemap maplib lod mg bevel c_interp d_interp shadow_obj trace_obj".split()
+    b"vt vn vp s l p usemtl mtllib usemap maplib lod mg bevel c_interp d_interp shadow_obj trace_obj".split()
 )
 _FREEFORM = frozenset(
-    "cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bzp cdc cdp res".split()
+    b"cstype deg bmat step curv curv2 surf parm trim hole scrv sp end con ctech stech bzp cdc cdp res".split()
 )
-_AFTER_SLASH = re.compile(r"/\S*")
+_MARK = b"\xef\xbb\xbf"
+_AFTER_SLASH = re.compile(rb"/\S*")
 
 
-class _Lines:
-    """What the lines of a file hold, by keyword; each list runs in the order of the file."""
+class _Faults:
+    """The first faults of a file by line, and how many there are."""
 
     def __init__(self) -> None:
-        self.vertices: list[str] = []
-        self.vertex_lines: list[int] = []
-        self.faces: list[str] = []
-        self.face_lines: list[int] = []
-        self.face_object: list[int] = []
-        self.face_group: list[int] = []
+        self._kept: list[Fault] = []
+
+    @property
+    def enough(self) -> bool:
+        """Whether there are so many that nobody needs more of them."""
+        return len(self._kept) >= FAULTS_KEPT
+
+    def add(self, message: str, remedy: str, line: int) -> None:
+        """Note a fault."""
+        if not self.enough:
+            self._kept.append(Fault(message, remedy, line))
+
+    def raise_if_any(self) -> None:
+        """Raise MeshError with the first of them."""
+        if self._kept:
+            faults = sorted(self._kept, key=lambda f: f.line or 0)[:FAULTS_SHOWN]
+            hidden = len(self._kept) - len(faults)
+            said = "has very many more faults" if self.enough else f"has {counted(hidden, 'more fault')} of this sort"
+            raise MeshError([*faults, *([Fault(said, REEXPORT)] if hidden else [])])
+
+
+class _Contents:
+    """What a file states, as arrays a block of lines; the lists hold the lines of the present block."""
+
+    def __init__(self) -> None:
         self.objects: dict[str, int] = {"": 0}
         self.groups: dict[str, int] = {"": 0}
-        self.faults: list[Fault] = []
+        self.faults = _Faults()
+        self.object = self.group = self.count = 0
+        """Numbers of the object and group that a face now belongs to, and of the vertices so far."""
+        self._arrays: list[tuple[NDArray[Any], ...]] = []
+        self._begin()
+
+    def _begin(self) -> None:
+        self._vertices: list[bytes] = []
+        self._vertex_lines: list[int] = []
+        self._faces: list[bytes] = []
+        self._face_facts: list[tuple[int, int, int, int]] = []
+
+    def vertex(self, line: int, rest: bytes) -> None:
+        """A `v` at a line."""
+        self._vertices.append(rest)
+        self._vertex_lines.append(line)
+        self.count += 1
+
+    def face(self, line: int, rest: bytes) -> None:
+        """An `f` at a line."""
+        self._faces.append(rest)
+        self._face_facts.append((line, self.object, self.group, self.count))
+
+    def finish_block(self) -> None:
+        """Make arrays of the lines of the block."""
+        vertices = _vertices(self._vertices, self._vertex_lines, self.faults)
+        facts = np.array(self._face_facts, dtype=np.int64).reshape(-1, 4)
+        index, sizes = _corners(self._faces, facts[:, 0], facts[:, 3], self.faults)
+        lines, objects, groups = (facts[:, k].astype(np.int32) for k in range(3))
+        self._arrays.append((vertices, index, sizes.astype(np.int32), lines, objects, groups))
+        self._begin()
+
+    def arrays(self) -> list[NDArray[Any]]:
+        """Coordinates (n, 3); index of each corner from 0; number of corners, line, object and group of each face."""
+        columns = [np.concatenate(column) for column in zip(*self._arrays, strict=True)]
+        self._arrays.clear()
+        return columns
 
 
 def read_obj(data: bytes) -> RawMesh:
     """Facets of the bytes of an OBJ file; raises MeshError with lines."""
     if b"\0" in data[:4096]:
         raise MeshError([Fault("is no OBJ file: it holds binary data", REEXPORT)])
-    return parse_obj(data.decode("utf-8", errors="replace"))
+    return parse_obj(data)
 
 
-def parse_obj(text: str) -> RawMesh:
+def parse_obj(data: bytes) -> RawMesh:
     """Triangles of an OBJ file, labelled by its objects and groups; raises MeshError with lines."""
-    lines = _sorted_lines(text)
-    vertices = _vertices(lines)
-    corners, sizes = _corners(lines, len(vertices))
-    if lines.faults:
-        hidden = len(lines.faults) - FAULTS_SHOWN
-        faults = sorted(lines.faults, key=lambda f: f.line or 0)[:FAULTS_SHOWN]
-        if hidden > 0:
-            faults.append(Fault(f"has {counted(hidden, 'more fault')} of this sort", REEXPORT))
-        raise MeshError(faults)
+    contents = _Contents()
+    for lines in _blocks_of_lines(data):
+        for number, line in lines:
+            _sort_line(number, line, contents)
+            if contents.faults.enough:
+                break
+        contents.finish_block()
+        if contents.faults.enough:
+            contents.faults.raise_if_any()
+    vertices, corners, sizes, face_lines, objects, groups = contents.arrays() or [np.zeros((0, 3))] * 6
+    _check_range(corners, sizes, face_lines, len(vertices), contents.faults)
+    contents.faults.raise_if_any()
     if not len(sizes):
         raise MeshError([Fault("is empty: it has no face", REEXPORT)])
     faces, owner, crossed = triangulate(vertices, corners, sizes)
@@ -70,134 +130,159 @@ def parse_obj(text: str) -> RawMesh:
         raise MeshError([
             Fault(
                 f"has a polygon of {counted(int(sizes[p]), 'corner')} that crosses itself, at line "
-                f"{lines.face_lines[p]}", "export triangles", lines.face_lines[p],
+                f"{face_lines[p]}", "export triangles", int(face_lines[p]),
             )
             for p in crossed[:FAULTS_SHOWN]
         ])  # fmt: skip
     labellings = (
-        _labelling("object", lines.objects, np.array(lines.face_object)[owner]),
-        _labelling("group", lines.groups, np.array(lines.face_group)[owner]),
+        _labelling("object", contents.objects, objects[owner]),
+        _labelling("group", contents.groups, groups[owner]),
     )
-    return RawMesh(vertices, faces, tuple(x for x in labellings if x is not None), _written(lines, vertices))
+    written = written_step(_coordinates(data), vertices.ravel())
+    return RawMesh(vertices, faces, tuple(x for x in labellings if x is not None), written)
 
 
-def _written(lines: _Lines, vertices: NDArray[np.float64]) -> float:
-    """Unit of the last digit of the largest coordinates, as the text writes them."""
-    return written_step([token for rest in lines.vertices for token in rest.split()[:3]], vertices.ravel())
+def _coordinates(data: bytes) -> Iterator[list[bytes]]:
+    """The coordinates of all vertices as they are written, block by block."""
+    for lines in _blocks_of_lines(data):
+        words = (line.split() for _, line in lines)
+        yield [token for word in words if word and word[0] == b"v" for token in word[1:4]]
 
 
-def _labelling(kind: str, names: dict[str, int], labels: NDArray[np.int64]) -> Labelling | None:
+def _labelling(kind: str, names: dict[str, int], labels: NDArray[np.integer]) -> Labelling | None:
     used, compact = np.unique(labels, return_inverse=True)
     every = list(names)
     kept = tuple(every[i] for i in used)
     return Labelling(kind, kept, compact.astype(np.int64)) if kept != ("",) else None
 
 
-def _logical_lines(text: str) -> Iterator[tuple[int, str]]:
-    """Number and text of each line, lines that end in a backslash joined with the next."""
-    number, held = 0, ""
-    for i, line in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
-        number = number or i
-        if line.endswith("\\"):
-            held += line[:-1] + " "
-            continue
-        yield number, held + line
-        number, held = 0, ""
+def _blocks_of_lines(data: bytes) -> Iterator[list[tuple[int, bytes]]]:
+    """Number and text of each line without its comment, block by block, lines that end in a backslash joined with the
+    next."""
+    number, begun, held = 0, 0, b""
+    for _, block in blocks(data, len(_MARK) if data.startswith(_MARK) else 0, len(data), NEWLINE):
+        lines: list[tuple[int, bytes]] = []
+        # what is behind the last newline is a line only where it holds something
+        for line in with_newlines(block).removesuffix(b"\n").split(b"\n"):
+            number += 1
+            begun = begun or number
+            if line.endswith(b"\\"):
+                held += line[:-1] + b" "
+                continue
+            whole = held + line
+            lines.append((begun, whole.partition(b"#")[0] if b"#" in whole else whole))
+            begun, held = 0, b""
+        yield lines
     if held:
-        yield number, held
+        yield [(begun, held)]
 
 
-def _sorted_lines(text: str) -> _Lines:
-    """The lines by keyword; what cannot be read is among their faults."""
-    lines = _Lines()
-    current_object = current_group = 0
-    for number, line in _logical_lines(text.lstrip("\ufeff")):
-        if "#" in line:
-            line = line.partition("#")[0]
-        word, _, rest = line.strip().replace("\t", " ").partition(" ")
-        if word == "v":
-            lines.vertices.append(rest)
-            lines.vertex_lines.append(number)
-        elif word in ("f", "fo"):
-            lines.faces.append(rest)
-            lines.face_lines.append(number)
-            lines.face_object.append(current_object)
-            lines.face_group.append(current_group)
-        elif not word or word in _SKIPPED:
-            continue
-        elif word == "o":
-            current_object = lines.objects.setdefault(rest.strip(), len(lines.objects))
-        elif word == "g":
-            current_group = lines.groups.setdefault(" ".join(rest.split()), len(lines.groups))
-        elif word in _FREEFORM:
-            message = f"has free-form geometry ({word!r} at line {number}), which is not read"
-            lines.faults.append(Fault(message, "export triangles or polygons", number))
-        else:
-            message = f"has {word[:40]!r} at line {number}, which OBJ does not know"
-            lines.faults.append(Fault(message, f"remove the line, or {REEXPORT}", number))
-    return lines
+def _sort_line(number: int, line: bytes, contents: _Contents) -> None:
+    """Take over what a line states; what cannot be read is among the faults."""
+    word, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
+    if word == b"v":
+        contents.vertex(number, rest)
+    elif word in (b"f", b"fo"):
+        contents.face(number, rest)
+    elif not word or word in _SKIPPED:
+        return
+    elif word == b"o":
+        contents.object = contents.objects.setdefault(_shown(rest.strip()), len(contents.objects))
+    elif word == b"g":
+        contents.group = contents.groups.setdefault(_shown(b" ".join(rest.split())), len(contents.groups))
+    elif word in _FREEFORM:
+        message = f"has free-form geometry ({_shown(word)!r} at line {number}), which is not read"
+        contents.faults.add(message, "export triangles or polygons", number)
+    else:
+        message = f"has {_shown(word[:40])!r} at line {number}, which OBJ does not know"
+        contents.faults.add(message, f"remove the line, or {REEXPORT}", number)
 
 
-def _vertices(lines: _Lines) -> NDArray[np.float64]:
+def _shown(text: bytes) -> str:
+    return text.decode("utf-8", errors="replace")
+
+
+def _vertices(texts: list[bytes], lines: list[int], faults: _Faults) -> NDArray[np.float64]:
     """(n, 3) coordinates, all at once where nothing is wrong; else line by line, and faults are noted."""
-    rows = [rest.split() for rest in lines.vertices]
+    rows = [rest.split() for rest in texts]
     widths = set(map(len, rows))
     if len(widths) == 1 and widths <= {3, 4, 6, 7}:
         try:
-            values = np.array(list(map(float, chain.from_iterable(rows)))).reshape(len(rows), -1)[:, :3]
+            values = np.array(list(map(coordinate, chain.from_iterable(rows)))).reshape(len(rows), -1)
         except ValueError:
             pass
         else:
-            if np.isfinite(values).all():
-                return np.ascontiguousarray(values)
+            if np.isfinite(values).all() and is_coordinate(values[:, :3]).all():
+                return np.ascontiguousarray(values[:, :3])
     values = np.zeros((len(rows), 3))
-    for i, (row, number) in enumerate(zip(rows, lines.vertex_lines, strict=True)):
+    for i, (row, number) in enumerate(zip(rows, lines, strict=True)):
+        if faults.enough:
+            break
         try:
-            numbers = [float(token) for token in row]
+            numbers = [coordinate(token) for token in row]
         except ValueError:
             numbers = []
         if len(row) not in (3, 4, 6, 7):
             message = f"has a vertex of {counted(len(row), 'value')} at line {number}; it needs 3"
-            lines.faults.append(Fault(message, f"write v x y z, or {REEXPORT}", number))
-        elif not numbers or not all(map(math.isfinite, numbers[:3])):
-            message = f"has a vertex that is not three finite numbers at line {number}"
-            lines.faults.append(Fault(message, f"give finite numbers, or {REEXPORT}", number))
+            faults.add(message, f"write v x y z, or {REEXPORT}", number)
+        elif not numbers or not all(abs(x) <= LARGEST_NUMBER for x in numbers[:3]):
+            message = f"has a vertex that is not three finite numbers up to {LARGEST_NUMBER:g} at line {number}"
+            faults.add(message, f"give finite numbers, or {REEXPORT}", number)
         else:
             values[i] = numbers[:3]
     return values
 
 
-def _corners(lines: _Lines, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Vertex index of each corner of each face, and the number of corners of each face."""
-    tokens = [_AFTER_SLASH.sub("", rest).split() if "/" in rest else rest.split() for rest in lines.faces]
+def _corners(
+    texts: list[bytes], lines: NDArray[np.int64], before: NDArray[np.int64], faults: _Faults
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Vertex index of each corner of each face, and the number of corners of each face; `before` are the vertices that
+    precede each. Indices beyond the file's vertices are left to `_check_range`."""
+    tokens = [_AFTER_SLASH.sub(b"", rest).split() if b"/" in rest else rest.split() for rest in texts]
     sizes = np.array(list(map(len, tokens)), dtype=np.int64)
-    for short in np.flatnonzero(sizes < 3):
-        face = int(short)
-        number = lines.face_lines[face]
-        message = f"has a face of {counted(int(sizes[face]), 'corner')} at line {number}; it needs 3"
-        lines.faults.append(Fault(message, REEXPORT, number))
-    try:
-        stated = np.array(list(map(int, chain.from_iterable(tokens))), dtype=np.int64)
-    except (ValueError, OverflowError):
-        for face, row in enumerate(tokens):
+    for face in np.flatnonzero(sizes < 3)[:FAULTS_KEPT].tolist():
+        message = f"has a face of {counted(int(sizes[face]), 'corner')} at line {lines[face]}; it needs 3"
+        faults.add(message, REEXPORT, int(lines[face]))
+    if any(b"_" in rest for rest in texts):
+        stated = None
+    else:
+        try:
+            stated = np.array(list(map(int, chain.from_iterable(tokens))), dtype=np.int64)
+        except (ValueError, OverflowError):
+            stated = None
+    if stated is None:
+        for row, line in zip(tokens, lines.tolist(), strict=True):
             for token in row:
-                if not re.fullmatch(r"[+-]?\d{1,18}", token):
-                    number = lines.face_lines[face]
-                    message = f"has the vertex index {token[:40]!r} at line {number}"
-                    lines.faults.append(Fault(message, f"give whole numbers, or {REEXPORT}", number))
+                if not re.fullmatch(rb"[+-]?\d{1,18}", token):
+                    message = f"has the vertex index {_shown(token[:40])!r} at line {line}"
+                    faults.add(message, f"give whole numbers, or {REEXPORT}", line)
         return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    before = np.searchsorted(np.array(lines.vertex_lines), np.array(lines.face_lines))
     owner = np.repeat(np.arange(len(sizes)), sizes)
-    index = np.where(stated > 0, stated - 1, stated + before[owner] if len(owner) else stated)
-    for corner in np.flatnonzero((index < 0) | (index >= count) | (stated == 0)):
-        face = owner[corner]
-        lines.faults.append(_index_fault(int(stated[corner]), lines.face_lines[face], int(before[face]), count))
-    return index, sizes
+    index = np.where(stated > 0, stated - 1, stated + before[owner])
+    for corner in np.flatnonzero((stated <= 0) & ((index < 0) | (stated == 0)))[:FAULTS_KEPT].tolist():
+        line = int(lines[owner[corner]])
+        if stated[corner] == 0:
+            faults.add(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
+        else:
+            _index_fault(int(stated[corner]), f"{_vertex_count(int(before[owner[corner]]))} precede it", line, faults)
+    return np.maximum(index, 0), sizes
 
 
-def _index_fault(stated: int, line: int, before: int, count: int) -> Fault:
-    if stated == 0:
-        return Fault(f"has index 0 at line {line}: OBJ counts vertices from 1", REEXPORT, line)
-    vertices = counted(before if stated < 0 else count, "vertex", "vertices")
-    there = f"{vertices} precede it" if stated < 0 else f"the file has {vertices}"
-    return Fault(f"has index {stated} out of range at line {line}: {there}", f"correct it, or {REEXPORT}", line)
+def _check_range(
+    index: NDArray[np.int64], sizes: NDArray[np.integer], lines: NDArray[np.integer], count: int, faults: _Faults
+) -> None:
+    """Note the corners whose vertex a file of `count` does not have."""
+    beyond = np.flatnonzero(index >= count)[:FAULTS_KEPT]
+    faces = np.searchsorted(np.cumsum(sizes, dtype=np.int64), beyond, side="right")
+    for stated, face in zip((index[beyond] + 1).tolist(), faces.tolist(), strict=True):
+        if face < len(lines):
+            _index_fault(stated, f"the file has {_vertex_count(count)}", int(lines[face]), faults)
+
+
+def _vertex_count(count: int) -> str:
+    return counted(count, "vertex", "vertices")
+
+
+def _index_fault(stated: int, there: str, line: int, faults: _Faults) -> None:
+    message = f"has index {stated} out of range at line {line}: {there}"
+    faults.add(message, f"correct it, or {REEXPORT}", line)

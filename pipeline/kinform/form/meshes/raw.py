@@ -8,8 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.form.constants import LARGEST_NUMBER
+
 REEXPORT = "export the mesh again"
 """The remedy where nothing else helps."""
+
+
+def is_coordinate(values: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """Which numbers can be coordinates: the finite ones that are not absurdly large."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.abs(values) <= LARGEST_NUMBER)
 
 
 @dataclass(frozen=True)

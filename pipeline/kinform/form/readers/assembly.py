@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import SYMMETRIC, UNIT_QUATERNION
+from kinform.form.constants import PARTS_MOST, SCOPES_DEEP, SCOPES_MOST, SYMMETRIC, UNIT_QUATERNION
 from kinform.form.files import DesignFiles, MeshUse, earlier_meshes
+from kinform.form.manifest import Manifest
 from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Part as PartTable
 from kinform.form.manifest.parts import TolerancesTable
@@ -22,6 +23,7 @@ from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.open_manifest import Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
+from kinform.form.readers.toml_lines import LineTable
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
@@ -70,12 +72,16 @@ class _AssemblyReader:
     def __init__(self, files: DesignFiles, problems: Problems):
         self.files, self.problems = files, problems
         self.scopes: list[Scope] = []
+        self.stopped = False
+        self._parsed: dict[Path, tuple[Manifest, LineTable, frozenset[str]] | None] = {}
         self.subassemblies: list[Subassembly] = []
 
     def read(self, path: Path, file: str, prefix: str, X_WF: Array, above: tuple[Path, ...]) -> None:
         """Read a manifest and all below it, depth first."""
         self.files.note(path)
-        parsed = parse(path, file, self.problems)
+        if path not in self._parsed:
+            self._parsed[path] = parse(path, file, self.problems)
+        parsed = self._parsed[path]
         if parsed is None:
             return
         manifest, lines, refused = parsed
@@ -83,6 +89,8 @@ class _AssemblyReader:
         self.scopes.append(scope)
         here = (*above, Path(os.path.realpath(path)))
         for at, table in scope.tables("subassembly"):
+            if self.stopped:
+                return
             below = self.files.find(table.file, path.parent, file, scope.line(*at, "file"), "the sub-assembly")
             if below is None:
                 continue
@@ -91,6 +99,9 @@ class _AssemblyReader:
                 chain = " → ".join([*(self.files.shown(p) for p in here), shown])
                 scope.complain(f"sub-assemblies form a cycle: {chain}", "remove one of them", *at, "file")
                 continue
+            if len(here) > SCOPES_DEEP or len(self.scopes) >= SCOPES_MOST:
+                self._too_many(scope, len(here) > SCOPES_DEEP, *at, "file")
+                return
             name = prefix + table.name
             before = len(self.scopes)
             self.read(below, shown, name + "/", X_WF @ _pose(scope, table, *at), here)
@@ -98,9 +109,21 @@ class _AssemblyReader:
             mobility = function.mobility if function else None
             self.subassemblies.append(Subassembly(name, shown, mobility, scope.source(*at)))
 
+    def _too_many(self, scope: Scope, deep: bool, *path: str | int) -> None:
+        """Note, once, that there are more sub-assemblies than a design may have."""
+        if not self.stopped:
+            how = f"more than {SCOPES_DEEP} deep in each other" if deep else f"more than {SCOPES_MOST:,} in all"
+            scope.complain(f"sub-assemblies are placed {how}", "place fewer of them", *path)
+        self.stopped = True
+
     def assembly(self) -> Assembly:
         """The flat assembly; problems are noted on the way."""
         top = self.scopes[0]
+        count = sum(len(scope.manifest.part) for scope in self.scopes)
+        if self.stopped or count > PARTS_MOST:
+            if not self.stopped:
+                top.complain(f"the design has {count:,} parts, and {PARTS_MOST:,} are the most", "divide it", "part")
+            self.problems.raise_if_any()
         tolerances = _tolerances(top.manifest.tolerances, top.metres)
         parts = [
             self._part(scope, table, tolerances, *at) for scope in self.scopes for at, table in scope.tables("part")

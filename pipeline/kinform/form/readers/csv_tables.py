@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import csv
-import math
+import io
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
+from kinform.form.constants import LARGEST_NUMBER, TABLE_BYTES, VALUE_LENGTH
 from kinform.form.readers.open_manifest import Scope
+from kinform.foundation.texts import TextError, read_text
 
 
 def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -19,7 +21,7 @@ def law_rows(scope: Scope, path: Path, shown: str) -> tuple[tuple[float, ...], t
     """
     times: list[float] = []
     values: list[float] = []
-    for number, row, text in _rows(path, 2):
+    for number, row, text in _rows(scope, path, shown, 2):
         if len(row) != 2:
             scope.problems.add(f"the row {text!r} is not time and value", shown, number, "give two finite numbers")
             continue
@@ -38,7 +40,7 @@ def path_rows(scope: Scope, path: Path, shown: str) -> list[list[float]]:
 
     out: list[list[float]] = []
     turn = Rotation.from_matrix(scope.X_WF[:3, :3])
-    for number, row, _ in _rows(path):
+    for number, row, _ in _rows(scope, path, shown):
         if len(row) not in (4, 8) or (out and len(row) != len(out[0])):
             scope.problems.add("the row is not time, x, y, z, or these with a quaternion", shown, number,
                                "give 4 numbers a row, or 8")  # fmt: skip
@@ -58,21 +60,30 @@ def path_rows(scope: Scope, path: Path, shown: str) -> list[list[float]]:
     return out
 
 
-def _rows(path: Path, most: int | None = None) -> Iterator[tuple[int, list[float], str]]:
+def _rows(scope: Scope, path: Path, shown: str, most: int | None = None) -> Iterator[tuple[int, list[float], str]]:
     """Number of the line, its first `most` cells as finite numbers, and its text; a row with anything else among
-    them comes empty. Blank lines, and a first line that is no numbers, are left out."""
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        for number, row in enumerate(csv.reader(file), start=1):
+    them comes empty. Blank lines, and a first line that is no numbers, are left out. A file that cannot be read as
+    such is a problem of the scope, and ends there."""
+    try:
+        text = read_text(path, TABLE_BYTES, "a table of numbers")
+    except TextError as error:
+        scope.problems.add(error.message, shown, None, error.remedy or "check its permissions")
+        return
+    rows = csv.reader(io.StringIO(text, newline=""))
+    try:
+        for number, row in enumerate(rows, start=1):
             if not "".join(row).strip():
                 continue
             try:
                 values = [float(cell) for cell in row[:most]]
             except ValueError:
                 values = []
-            if not all(map(math.isfinite, values)):
+            if not all(abs(value) <= LARGEST_NUMBER for value in values):
                 values = []
             if values or number > 1:
-                yield number, values, ",".join(row)
+                yield number, values, ",".join(row)[:VALUE_LENGTH]
+    except csv.Error as error:
+        scope.problems.add(f"is no table of numbers: {error}", shown, rows.line_num, "write rows of numbers")
 
 
 def _follows(scope: Scope, time: float, before: float | None, shown: str, number: int) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.constants import OUTPUTS, PARALLEL_AXES
+from kinform.form.constants import LARGEST_NUMBER, OUTPUTS, PARALLEL_AXES
 from kinform.form.files import DesignFiles
 from kinform.form.problems import did_you_mean, in_quotes
 from kinform.form.readers.csv_tables import law_rows
@@ -112,6 +112,9 @@ class FunctionReader:
         lower, upper = table.range
         if not lower < upper:
             self.scope.complain(f"{what}: the range [{lower}, {upper}] is not ascending", "swap it", *path, "range")
+        if any(LARGEST_NUMBER < abs(value) < math.inf for value in table.range):
+            wrong = f"{what}: the range reaches beyond {LARGEST_NUMBER:g}"
+            self.scope.complain(wrong, "write inf for a side that is free", *path, "range")
         scale = self.scope.metres if table.type in LINEAR else math.pi / 180.0
         return lower * scale, upper * scale
 

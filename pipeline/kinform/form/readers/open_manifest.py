@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,16 +10,17 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.manifest import Manifest
 from kinform.form.problems import Problems
 from kinform.form.readers import pydantic_errors
 from kinform.form.readers.toml_lines import LineTable
 from kinform.form.readers.toml_lines import Path as KeyPath
+from kinform.form.readers.toml_text import TomlError, read_toml
+from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
-
-_PLACE = re.compile(r"\(at line (\d+), column \d+\)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,21 +99,13 @@ def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTabl
     """The manifest at `path`, as far as it can be used, its lines, and the names of tables that cannot; every problem
     is noted. None when nothing can be used."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        problems.add(f"is not UTF-8 text (byte {error.start})", file, None, "save the manifest as UTF-8")
+        text = read_text(path, MANIFEST_BYTES, "a manifest")
+        raw = read_toml(text)
+    except TextError as error:
+        problems.add(error.message, file, None, error.remedy or "name a manifest (TOML)")
         return None
-    except OSError as error:
-        problems.add(f"cannot be read: {error.strerror}", file, None, "name a manifest (TOML)")
-        return None
-    try:
-        raw: dict[str, Any] = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        text_of_error = str(error)
-        place = _PLACE.search(text_of_error)
-        line = int(place[1]) if place else text.count("\n") + 1
-        message = "not valid TOML: " + _PLACE.sub("", text_of_error).replace("(at end of document)", "").strip()
-        problems.add(message, file, line, "correct the syntax: see toml.io")
+    except TomlError as error:
+        problems.add(error.message, file, error.line, error.remedy)
         return None
     lines = LineTable(text)
     try:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 from pydantic import ValidationError
 
-from kinform.form.constants import VALUE_LENGTH
+from kinform.form.constants import LARGEST_NUMBER, PROBLEMS_MOST, VALUE_LENGTH
 from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
 from kinform.form.readers.toml_lines import LineTable, Path
@@ -18,7 +19,7 @@ _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft
 def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems) -> None:
     """Add each of pydantic's errors to the problems."""
     schema = json_schema()
-    for item in error.errors(include_url=False):
+    for item in islice(error.errors(include_url=False), PROBLEMS_MOST + 1):
         path = _real_path(item["loc"], raw)
         tagged = item["type"].startswith("union_tag")
         where = _label(path if item["type"] == "missing" or tagged else path[:-1], raw)
@@ -58,13 +59,19 @@ def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[
         remedy = did_you_mean(str(item["input"]), [str(c) for c in choices], "the choices")
         return f"{where}: {name} cannot be {_value(item['input'])}", remedy
     if kind == "string_pattern_mismatch":
+        if "/" not in context.get("pattern", ""):
+            return f"{where}: {name} {_value(item['input'])} contains a null character", "take another name"
         return (
             f'{where}: {name} {_value(item["input"])} contains "/" or a null character',
             'take another name: "/" separates sub-assemblies',
         )
+    if kind == "string_too_long":
+        most = context["max_length"]
+        return f"{where}: {name} has {len(item['input'])} characters, and {most} are the most", f"shorten {name}"
     if key == "schema":
         return f"schema {_value(item['input'])} is not one that this version reads", "write schema = 1"
     wrong = item["msg"].replace("Input should be", "must be").replace(" after validation", "")
+    wrong = wrong.replace(f"{LARGEST_NUMBER:.0f}", f"{LARGEST_NUMBER:g}")
     message = f"{where}: {name} {wrong[:1].lower()}{wrong[1:]}, not {_value(item['input'])}"
     if kind in ("too_short", "too_long"):
         bound = context.get("min_length", context.get("max_length"))
@@ -176,6 +183,8 @@ def _value(value: Any) -> str:
         return in_quotes(value)
     if isinstance(value, dict):
         return "a table"
+    if isinstance(value, int) and abs(value) >= 10**VALUE_LENGTH:
+        return "a number of very many digits"
     return str(value) if len(str(value)) <= VALUE_LENGTH else f"{str(value)[: VALUE_LENGTH - 3]}…"
 
 

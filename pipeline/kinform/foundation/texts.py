@@ -1,0 +1,69 @@
+"""Texts that are read from files: bounded in size, UTF-8; and JSON of them, bounded in depth."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+from kinform.foundation.constants import JSON_DEPTH, JSON_DIGITS
+
+_JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
+
+
+class TextError(Exception):
+    """A file is no text that can be read: what is wrong, and what to do about it ("" where only the caller knows)."""
+
+    def __init__(self, message: str, remedy: str = ""):
+        self.message, self.remedy = message, remedy
+        super().__init__(message)
+
+
+def read_text(path: Path, most: int, what: str) -> str:
+    """The UTF-8 text of a file of at most so many bytes, without its byte order mark; `what` it should be. Raises
+    TextError."""
+    try:
+        with open(path, "rb") as stream:
+            data = stream.read(most + 1)
+    except OSError as error:
+        raise TextError(f"cannot be read: {error.strerror or error}") from None
+    if len(data) > most:
+        raise TextError(f"is larger than {most >> 20} MiB, and {what} is not", f"name {what}, or divide it")
+    try:
+        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except UnicodeDecodeError as error:
+        raise TextError(f"is not UTF-8 text (byte {error.start})", "save it as UTF-8") from None
+
+
+def parse_json(text: str) -> Any:
+    """The value of a JSON text, all of whose numbers are finite; raises ValueError where it is none, nests too deep, or
+    has a number too long to be one."""
+    depth = 0
+    for token in _JSON_TOKEN.finditer(text):
+        if token[0] in "[{":
+            depth += 1
+            if depth > JSON_DEPTH:
+                line = text.count("\n", 0, token.start()) + 1
+                raise ValueError(f"more than {JSON_DEPTH} brackets in each other at line {line}")
+        elif token[0] in "]}":
+            depth -= 1
+    return json.loads(text, parse_float=_finite, parse_int=_whole, parse_constant=_no_constant)
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"the number {text[:JSON_DIGITS]} is too large")
+    return value
+
+
+def _whole(text: str) -> int:
+    if len(text) > JSON_DIGITS:
+        raise ValueError(f"a whole number of {len(text)} digits, and {JSON_DIGITS} are the most")
+    return int(text)
+
+
+def _no_constant(text: str) -> None:
+    raise ValueError(f"{text} is no number in JSON")

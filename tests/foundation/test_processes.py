@@ -1,0 +1,46 @@
+"""What a process that native code ends becomes: an error with the name of what it was at work on."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+from kinform.errors import KinformError
+from kinform.foundation.processes import Crash, in_own_process, map_in_processes
+
+
+def ended(number: int) -> int:
+    if number == 5:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    return number * number
+
+
+def test_the_result_of_another_process_comes_back():
+    assert in_own_process(lambda: list(range(100_000))) == list(range(100_000))
+
+
+def test_what_it_raises_is_raised_here():
+    with pytest.raises(ZeroDivisionError):
+        in_own_process(lambda: 1 / 0)
+
+
+def test_a_process_that_ends_without_an_answer_is_told_with_its_cause():
+    with pytest.raises(Crash, match="SIGSEGV"):
+        in_own_process(lambda: ended(5))
+    with pytest.raises(Crash, match="exit code 3"):
+        in_own_process(lambda: os._exit(3))
+
+
+def test_a_crash_among_several_is_told_with_the_name_of_the_thing():
+    with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
+        list(map_in_processes(ended, range(9), jobs=2, name=lambda k: f"part {k}"))
+
+
+def test_what_was_done_before_a_crash_comes_in_order():
+    come = []
+    with pytest.raises(Crash):
+        come.extend(map_in_processes(ended, [1, 2, 3, 4, 5, 6], jobs=2, name=str))
+    done = map_in_processes(ended, [1, 2, 3, 4], jobs=2)
+    assert list(done) == [1, 4, 9, 16]
