@@ -69,16 +69,16 @@ def pendulum():
     return model
 
 
-def four_bars(count):
-    """A02: vertical rods at x = 0, 1, …, joined by couplers at y = 1."""
+def four_bars(count, off=lambda: np.zeros(3)):
+    """A02: vertical rods at x = 0, 1, …, joined by couplers at y = 1; hinges are off by what `off` gives (3,)."""
     model = Model()
     for k in range(count + 1):
         model.rod(f"r{k}", (k, 0, 0), (k, 1, 0))
-        model.joint(f"foot {k}", "base", f"r{k}", point=(k, 0, 0))
+        model.joint(f"foot {k}", "base", f"r{k}", point=(k, 0, 0) + off())
     for k in range(count):
         model.rod(f"s{k}", (k, 1, 0), (k + 1, 1, 0))
-        model.joint(f"left {k}", f"r{k}", f"s{k}", point=(k, 1, 0))
-        model.joint(f"right {k}", f"s{k}", f"r{k + 1}", point=(k + 1, 1, 0))
+        model.joint(f"left {k}", f"r{k}", f"s{k}", point=(k, 1, 0) + off())
+        model.joint(f"right {k}", f"s{k}", f"r{k + 1}", point=(k + 1, 1, 0) + off())
     return model
 
 
