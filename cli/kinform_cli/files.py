@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kinform_cli import console
 from kinform_cli.errors import refuse
 from kinform_cli.progress import Working
 
@@ -29,6 +30,15 @@ def check_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
 
     results.check_output(path)
     _try_writing(path)
+
+
+def warn_if_not_whole(path: Path) -> None:
+    """Say that a results file that is about to be written again is no longer whole: so nobody relied on it in vain."""
+    from kinform import results
+
+    fault = results.fault_of(path)
+    if fault is not None:
+        console.warn(results.as_absent(fault))
 
 
 def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
@@ -104,6 +114,8 @@ def advance(source: Path, output: Path, label: str, stage: Callable[[Design, Wor
     from kinform import results
 
     design = read(source)
+    if not (output.exists() and output.samefile(source)):
+        warn_if_not_whole(output)
     with needing(source), Working(label) as working:
         design = stage(design, working)
     results.write(design, output)

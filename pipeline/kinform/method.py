@@ -39,9 +39,9 @@ def run(
     `manifest` is a TOML file, or one or several mesh files, which need `units`. With `output` the results
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
-    manifest's folder need `allow_outside`. `say` is told what takes long besides. `ranges`: whether it is found how far
-    each joint goes; None: where the function states ranges or requirements. `changed`: an earlier file is known not to
-    be what a run would give, and is not asked.
+    manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
+    longer whole. `ranges`: whether it is found how far each joint goes; None: where the function states ranges or
+    requirements. `changed`: an earlier file is known not to be what a run would give, and is not asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
@@ -53,7 +53,7 @@ def run(
     from kinform import stages  # not before: seeing that nothing changed takes less time than importing them
     from kinform.reuse.ledger import Ledger
 
-    earlier = _earlier(output)
+    earlier = _earlier(output, say)
     ledger = Ledger(earlier)
     design = _import(manifest, units, allow_outside, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
@@ -86,13 +86,13 @@ def _import(
     return stages.import_(paths[0], allow_outside=allow_outside, ledger=ledger)
 
 
-def _earlier(output: str | Path | None) -> Earlier | None:
-    """What an earlier run has left in `output`, if anything. Raises ResultsError where it could not be written."""
+def _earlier(output: str | Path | None, say: Callable[[str], None] | None) -> Earlier | None:
+    """What an earlier run has left whole in `output`, if anything. Raises ResultsError where it cannot be written."""
     if output is None:
         return None
     from kinform import results
 
-    return results.earlier(output)
+    return results.earlier(output, None if say is None else lambda text: say(f"warning: {text}"))
 
 
 def _steps(progress: Progress | None, stage: str) -> StageProgress | None:

@@ -9,10 +9,11 @@ import subprocess
 import sys
 import time
 
-import h5py
 import pytest
 from support.command_line import environment, listening
 from support.places import FIXTURES
+
+from kinform.results.seal import seal
 
 PAIR = FIXTURES / "pairs" / "revolute_collars"
 NAME = "revolute_collars.toml"
@@ -117,12 +118,11 @@ def test_a_mesh_outside_the_folder_needs_permission(folder, command):
 
 def test_what_is_no_results_file_is_neither_read_nor_overwritten(folder, command):
     (folder / "text.h5").write_text("precious")
-    refused(command("show", "text.h5"), "text.h5", "not HDF5")
+    refused(command("show", "text.h5"), "text.h5", "not a results file")
     refused(command("run", NAME, "-o", "text.h5"), "not overwritten")
     assert (folder / "text.h5").read_text() == "precious"
-    with h5py.File(folder / "newer.h5", "w") as file:
-        file.attrs["schema"] = "kinform/results/9"
-    refused(command("show", "newer.h5"), "kinform/results/9", "kinform/results/2")
+    (folder / "newer.h5").write_bytes(seal(b"of another form", "kinform/results/9"))
+    refused(command("show", "newer.h5"), "kinform/results/9", "kinform/results/3")
 
 
 def test_a_place_where_nothing_can_be_written(folder, command):

@@ -38,11 +38,11 @@ def _datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
 
 
 def test_the_root_says_schema_and_version_and_every_group_schema_and_fingerprint(file: h5py.File) -> None:
-    assert file.attrs["schema"] == "kinform/results/2"
+    assert file.attrs["schema"] == "kinform/results/3"
     assert re.fullmatch(r"\d+\.\d+.*", file.attrs["kinform"])
     assert set(file) == GROUPS
     for name, group in file.items():
-        assert group.attrs["schema"] == f"kinform/results/2/{name}"
+        assert group.attrs["schema"] == f"kinform/results/3/{name}"
         assert re.fullmatch("[0-9a-f]{64}", group.attrs["fingerprint"])
 
 

@@ -71,6 +71,8 @@ def check(
     from kinform.consistency import adopt
 
     design = files.read(source)
+    if output is not None:
+        files.warn_if_not_whole(output)
     with files.needing(source), Working("check"):
         design = stages.check(design)
     if output is not None:

@@ -20,6 +20,7 @@ def import_(
     """Read a manifest and its meshes into a results file; the other stages need nothing else."""
     manifest = files.is_manifest(sources, units)
     files.check_outputs(sources, output, depfile)
+    files.warn_if_not_whole(output)
     from kinform import results, stages
 
     with Working("import"):

@@ -78,7 +78,9 @@ def _run(manifest: Path, output: Path, allow_outside: bool, jobs: int, gate: Gat
 
     try:
         with Working("run") as working:
-            outcome = kinform.run(manifest, output, jobs=jobs, progress=working.step, allow_outside=allow_outside)
+            outcome = kinform.run(
+                manifest, output, jobs=jobs, progress=working.step, allow_outside=allow_outside, say=console.say
+            )
     except (kinform.KinformError, OSError) as error:
         errors.report(error)
         return None

@@ -1,8 +1,8 @@
 """Results: the HDF5 file that carries a design from stage to stage, and what may be reused of it."""
 
 from kinform.results.file import (
-    SCHEMA,
     Earlier,
+    as_absent,
     check_output,
     earlier,
     files_of,
@@ -11,13 +11,16 @@ from kinform.results.file import (
     to_bytes,
     write,
 )
+from kinform.results.opening import SCHEMA, fault_of
 from kinform.results.replacement import replace_file
 
 __all__ = [
     "SCHEMA",
     "Earlier",
+    "as_absent",
     "check_output",
     "earlier",
+    "fault_of",
     "files_of",
     "read",
     "read_if_current",

@@ -11,7 +11,7 @@ import contextlib
 import dataclasses
 import importlib
 import json
-from collections.abc import Iterator
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -21,8 +21,11 @@ import h5py
 from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
+from kinform.results import constants
 from kinform.results.groups import assembly
+from kinform.results.opening import DAMAGE, RECOMPUTE, SCHEMA, NotWholeError, check_replaceable, opened
 from kinform.results.replacement import check_target, refuse, replace_file
+from kinform.results.seal import seal
 from kinform.reuse import lineage
 from kinform.version import __version__
 
@@ -38,22 +41,10 @@ if TYPE_CHECKING:
     from kinform.model.surfaces import MeshSurfaces
 
 
-SCHEMA = "kinform/results/2"
-_FAMILY = "kinform/results/"
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_DAMAGE = (
-    ArithmeticError, AttributeError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError,
-)  # fmt: skip
-"""What h5py and the codecs raise on a file whose content makes no sense."""
 _NONSENSE = (
     ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
 )  # fmt: skip
-"""The same without want of memory."""
-_COMPUTE = "compute it from the manifest: kinform run MANIFEST -o FILE"
-_RECOMPUTE = f"delete it, and {_COMPUTE}"
-_NAME_ONE = "name a results file of kinform"
-_GROWTH = 1 << 20
-"""Bytes by which the image of a file grows: with fewer it is copied often."""
+"""What h5py and the codecs raise on a group that makes no sense."""
 _STAGE_OF = {"constraints": "joints", "mobility": "joints", "behaviour": "simulation"}
 
 
@@ -68,18 +59,15 @@ def write(design: Design, path: str | Path) -> None:
 
 
 def check_output(path: str | Path) -> None:
-    """Raise ResultsError when `write` would refuse this path."""
+    """Raise ResultsError when `write` would refuse this path. A results file that is no longer whole is no reason."""
     check_target(path)
     target = Path(path)
     if target.exists() and target.stat().st_size > 0:
         try:
-            with _opened(target):
-                pass
+            check_replaceable(target)
         except ResultsError as error:
-            message = str(error).split("\n")[0].removeprefix(f"{target}: ")
-            raise refuse(
-                path, f"{message}; it is not overwritten", "delete it, or give another name with -o"
-            ) from error
+            message = f"{error.problem.message}; it is not overwritten"
+            raise refuse(path, message, "delete it, or give another name with -o") from error
 
 
 def read(path: str | Path) -> Design:
@@ -92,14 +80,27 @@ def read(path: str | Path) -> Design:
         return found.design
 
 
-def earlier(path: str | Path) -> Earlier | None:
+def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earlier | None:
     """What an earlier run has left at `path`, which is about to be written; None where there is nothing.
 
-    Raises ResultsError when `write` would refuse this path.
+    What is no longer whole counts as nothing, and `say` is told. Raises ResultsError when `write` would refuse this
+    path.
     """
     check_output(path)
     target = Path(path)
-    return Earlier(path) if target.exists() and target.stat().st_size > 0 else None
+    if not target.exists() or target.stat().st_size == 0:
+        return None
+    try:
+        return Earlier(path)
+    except NotWholeError as error:
+        if say is not None:
+            say(as_absent(error))
+        return None
+
+
+def as_absent(error: ResultsError) -> str:
+    """What is said of a file that is not whole and is written anew."""
+    return f"{error.problem.file}: {error.problem.message}; it counts as absent, and is made again"
 
 
 class Earlier:
@@ -110,7 +111,7 @@ class Earlier:
     def __init__(self, path: str | Path):
         self._path = path
         self._open = contextlib.ExitStack()
-        self._file = self._open.enter_context(_opened(path))
+        self._file = self._open.enter_context(opened(path))
 
     def __enter__(self) -> Earlier:
         return self
@@ -130,7 +131,7 @@ class Earlier:
             raise self._damaged(error) from error
 
     def _damaged(self, error: BaseException) -> ResultsError:
-        return refuse(self._path, f"the results file is damaged ({error})", _RECOMPUTE)
+        return refuse(self._path, f"the results file is damaged ({error})", RECOMPUTE)
 
     @cached_property
     def assembly(self) -> Assembly:
@@ -212,8 +213,8 @@ class Earlier:
 def to_bytes(design: Design) -> bytes:
     """The results file as bytes: the same design gives the same bytes, everywhere."""
     file = h5py.File(
-        "results", "w", driver="core", backing_store=False, block_size=_GROWTH, libver=("earliest", "v108"),
-        track_order=False,
+        "results", "w", driver="core", backing_store=False, block_size=constants.GROWTH, userblock_size=constants.BLOCK,
+        libver=("earliest", "v108"), track_order=False,
     )  # fmt: skip
     with file:
         file.attrs["schema"] = SCHEMA
@@ -221,7 +222,7 @@ def to_bytes(design: Design) -> bytes:
         _write_groups(file, design)
         file.flush()
         image: bytes = file.id.get_file_image()
-    return image
+    return seal(image, SCHEMA)
 
 
 def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
@@ -261,9 +262,9 @@ def _marks(file: h5py.File, attribute: str) -> dict[str, str]:
 def files_of(path: str | Path) -> tuple[str, ...]:
     """The files that were read for these results, relative to the manifest; () where there are no such results."""
     try:
-        with _opened(path) as file:
+        with opened(path) as file:
             return assembly.read_files(file["assembly"])
-    except (ResultsError, *_DAMAGE):
+    except (ResultsError, *DAMAGE):
         return ()
 
 
@@ -274,7 +275,7 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
     its inputs, a run will tell.
     """
     try:
-        with _opened(path) as file:
+        with opened(path) as file:
             marks = Fingerprints(lineage=_marks(file, "lineage"))
             contents = assembly.read_contents(file["assembly"])
             written_from = marks.lineage.get("findings")
@@ -283,7 +284,7 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
             gist = assembly.read_header(file["assembly"])
             report = _codec("findings").read(file["findings"])
             return Design(gist, kinematics=_bodies(file, gist), report=report, fingerprints=marks)
-    except (ResultsError, *_DAMAGE):
+    except (ResultsError, *DAMAGE):
         return None
 
 
@@ -295,38 +296,3 @@ def _bodies(file: h5py.File, gist: Assembly) -> Kinematics | None:
     from kinform.results.groups import joints
 
     return only_bodies(joints.read_bodies(file["joints"]))
-
-
-@contextlib.contextmanager
-def _opened(path: str | Path) -> Iterator[h5py.File]:
-    """The file, open for reading and known to be a results file of this schema."""
-    with contextlib.ExitStack() as stack:
-        try:
-            stream = stack.enter_context(open(path, "rb"))
-            signature = stream.read(len(_SIGNATURE))
-        except FileNotFoundError as error:
-            raise refuse(path, "there is no such file", f"check the name, or {_COMPUTE}") from error
-        except OSError as error:
-            raise refuse(path, f"cannot be read: {error.strerror or error}", _NAME_ONE) from error
-        if signature != _SIGNATURE:
-            raise refuse(path, "this is not a results file of kinform (not HDF5)", _NAME_ONE)
-        try:
-            file = stack.enter_context(h5py.File(stream, "r"))
-            schema, version = file.attrs.get("schema"), file.attrs.get("kinform", "unknown")
-        except _DAMAGE as error:
-            raise refuse(path, "the results file is truncated or damaged", _RECOMPUTE) from error
-        _check_schema(path, schema, version)
-        yield file
-
-
-def _check_schema(path: str | Path, schema: object, version: object) -> None:
-    if schema == SCHEMA:
-        return
-    if isinstance(schema, str) and schema.startswith(_FAMILY):
-        raise refuse(
-            path,
-            f"the results file has the schema {schema}, written by kinform {version}; "
-            f"this is kinform {__version__}, which reads {SCHEMA}",
-            f"use that version, or {_RECOMPUTE}",
-        )
-    raise refuse(path, "this HDF5 file was written by another program", _NAME_ONE)
