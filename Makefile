@@ -10,7 +10,7 @@ DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
 WORKERS ?= 2
 
-.PHONY: demo test test-slow test-sweep lint validators lock fixtures docs clean
+.PHONY: demo test test-slow test-sweep fuzz lint validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -29,6 +29,10 @@ test-slow: $(VENV)/.developing
 
 test-sweep: $(VENV)/.developing
 	$(BIN)/python -m pytest -n $(WORKERS) -m sweep
+
+# Mutated files for every format that is read, ten minutes in all: see fuzz/README.md.
+fuzz: $(VENV)/.developing
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python fuzz/run.py $(TARGETS) --folder $(OUT)/fuzz
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

@@ -54,7 +54,7 @@ class Catalog:
 def read(path: str | Path) -> Catalog:
     """The catalog at `path`. Raises InputError when there is none, or it is something else."""
     with open_catalog(path) as database:
-        sources = tuple(row[0] for row in database.execute("SELECT path FROM sources ORDER BY path"))
+        sources = tuple(_typed(row[0], "str") for row in database.execute("SELECT path FROM sources ORDER BY path"))
         rows = database.execute("SELECT * FROM designs ORDER BY path").fetchall()
         return Catalog(sources, tuple(entry_from(database, row) for row in rows))
 
@@ -94,10 +94,15 @@ def _connection(path: Path) -> sqlite3.Connection:
         raise _refuse(path, *other)
     database = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
     try:
-        schemas = database.execute("SELECT schema FROM catalog").fetchall()
+        # views and triggers of strangers could do anything, and for ever: there are none in a catalog
+        made = {kind for (kind,) in database.execute("SELECT DISTINCT type FROM sqlite_master")}
+        schemas = database.execute("SELECT schema FROM catalog").fetchall() if made <= {"table", "index"} else []
     except sqlite3.DatabaseError:
         database.close()
         raise _refuse(path, *other) from None
+    if not made <= {"table", "index"}:
+        database.close()
+        raise _refuse(path, *other)
     if schemas != [(SCHEMA,)]:
         database.close()
         schema = schemas[0][0] if schemas else "none"
@@ -116,10 +121,13 @@ def entry_from(database: sqlite3.Connection, row: sqlite3.Row) -> Entry:
     return Entry(
         **_values(Entry, row),
         size=_triple(row, "size"),
-        parts=tuple(part[0] for part in parts),
+        parts=tuple(_typed(part[0], "str") for part in parts),
         joints=tuple(_joint(joint) for joint in joints),
         requirements=tuple(
-            CatalogRequirement(name, kind, None if met is None else bool(met)) for name, kind, met in wanted
+            CatalogRequirement(
+                _typed(name, "str"), _typed(kind, "str"), None if met is None else bool(_typed(met, "int"))
+            )
+            for name, kind, met in wanted
         ),
     )
 
@@ -128,14 +136,29 @@ def _joint(row: sqlite3.Row) -> CatalogJoint:
     return CatalogJoint(**_values(CatalogJoint, row), axis=_triple(row, "axis"), point=_triple(row, "point"))
 
 
+_TYPES: dict[str, tuple[type, ...]] = {
+    "str": (str,), "int": (int,), "str | None": (str, type(None)), "int | None": (int, type(None)),
+    "float | None": (float, type(None)),
+}  # fmt: skip
+"""What a field may hold: SQLite keeps any value in any column."""
+
+
 def _values(record: type[Entry | CatalogJoint], row: sqlite3.Row) -> dict[str, Any]:
     """The fields of a record for which the row has a column."""
-    return {field.name: row[field.name] for field in fields(record) if field.name in row.keys()}  # noqa: SIM118
+    columns = row.keys()
+    return {field.name: _typed(row[field.name], str(field.type)) for field in fields(record) if field.name in columns}
+
+
+def _typed(value: Any, kind: str) -> Any:
+    """The value, which has to be of this kind; sqlite3.DatabaseError where it is not."""
+    if not isinstance(value, _TYPES[kind]):
+        raise sqlite3.DatabaseError(f"it has a {type(value).__name__} where {kind} is expected")
+    return value
 
 
 def _triple(row: sqlite3.Row, name: str) -> Triple | None:
-    x, y, z = (row[f"{name}_{letter}"] for letter in "xyz")
-    return None if x is None else (x, y, z)
+    x, y, z = (_typed(row[f"{name}_{letter}"], "float | None") for letter in "xyz")
+    return None if x is None or y is None or z is None else (x, y, z)
 
 
 def _bytes(catalog: Catalog) -> bytes:

@@ -11,6 +11,9 @@ JSON_DEPTH = 32
 """Brackets in each other in a JSON file: those that kinform writes go five deep."""
 JSON_DIGITS = 18
 """Digits of a whole number in a JSON file: more is no count."""
+JSON_LARGEST = 1e60
+"""The largest magnitude of a number in a JSON file: moments of inertia of mountains in g·mm² are smaller, and cubes of
+it are still finite."""
 JSON_BYTES = 16 << 20
 """Bytes of a JSON file (a lock, a baseline): a hundred thousand entries. Values take 25 times that at worst, 400 MB."""
 

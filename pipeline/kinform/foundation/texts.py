@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from pathlib import Path
 from typing import Any
 
-from kinform.foundation.constants import JSON_DEPTH, JSON_DIGITS
+from kinform.foundation.constants import JSON_DEPTH, JSON_DIGITS, JSON_LARGEST
 
 _JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
 
@@ -54,7 +53,7 @@ def parse_json(text: str) -> Any:
 
 def _finite(text: str) -> float:
     value = float(text)
-    if not math.isfinite(value):
+    if not abs(value) <= JSON_LARGEST:
         raise ValueError(f"the number {text[:JSON_DIGITS]} is too large")
     return value
 

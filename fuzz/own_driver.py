@@ -1,0 +1,187 @@
+"""Mutates seeds and runs a target on them in a process that may die, without any package.
+
+The process writes each input where its parent can read it before it is run, and counts. Where it ends, or counts no
+further, the input is a finding, and another process goes on behind it. The same seed gives the same inputs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import mmap
+import os
+import random
+import signal
+import struct
+import time
+import traceback
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from mutations import MOST, mutated
+from targets import REFUSED, Target
+
+HANGS = 10.0
+"""Seconds after which an input takes too long."""
+STUCK = 40.0
+"""Seconds after which native code that does not hear of it is ended."""
+_HEAD = struct.Struct("<QI")
+
+
+class Hang(Exception):
+    """An input took too long."""
+
+
+@dataclass
+class Outcome:
+    """What a run of a target came to."""
+
+    name: str
+    executions: int = 0
+    refused: int = 0
+    seconds: float = 0.0
+    findings: dict[str, Path] = field(default_factory=dict)
+    """By what happened: the input."""
+
+
+def run(target: Target, folder: Path, *, runs: int | None, seconds: float | None, seed: int) -> Outcome:
+    """Mutate and run until there were so many executions, or so many seconds."""
+    folder.mkdir(parents=True, exist_ok=True)
+    outcome, begun = Outcome(target.name), time.monotonic()
+    end = begun + (seconds if seconds is not None else 1e9)
+    board = mmap.mmap(-1, 2 * _HEAD.size + MOST)
+    given = [data[:MOST] for data in target.seeds()]
+    most = runs if runs is not None else 1 << 62
+    while outcome.executions < most and time.monotonic() < end:
+        reading, writing = os.pipe()
+        child = os.fork()
+        if child == 0:
+            os.close(reading)
+            _work(
+                target,
+                given,
+                board,
+                writing,
+                random.Random(f"{seed} {outcome.executions}"),
+                outcome.executions,
+                most,
+                end,
+            )
+        os.close(writing)
+        status = _watch(child, board, reading, outcome, folder)
+        done, size = _HEAD.unpack_from(board, 0)
+        outcome.executions = done
+        if status != 0:
+            place = 2 * _HEAD.size
+            _keep(outcome, folder, f"process ended: status {status}", board[place : place + size])
+            outcome.executions += 1
+    outcome.seconds = time.monotonic() - begun
+    outcome.refused = _HEAD.unpack_from(board, _HEAD.size)[0]
+    return outcome
+
+
+def _work(
+    target: Target,
+    given: list[bytes],
+    board: mmap.mmap,
+    writing: int,
+    rng: random.Random,
+    done: int,
+    most: int,
+    end: float,
+) -> None:
+    """In the process: run inputs until enough are, and tell each finding through the pipe."""
+    refused = _HEAD.unpack_from(board, _HEAD.size)[0]
+    code = 0
+    try:
+        signal.signal(signal.SIGALRM, _hang)
+        warnings.simplefilter("error", RuntimeWarning)
+        told: set[str] = set()
+        while done < most and time.monotonic() < end:
+            data = mutated(rng.choice(given), given, target.words, rng) if done >= len(given) else given[done]
+            place = 2 * _HEAD.size
+            board[place : place + len(data)] = data
+            _HEAD.pack_into(board, 0, done, len(data))
+            what = attempt(target.run, data)
+            if what == "refused":
+                refused += 1
+                _HEAD.pack_into(board, _HEAD.size, refused, 0)
+            elif what and what not in told:
+                told.add(what)
+                text = what.encode()
+                os.write(writing, struct.pack("<II", len(text), len(data)) + text + data)
+            done += 1
+            _HEAD.pack_into(board, 0, done, 0)
+    except BaseException:
+        traceback.print_exc()
+        code = 3
+    finally:
+        os._exit(code)
+
+
+def attempt(function: Callable[[bytes], None], data: bytes) -> str:
+    """ "" where the bytes were read, "refused", or what happened instead."""
+    signal.setitimer(signal.ITIMER_REAL, HANGS)
+    try:
+        function(data)
+    except REFUSED:
+        return "refused"
+    except Exception as error:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        return where(error)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+    return ""
+
+
+def where(error: BaseException) -> str:
+    """An exception in a line: its type, the innermost place of ours, what it says."""
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if "/kinform/" in f.filename]
+    place = f"{Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else "?"
+    return (
+        f"{type(error).__name__} at {place}: {str(error)[:80]}"
+        if place == "?"
+        else f"{type(error).__name__} at {place}"
+    )
+
+
+def _hang(number: int, frame: object) -> None:
+    raise Hang
+
+
+def _watch(child: int, board: mmap.mmap, reading: int, outcome: Outcome, folder: Path) -> int:
+    """Wait for the process, keeping what it tells; ends it where it is stuck. Returns its status."""
+    os.set_blocking(reading, False)
+    held, last, since = b"", -1, time.monotonic()
+    while True:
+        with contextlib.suppress(BlockingIOError):
+            held += os.read(reading, 1 << 20)
+        while len(held) >= 8 and len(held) >= 8 + sum(struct.unpack_from("<II", held)):
+            text, data = struct.unpack_from("<II", held)
+            _keep(outcome, folder, held[8 : 8 + text].decode(), held[8 + text : 8 + text + data])
+            held = held[8 + text + data :]
+        ended, status = os.waitpid(child, os.WNOHANG)
+        if ended:
+            if held:
+                continue
+            os.close(reading)
+            return status
+        done = _HEAD.unpack_from(board, 0)[0]
+        if done != last:
+            last, since = done, time.monotonic()
+        elif time.monotonic() - since > STUCK:
+            os.kill(child, signal.SIGKILL)
+        time.sleep(0.05)
+
+
+def _keep(outcome: Outcome, folder: Path, what: str, data: bytes) -> None:
+    """Keep the first input of each finding."""
+    if what in outcome.findings and what.startswith("process ended") is False:
+        return
+    path = folder / f"finding-{len(outcome.findings):03d}"
+    path.write_bytes(data)
+    path.with_suffix(".txt").write_text(what + "\n")
+    key = what if what not in outcome.findings else f"{what} ({len(outcome.findings)})"
+    outcome.findings[key] = path
+    print(f"{outcome.name}: {what}: {path}", flush=True)

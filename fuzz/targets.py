@@ -1,0 +1,219 @@
+"""The formats that kinform reads: what reads the bytes, what it starts from, which words it knows."""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import seeds
+from kinform.errors import KinformError
+from kinform.form.meshes.raw import MeshError
+
+REFUSED = (KinformError, MeshError)
+"""What a reader raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A format."""
+
+    name: str
+    run: Callable[[bytes], None]
+    """Reads the bytes; raises one of REFUSED, or returns."""
+    seeds: Callable[[], list[bytes]]
+    words: tuple[bytes, ...] = ()
+    """Words of the format."""
+    share: float = 1.0
+    """Of the time that all targets have."""
+
+
+_FOLDER = Path(tempfile.mkdtemp(prefix="kinform-fuzz-", dir="/dev/shm" if Path("/dev/shm").is_dir() else None))
+"""Where the files lie that readers are given by name."""
+
+
+def _mesh(raw) -> None:
+    from kinform.form.meshes.bodies import named_bodies, shell_bodies
+    from kinform.form.meshes.health import build_mesh
+
+    for body in (raw, *named_bodies(raw).values(), *shell_bodies(raw).values()):
+        with contextlib.suppress(MeshError):
+            mesh = build_mesh(body, 1e-3, None, path="m", body=None, solid=False)
+            assert np.isfinite(mesh.vertices).all()
+            assert mesh.faces.min() >= 0 and mesh.faces.max() < len(mesh.vertices)
+            assert np.isfinite(mesh.health.volume)
+
+
+def _stl(data: bytes) -> None:
+    from kinform.form.meshes.stl import read_stl
+
+    _mesh(read_stl(data))
+
+
+def _obj(data: bytes) -> None:
+    from kinform.form.meshes.obj import read_obj
+
+    _mesh(read_obj(data))
+
+
+def _manifest(data: bytes) -> None:
+    from kinform import form
+
+    _beside()
+    (_FOLDER / "m.toml").write_bytes(data)
+    form.load(_FOLDER / "m.toml")
+
+
+def _beside() -> None:
+    """What a manifest may name."""
+    files = {"below.toml": seeds.BELOW.encode(), "a.stl": seeds.stl()[0], "a.obj": seeds.obj()[0]}
+    files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH}
+    for name, content in files.items():
+        if not (_FOLDER / name).exists():
+            (_FOLDER / name).write_bytes(content)
+
+
+_WITH_TABLES = """schema = 1
+[assembly]
+name = "x"
+units = "mm"
+[[part]]
+name = "a"
+[[part]]
+name = "b"
+[[function.joint]]
+name = "j"
+between = ["a", "b"]
+type = "prismatic"
+axis = [0, 0, 1]
+[[function.drive]]
+joint = "j"
+kind = "motion"
+law = {type = "table", file = "table.csv"}
+[[function.require]]
+name = "f"
+kind = "follow"
+part = "b"
+point = [0, 0, 0]
+path = "table.csv"
+tolerance = 1
+"""
+
+
+def _csv(data: bytes) -> None:
+    from kinform import form
+
+    (_FOLDER / "with_tables.toml").write_text(_WITH_TABLES)
+    (_FOLDER / "table.csv").write_bytes(data)
+    form.load(_FOLDER / "with_tables.toml")
+
+
+def _text(data: bytes) -> str:
+    from kinform.foundation.constants import JSON_BYTES
+    from kinform.foundation.texts import read_text
+
+    (_FOLDER / "text").write_bytes(data)
+    return read_text(_FOLDER / "text", JSON_BYTES, "a text")
+
+
+def _baseline(data: bytes) -> None:
+    from kinform.consistency import read_baseline, with_baseline
+
+    baseline = read_baseline(_text(data), "b.json")
+    report, gone = with_baseline(seeds.design().report, baseline)
+    assert len(report.findings) + len(report.ignored) >= len(seeds.design().report.findings)
+    assert len(gone) <= len(baseline.keys)
+
+
+def _lock(data: bytes) -> None:
+    from kinform.changes import read_lock, with_lock
+
+    with_lock(seeds.design().report, seeds.design(), read_lock(_text(data), "l.json"))
+
+
+def _catalog(data: bytes) -> None:
+    from kinform.catalog import Wanted, find, read, write
+
+    path = _FOLDER / "c.db"
+    path.write_bytes(data)
+    found = read(path)
+    find(path, Wanted(joints=(("revolute", 1, None),), text=("a",), verified=True))
+    write(found, _FOLDER / "again.db")
+
+
+def _results(data: bytes) -> None:
+    import edits
+    from kinform import results
+
+    (_FOLDER / "r.h5").write_bytes(edits.edited(seeds.results_images(), data))
+    design = results.read(_FOLDER / "r.h5")
+    results.write(design, _FOLDER / "again.h5")
+
+
+def _text_error(run: Callable[[bytes], None]) -> Callable[[bytes], None]:
+    """Also lets pass what a text that is none is refused with where the command reads it."""
+    from kinform.foundation.texts import TextError
+
+    def lenient(data: bytes) -> None:
+        with contextlib.suppress(TextError):
+            run(data)
+
+    return lenient
+
+
+_TOML_WORDS = (
+    b"[[part]]\n", b"[[group]]\n", b"[function]\n", b"[[function.joint]]\n", b"= ", b'"""', b"'''", b".", b"true", b"[",
+    b"]", b"{", b"}", b"mesh", b"name", b"position", b"mass", b"range", b'"../a.stl"', b'"m.toml"', b'"below.toml"',
+    b"\\u0000",
+    b"\\U0010ffff", b"1979-05-27T07:32:00Z",
+)  # fmt: skip
+_JSON_WORDS = (
+    b"null",
+    b"true",
+    b"{}",
+    b"[]",
+    b'""',
+    b"NaN",
+    b"Infinity",
+    b"\\ud800",
+    b'"count"',
+    b'"schema"',
+    b"1e999",
+    b",",
+)
+_STL_WORDS = (b"solid", b"endsolid", b"facet normal", b"outer loop", b"vertex", b"endloop", b"endfacet", b"\n", b" ")
+_OBJ_WORDS = (
+    b"v ",
+    b"f ",
+    b"o ",
+    b"g ",
+    b"#",
+    b"/",
+    b"//",
+    b"\\\n",
+    b"\nf 1 2 3\n",
+    b"vt",
+    b"curv",
+    b"l 1 2",
+    b"-1",
+    b"\n",
+)
+
+TARGETS = {
+    target.name: target
+    for target in (
+        Target("stl", _stl, seeds.stl, _STL_WORDS),
+        Target("obj", _obj, seeds.obj, _OBJ_WORDS),
+        Target("manifest", _manifest, seeds.manifests, _TOML_WORDS, 2.0),
+        Target("csv", _csv, seeds.csv, (b",", b"\n", b'"', b";")),
+        Target("baseline", _text_error(_baseline), seeds.baselines, _JSON_WORDS, 0.5),
+        Target("lock", _text_error(_lock), seeds.locks, _JSON_WORDS),
+        Target("catalog", _catalog, seeds.catalogs, (b"CREATE TABLE", b"SELECT", b"joints")),
+        Target("results", _results, seeds.edits, (), 2.0),
+    )
+}
+"""By name."""
