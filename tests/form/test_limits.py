@@ -11,7 +11,7 @@ import pytest
 from kinform.changes import read_lock
 from kinform.consistency import read_baseline
 from kinform.errors import InputError
-from kinform.form import load
+from kinform.form import load, load_meshes
 from kinform.form.constants import NAME_LENGTH, PROBLEMS_MOST
 from kinform.form.meshes import blocks
 from kinform.form.meshes.health import build_mesh
@@ -227,3 +227,20 @@ def test_files_of_faults_take_no_more_memory_than_geometry():
         finally:
             tracemalloc.stop()
         assert len(caught.value.faults) == 11
+
+
+def test_a_solid_without_facets_among_others_is_told_by_its_name(tmp_path):
+    facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    (tmp_path / "m.stl").write_text(f"solid full\n{facet}endsolid full\nsolid bare\nendsolid bare\n")
+    with pytest.raises(InputError) as caught:
+        load_meshes([tmp_path / "m.stl"], units="mm")
+    assert any('"bare" is empty' in problem.message for problem in caught.value.problems)
+
+
+def test_a_facet_without_area_at_a_crowded_edge_has_no_angle(recwarn):
+    """Three facets and a needle at one edge: no division by its height of nothing."""
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [0.5, 0, 1], [0.5, 0, -1], [0.5, 0, 0]])
+    faces = np.array([[0, 1, 2], [1, 0, 3], [0, 1, 4], [1, 0, 5]])
+    mesh = build_mesh(RawMesh(vertices, faces), 1.0, None, path="m", body=None, solid=False)
+    assert mesh.health.overused_edges == 1
+    assert not list(recwarn)

@@ -7,6 +7,14 @@ largest, 0 in a singular pose. The kernel's functions are compiled with the valu
 
 from __future__ import annotations
 
+# of_system: what a run may give.
+
+OUTPUT_NUMBERS = 100_000_000
+"""Numbers that a run gives in all, at all output times: 800 MB in the results file, and three times that while they are
+computed. A four-bar has a hundred at each time."""
+OUTPUT_TIMES = 10_000_000
+"""Output times of a run, whatever it gives at each."""
+
 # kernel.explicit: control of steps, end stops, crossings of singular poses.
 
 SAFETY = 0.9

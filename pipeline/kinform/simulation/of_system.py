@@ -13,7 +13,7 @@ from kinform.behaviour.nested import flat
 from kinform.foundation.progress import Progress, Say
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
-from kinform.simulation.constants import INERTIA_ROUNDING, LAST_OUTPUT
+from kinform.simulation.constants import INERTIA_ROUNDING, LAST_OUTPUT, OUTPUT_NUMBERS, OUTPUT_TIMES
 from kinform.simulation.mechanism.actuation import Actuation
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -134,6 +134,9 @@ def run_course(
     if overdriven:
         return refuse("the drives cannot be followed", ((", ".join(mechanism.joints_of(actuation.led)), overdriven),))
     notes = (*notes, *actuation.notes, *start.notes)
+    excess = _excess(mechanism, course)
+    if excess:
+        return refuse("the run would give too much", (("[simulation]", excess),))
     times = _grid(course.duration, course.step)
     if not dynamic:
         notes = (*notes, *notes_of_rest(mechanism, actuation, start, settings))
@@ -156,6 +159,27 @@ def run_course(
         return refuse("a free motion has no inertia", tuple((name, why) for name in weightless))
     record = while_in_mesh(mechanism, system, run_dynamic(dynamics, start, times, conduct))
     return publish_dynamic(dynamics, record, course.level, notes, settings)
+
+
+def _excess(mechanism: Mechanism, course: Course) -> str:
+    """Why a run of this length is not begun; "" where it is."""
+    times = course.duration / course.step + 1.0 if course.step * OUTPUT_TIMES >= course.duration else np.inf
+    numbers = times * numbers_at_a_time(mechanism, course.level)
+    if numbers <= OUTPUT_NUMBERS:
+        return ""
+    much = f"{numbers:.3g}" if np.isfinite(numbers) else f"more than {OUTPUT_NUMBERS:,}"
+    return (
+        f"its output would be {much} numbers, and {OUTPUT_NUMBERS:,} are the most: state a longer step, which is the "
+        "time between outputs (the solver chooses its own steps), or a shorter duration"
+    )
+
+
+def numbers_at_a_time(mechanism: Mechanism, level: str) -> int:
+    """How many numbers the results of a run have at each output time: see `Simulation`."""
+    bodies, joints, rates = len(mechanism.bodies), len(mechanism.slots), mechanism.rates
+    poses, coordinates, monitors = 7 * bodies, 4 * rates, 6
+    wrenches = 12 * joints + bodies + rates + 1 + 3 * len(mechanism.gear_v)
+    return poses + coordinates + monitors + (wrenches if level == "dynamic" else 0)
 
 
 def _grid(duration: float, step: float) -> Array:

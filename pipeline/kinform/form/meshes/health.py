@@ -26,6 +26,8 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     mesh that is inside out is turned; its health keeps the negative volume. Raises MeshError for empty meshes, and for
     flat ones where a solid is meant.
     """
+    if not len(raw.faces):
+        raise MeshError([Fault("is empty: it has no facet", "export the mesh again, or leave the body out")])
     origin = far_origin(raw.vertices)
     resolution = raw.resolution * metres
     vertices, faces, distance = _welded(raw, origin, metres, weld)

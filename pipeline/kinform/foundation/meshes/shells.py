@@ -88,13 +88,19 @@ def _angles(vertices: Array, faces: Ints, half: Ints, owner: Ints, forward: Flag
     a, b, apex = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
     low, high = np.where(forward[half], a, b), np.where(forward[half], b, a)
     along = vertices[high] - vertices[low]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    along /= _lengths(along)
     out = vertices[apex] - vertices[low]
     out -= dot(out, along)[:, None] * along
     first = np.searchsorted(owner, owner)
-    u = out[first] / np.linalg.norm(out[first], axis=1, keepdims=True)
+    u = out[first] / _lengths(out[first])
     v = cross(along, u)
     # a forward facet's outward normal is along × out, so its material lies at decreasing angles
     angle: Array = np.mod(-np.arctan2(dot(out, v), dot(out, u)), 2 * np.pi)
     angle[angle > 2 * np.pi - SAME_ANGLE] = 0.0
     return angle
+
+
+def _lengths(vectors: Array) -> Array:
+    """(n, 1) to divide by: a facet without area has no direction from its edge, and stays without."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(lengths > 0.0, lengths, 1.0)
