@@ -6,12 +6,15 @@ import os
 from enum import StrEnum
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 from kinform_cli import console
+
+if TYPE_CHECKING:
+    from kinform.form.sources import Reading
 
 
 class _WithExamples:
@@ -66,6 +69,21 @@ def cores(jobs: int | None) -> int:
     return jobs or os.cpu_count() or 1
 
 
+def reading(geometry: GeometryKind, packages: list[str] | None) -> Reading:
+    """How sources are read, by the options of the command line; a usage error where one is none."""
+    from kinform.form.sources import Reading
+
+    pairs = []
+    for stated in packages or ():
+        name, equals, folder = stated.partition("=")
+        if not (name and equals and folder):
+            raise typer.BadParameter(f"{stated!r} is not NAME=FOLDER", param_hint="--package")
+        if not Path(folder).is_dir():
+            raise typer.BadParameter(f"there is no folder {folder}", param_hint="--package")
+        pairs.append((name, folder))
+    return Reading(geometry.value, tuple(pairs))
+
+
 def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
     """An option by its names, with blanks between, and a word for its value; its help says what holds without it."""
     return typer.Option(*flags.split(), metavar=metavar, show_default=False, help=help, **settings)
@@ -74,6 +92,13 @@ def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
 def argument(metavar: str, help: str) -> Any:
     """An argument; its help says in words what holds without it."""
     return typer.Argument(metavar=metavar, show_default=False, help=help)
+
+
+class GeometryKind(StrEnum):
+    """The two geometries of a link."""
+
+    visual = "visual"
+    collision = "collision"
 
 
 class Severity(StrEnum):
@@ -130,11 +155,19 @@ Ranges = Annotated[
     ),
 ]
 Sources = Annotated[
-    list[Path], argument("M.toml|MESH", "A manifest; or STL and OBJ files in place of one, with --units.")
+    list[Path],
+    argument("SOURCE", "A manifest or a robot description (URDF, SDF, MJCF); or STL and OBJ files, with --units."),
 ]
 Results = Annotated[Path, argument("F.h5", "Results file to read.")]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
 AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
+Geometry = Annotated[
+    GeometryKind, typer.Option("--geometry", help="Which geometry of a robot description its parts are.")
+]
+Packages = Annotated[
+    list[str] | None,
+    option("--package", "NAME=FOLDER", "Where package://NAME of a robot description is; may be given for each."),
+]
 Units = Annotated[
     str | None, option("--units", "UNIT", "Unit of the meshes named in place of a manifest: m, cm, mm, um, in or ft.")
 ]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kinform.api import Outcome
 from kinform.design import Design
 from kinform.errors import InputError, Problem
+from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.progress import Progress as StageProgress
 
 if TYPE_CHECKING:
@@ -33,10 +34,12 @@ def run(
     say: Callable[[str], None] | None = None,
     ranges: bool | None = None,
     changed: bool = False,
+    reading: Reading = AS_IT_IS,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
-    `manifest` is a TOML file, or one or several mesh files, which need `units`. With `output` the results
+    `manifest` is a TOML file, a robot description (URDF, SDF, MJCF; `reading` says how it is read), or one or several
+    mesh files, which need `units`. With `output` the results
     are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
@@ -45,7 +48,7 @@ def run(
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
-    plain = units is None and ranges is None and not changed
+    plain = units is None and ranges is None and not changed and reading == AS_IT_IS
     if output is not None and plain and isinstance(manifest, str | Path):
         unchanged = Outcome.unchanged(Path(manifest), Path(output), allow_outside=allow_outside)
         if unchanged is not None:
@@ -55,7 +58,7 @@ def run(
 
     earlier = _earlier(output, say)
     ledger = Ledger(earlier)
-    design = _import(manifest, units, allow_outside, ledger)
+    design = _import(manifest, units, allow_outside, reading, ledger)
     design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
     design = stages.joints(design, ledger=ledger)
     design = stages.mass(design, ledger=ledger)
@@ -72,7 +75,11 @@ def run(
 
 
 def _import(
-    manifest: str | Path | Sequence[str | Path], units: str | None, allow_outside: bool, ledger: Ledger
+    manifest: str | Path | Sequence[str | Path],
+    units: str | None,
+    allow_outside: bool,
+    reading: Reading,
+    ledger: Ledger,
 ) -> Design:
     """The assembly of a manifest, or of meshes in place of one."""
     from kinform import stages
@@ -83,7 +90,7 @@ def _import(
     if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj"):
         problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
         raise InputError([problem])
-    return stages.import_(paths[0], allow_outside=allow_outside, ledger=ledger)
+    return stages.import_(paths[0], allow_outside=allow_outside, reading=reading, ledger=ledger)
 
 
 def _earlier(output: str | Path | None, say: Callable[[str], None] | None) -> Earlier | None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from kinform.design import Design
 from kinform.errors import StageError
+from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.progress import Progress
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import SimulationRequest
@@ -30,13 +31,20 @@ if TYPE_CHECKING:
 Computed = TypeVar("Computed")
 
 
-def import_(manifest: str | Path, *, allow_outside: bool = False, ledger: Ledger | None = None) -> Design:
-    """The assembly that a manifest describes, meshes included. Raises InputError with every problem.
+def import_(
+    manifest: str | Path, *, allow_outside: bool = False, reading: Reading = AS_IT_IS, ledger: Ledger | None = None
+) -> Design:
+    """The assembly that a manifest, or a robot description, describes, meshes included. Raises InputError with every
+    problem.
 
-    Meshes of files that have not changed are taken from earlier results.
+    Meshes of files that have not changed are taken from earlier results; where `reading` says more of how the source
+    is read, all is read anew.
     """
     path = Path(manifest)
-    assembly, contents = _read(path, allow_outside, *_earlier_assembly(ledger or Ledger()))
+    earlier = _earlier_assembly(ledger or Ledger()) if reading == AS_IT_IS else (None, {})
+    assembly, contents = _read(path, allow_outside, reading, *earlier)
+    if reading != AS_IT_IS:
+        contents = {}  # they alone do not say what was read
     design = _imported(assembly)
     start = lineage.of_files(path.name, contents)
     marks = replace(design.fingerprints, files=contents, lineage={"assembly": start} if start else {})
@@ -192,7 +200,7 @@ def _earlier_assembly(ledger: Ledger) -> tuple[Assembly | None, Mapping[str, str
 
 
 def _read(
-    manifest: Path, allow_outside: bool, earlier: Assembly | None, files: Mapping[str, str]
+    manifest: Path, allow_outside: bool, reading: Reading, earlier: Assembly | None, files: Mapping[str, str]
 ) -> tuple[Assembly, dict[str, str]]:
     """The assembly and the contents of its files; what earlier results hold is not read again."""
     if earlier is not None:
@@ -203,7 +211,7 @@ def _read(
             return again
     from kinform.form.readers.assembly import load_with_contents
 
-    return load_with_contents(manifest, allow_outside=allow_outside, earlier=earlier, files=files)
+    return load_with_contents(manifest, allow_outside=allow_outside, reading=reading, earlier=earlier, files=files)
 
 
 def _with_collisions(

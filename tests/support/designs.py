@@ -92,6 +92,11 @@ def by_type(hint: Any) -> st.SearchStrategy[Any]:
     return {str: texts, float: reals, int: integers, bool: st.booleans()}[hint]
 
 
+def masses() -> st.SearchStrategy[MassOverride]:
+    """Stated masses."""
+    return of(MassOverride, inertia=array(3, 3))
+
+
 @st.composite
 def parts(draw: Any) -> tuple[Part, ...]:
     """Parts of which some share a mesh and some have none."""
@@ -100,7 +105,7 @@ def parts(draw: Any) -> tuple[Part, ...]:
         for i, (v, f) in enumerate(draw(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3)), max_size=2)))
     ]
     mesh = st.sampled_from([None, *meshes])
-    override = st.none() | of(MassOverride, inertia=array(3, 3))
+    override = st.none() | masses()
     names = draw(st.lists(texts, max_size=3, unique=True))
     return tuple(
         draw(of(Part, name=st.just(name), mesh=mesh, X_WP=array(4, 4), override=override)) for name in sorted(names)
@@ -241,7 +246,7 @@ def behaviours(draw: Any) -> Behaviour:
 
 
 SPECIAL: dict[Any, Any] = {
-    Law: laws, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
+    Law: laws, MassOverride: masses, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
     Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies,
     Release: releases, MassProperties: mass_properties, Simulation: simulations,
 }  # fmt: skip

@@ -4,20 +4,38 @@ from __future__ import annotations
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
-from kinform_cli.options import AllowOutside, Depfile, Output, Sources, Units, examples
+from kinform_cli.options import (
+    AllowOutside,
+    Depfile,
+    Geometry,
+    GeometryKind,
+    Output,
+    Packages,
+    Sources,
+    Units,
+    examples,
+    reading,
+)
 from kinform_cli.progress import Working
 
 EXAMPLES = examples(
     "kinform import arm.toml -o a.h5",
+    "kinform import robot.urdf -o a.h5 --package my_robot=../my_robot",
     "kinform import housing.stl shaft.stl --units mm -o a.h5",
     "kinform import arm.toml -o a.h5 --depfile a.d     # for Make: -include a.d",
 )
 
 
 def import_(
-    sources: Sources, output: Output, units: Units = None, allow_outside: AllowOutside = False, depfile: Depfile = None
+    sources: Sources,
+    output: Output,
+    units: Units = None,
+    allow_outside: AllowOutside = False,
+    geometry: Geometry = GeometryKind.visual,
+    packages: Packages = None,
+    depfile: Depfile = None,
 ) -> None:
-    """Read a manifest and its meshes into a results file; the other stages need nothing else."""
+    """Read a manifest or a robot description into a results file, meshes included; other stages need nothing else."""
     manifest = files.is_manifest(sources, units)
     files.check_outputs(sources, output, depfile)
     files.warn_if_not_whole(output)
@@ -25,7 +43,8 @@ def import_(
 
     with Working("import"):
         if manifest:
-            design = stages.import_(sources[0], allow_outside=allow_outside)
+            how = reading(geometry, packages)
+            design = stages.import_(sources[0], allow_outside=allow_outside, reading=how)
         else:
             assert units is not None
             design = stages.import_meshes(sources, units=units)

@@ -14,7 +14,10 @@ from kinform_cli.options import (
     Depfile,
     FailOn,
     FindingsFormat,
+    Geometry,
+    GeometryKind,
     Jobs,
+    Packages,
     PrintedFindings,
     Ranges,
     Severity,
@@ -23,6 +26,7 @@ from kinform_cli.options import (
     cores,
     examples,
     option,
+    reading,
 )
 from kinform_cli.progress import Working
 
@@ -31,6 +35,7 @@ EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5 --format concise --fail-on warning",
     "kinform run housing.stl shaft.stl --units mm -o pair.h5",
     "kinform run arm.toml -o arm.h5 --ranges",
+    "kinform run robot.urdf -o robot.h5",
     "kinform run arm.toml                # verify only, keep nothing",
 )
 
@@ -42,6 +47,8 @@ def run(
     ] = None,
     units: Units = None,
     allow_outside: AllowOutside = False,
+    geometry: Geometry = GeometryKind.visual,
+    packages: Packages = None,
     format: PrintedFindings = FindingsFormat.full,
     fail_on: FailOn = Severity.error,
     ranges: Ranges = None,
@@ -71,6 +78,7 @@ def run(
             units=units,
             say=console.say,
             ranges=ranges,
+            reading=reading(geometry, packages),
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,15 +14,23 @@ from kinform_cli.options import (
     AllowOutside,
     FailOn,
     FindingsFormat,
+    Geometry,
+    GeometryKind,
     Jobs,
+    Packages,
     PrintedFindings,
     Severity,
     argument,
     cores,
     examples,
     option,
+    reading,
 )
 from kinform_cli.progress import Working
+
+if TYPE_CHECKING:
+    from kinform.form.sources import Reading
+
 
 EXAMPLES = examples(
     "kinform watch arm.toml -o arm.h5",
@@ -34,9 +42,11 @@ Stamp = tuple[int, int, int] | None
 
 
 def watch(
-    manifest: Annotated[Path, argument("M.toml", "Manifest of the design.")],
+    manifest: Annotated[Path, argument("SOURCE", "Manifest or robot description of the design.")],
     output: Annotated[Path, option("--output -o", "F.h5", "Results file; what is valid is reused.")],
     allow_outside: AllowOutside = False,
+    geometry: Geometry = GeometryKind.visual,
+    packages: Packages = None,
     format: PrintedFindings = FindingsFormat.concise,
     fail_on: FailOn = Severity.error,
     jobs: Jobs = None,
@@ -50,12 +60,13 @@ def watch(
     Bad input is reported, and the next save tried. The exit code is that of the last run; as for `run`.
     """
     files.check_output(output, inputs=[manifest])
+    how = reading(geometry, packages)
     gate = Gate(format, fail_on, manifest.parent)
     code, runs = errors.NOT_VERIFIED, 0
     try:
         while True:
             before = _stamps(_files(manifest, output))
-            verdict = _run(manifest, output, allow_outside, cores(jobs), gate)
+            verdict = _run(manifest, output, allow_outside, how, cores(jobs), gate)
             code = errors.NOT_VERIFIED if verdict is None else verdict
             runs += 1
             if runs == max_runs:
@@ -72,14 +83,20 @@ def watch(
     raise typer.Exit(code)
 
 
-def _run(manifest: Path, output: Path, allow_outside: bool, jobs: int, gate: Gate) -> int | None:
+def _run(manifest: Path, output: Path, allow_outside: bool, how: Reading, jobs: int, gate: Gate) -> int | None:
     """One run: prints its findings or its errors; the exit code that it is due, None where the input is bad."""
     import kinform
 
     try:
         with Working("run") as working:
             outcome = kinform.run(
-                manifest, output, jobs=jobs, progress=working.step, allow_outside=allow_outside, say=console.say
+                manifest,
+                output,
+                jobs=jobs,
+                progress=working.step,
+                allow_outside=allow_outside,
+                reading=how,
+                say=console.say,
             )
     except (kinform.KinformError, OSError) as error:
         errors.report(error)

@@ -21,7 +21,7 @@ from kinform.design import Design
 from kinform.model.assembly import Assembly, MassOverride, Mesh, Part
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Contacts
-from kinform.model.function import Function, Requirement
+from kinform.model.function import PASSIVE, Function, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
@@ -219,7 +219,7 @@ class Context:
     def simulation_requested(self) -> bool:
         """Whether the manifest, or whoever ran the simulation, asked for one."""
         ran = self.design.simulation is not None and self.design.simulation.status != "not requested"
-        return ran or self.assembly.simulation is not None or bool(self.function.drives)
+        return ran or self.assembly.simulation is not None or self.function.driven
 
     @cached_property
     def simulation(self) -> Simulation:
@@ -237,9 +237,20 @@ class Context:
         return tuple(compare_joint(self.assembly, self.design.contacts, self.kinematics, joint) for joint in joints)
 
     @cached_property
+    def dormant(self) -> frozenset[Requirement]:
+        """Limits that are not asked about: there is no run, or nothing drives the joint whose effort they limit."""
+        driven = {drive.joint for drive in self.function.drives if drive.kind not in PASSIVE}
+        return frozenset(
+            r
+            for r in self.function.requirements
+            if r.when_run
+            and (not self.simulation_requested or (r.kind == "torque" and r.values.get("joint") not in driven))
+        )
+
+    @cached_property
     def answers(self) -> Mapping[Requirement, Answer]:
         """What became of each requirement that `[check]` asks about, in the order of the manifest."""
-        requirements = [r for r in self.function.requirements if r.kind in self.judges]
+        requirements = [r for r in self.function.requirements if r.kind in self.judges and r not in self.dormant]
         return {requirement: self.judges[requirement.kind](self, requirement) for requirement in requirements}
 
     @cached_property

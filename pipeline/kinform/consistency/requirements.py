@@ -64,7 +64,9 @@ def requirement_rule(
     def check(context: Context) -> Outcome:
         answers = {r: answer for r, answer in context.answers.items() if r.kind == kind.kind}
         if not answers:
-            return skipped("the function states no requirement of this kind")
+            asleep = sum(r.kind == kind.kind for r in context.dormant)
+            quiet = f"{counted(asleep, 'limit')} of joints not checked: nothing drives them in a simulation"
+            return skipped(quiet if asleep else "the function states no requirement of this kind")
         if all(answer.state == "undecided" for answer in answers.values()):
             return skipped(f"{counted(len(answers), 'requirement')} could not be decided: see KF902")
         findings = [

@@ -161,3 +161,25 @@ further."""
 
 FAULTS_SHOWN = 10
 """Faults of one mesh file that are listed, at most."""
+
+# ---- descriptions
+
+XML_BYTES = 64 * 1024 * 1024
+"""Largest XML text that is read: descriptions of robots with a thousand links have a tenth of it."""
+
+PACKAGE_LEVELS = 4
+"""Folders, from that of a description upwards, in which its package is looked for where nothing names it."""
+
+QUARTER_TURN = 1e-11
+"""Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
+that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to."""
+
+INCLUDES = 32
+"""Files in files in files that a description may include: more are a loop that no check of names has seen."""
+
+ROUND_FACETS = 96
+"""Facets round a primitive cylinder, sphere or capsule: its vertices are exact, a fit of them gives the exact radius,
+and its volume is 0.07 % too small."""
+
+AXIS_LENGTH = 1e-9
+"""Length of a joint's axis below which it is none: axes are unit vectors, up to digits."""

@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 from kinform.form.constants import HASHED_AT_ONCE
-from kinform.form.meshes.raw import Fault, MeshError, RawMesh
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems, did_you_mean
+from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
 
 MESHES = (".stl", ".obj")
-"""Suffixes of mesh files."""
+"""Suffixes of mesh files that kinform reads itself."""
+
+OTHER_MESHES = (".dae", ".glb", ".ply", ".off")
+"""Suffixes of mesh files that trimesh reads: what descriptions name besides."""
 
 
 def is_mesh(path: Path) -> bool:
     """Whether the name is that of a mesh file."""
-    return path.suffix.lower() in MESHES
+    return path.suffix.lower() in MESHES + OTHER_MESHES
 
 
 def _digest(path: Path) -> str | None:
@@ -45,6 +49,10 @@ def _parsed(path: Path, data: bytes) -> RawMesh:
         from kinform.form.meshes.stl import read_stl
 
         return read_stl(data)
+    if path.suffix.lower() in OTHER_MESHES:
+        from kinform.form.meshes.by_trimesh import read_by_trimesh
+
+        return read_by_trimesh(data, path.suffix.lower()[1:])
     from kinform.form.meshes.obj import read_obj
 
     return read_obj(data)
@@ -61,12 +69,15 @@ class MeshUse:
     weld: float | None
     """Welding distance (m), if one is stated."""
     solid: bool
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Along the axes of the file; the shape is mirrored where their product is negative."""
 
 
 def mesh_use(part: Part, weld: float | None) -> MeshUse:
     """What a part with a mesh took of its file."""
     assert part.mesh is not None
-    return MeshUse(part.mesh.body, metres_per(part.units), weld, part.solid)
+    x, y, z = (float(factor) for factor in part.scale)
+    return MeshUse(part.mesh.body, metres_per(part.units), weld, part.solid, (x, y, z))
 
 
 _Request = tuple[str, str, MeshUse]
@@ -86,11 +97,18 @@ class DesignFiles:
     """Files below the folder of the top manifest; meshes with the same content are one object."""
 
     def __init__(
-        self, top: Path, problems: Problems, allow_outside: bool, earlier: Mapping[_Request, Mesh] | None = None
+        self,
+        top: Path,
+        problems: Problems,
+        allow_outside: bool,
+        earlier: Mapping[_Request, Mesh] | None = None,
+        reading: Reading = AS_IT_IS,
     ):
         self.top = top
         self.problems = problems
+        self.reading = reading
         self.names: set[str] = set()
+        self._allowed: set[Path] = set()
         self._outside = allow_outside
         self._earlier = earlier or {}
         self._data: dict[Path, bytes] = {}
@@ -107,7 +125,7 @@ class DesignFiles:
     def find(self, stated: str, folder: Path, file: str, line: int, what: str) -> Path | None:
         """The file that a manifest states, relative to its folder; None after noting what is wrong."""
         path = folder / stated
-        if not self._outside and not any(self._inside(path, root) for root in {self.top, folder}):
+        if not self._outside and not any(self._inside(path, root) for root in {self.top, folder, *self._allowed}):
             remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
             self.problems.add(f"{what} {stated} lies outside the manifest's folder", file, line, remedy)
             return None
@@ -126,6 +144,10 @@ class DesignFiles:
             return None
         self.note(path)
         return path
+
+    def allow(self, folders: Iterable[Path]) -> None:
+        """Files below these folders may be read as well: those of the package of a description."""
+        self._allowed.update(folders)
 
     def _inside(self, path: Path, root: Path) -> bool:
         """Whether the file, wherever links lead, lies in the folder."""
@@ -178,6 +200,8 @@ class DesignFiles:
 
         raw = self._read(path)
         chosen = raw if use.body is None else select_body(raw, use.body)
+        if use.scale != (1.0, 1.0, 1.0):
+            chosen = scaled(chosen, use.scale)
         return build_mesh(chosen, use.metres, use.weld, path=self.shown(path), body=use.body, solid=use.solid)
 
     def _mesh_content(self, path: Path) -> str:

@@ -6,4 +6,4 @@ from kinform.mass.compile import compile_mass
 
 __all__ = ["CODE_VERSION", "compile_mass"]
 
-CODE_VERSION: int = 2
+CODE_VERSION: int = 3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +12,7 @@ from kinform.mass.constants import FLAT
 from kinform.mass.principal import impossible, principal
 from kinform.mass.solids import SolidIntegrals, integrate_solid, mass_bound
 from kinform.model.arrays import Array, freeze
-from kinform.model.assembly import Assembly, Mesh, MeshHealth, Part
+from kinform.model.assembly import Assembly, Group, Mesh, MeshHealth, Part
 from kinform.model.kinematics import Body, Kinematics
 from kinform.model.mass import MassProperties, MassReport
 from kinform.model.surfaces import MeshSurfaces
@@ -42,13 +42,35 @@ def compile_mass(
             shape = _shape(part.mesh, shapes, surfaces, assembly)
         parts.append(_part_properties(part, shape))
     by_name = {properties.name: properties for properties in parts}
+    stated = {group.name: group for group in assembly.groups if group.override is not None}
     bodies = tuple(
-        _body_properties(body, [by_name[name] for name in body.parts])
+        _body_properties(body, _weights(body, by_name, stated))
         for body in sorted(kinematics.bodies, key=lambda body: body.name)
     )
-    problems = [(p.name, p.reason) for p in parts if p.mass is None]
+    problems = [(p.name, p.reason) for p in parts if p.mass is None and p.name not in assembly.weighed]
     valid = all(body.mass is not None for body in bodies)
     return MassReport(tuple(sorted(parts, key=lambda p: p.name)), bodies, valid, tuple(sorted(problems)))
+
+
+def _weights(body: Body, parts: Mapping[str, MassProperties], stated: Mapping[str, Group]) -> list[MassProperties]:
+    """What a body weighs is the sum of: groups with a stated mass, and parts that are in none of them."""
+    inside = set(body.parts)
+    groups = [group for _, group in sorted(stated.items()) if inside.issuperset(group.parts)]
+    taken = {name for group in groups for name in group.parts}
+    volumes = {group.name: [parts[name].volume for name in group.parts] for group in groups}
+    whole = [_group_properties(group, volumes[group.name]) for group in groups]
+    return whole + [parts[name] for name in body.parts if name not in taken]
+
+
+def _group_properties(group: Group, volumes: Sequence[float | None]) -> MassProperties:
+    """The mass that is stated for a group, in the world."""
+    stated = group.override
+    assert stated is not None
+    volume = None if None in volumes else math.fsum(v for v in volumes if v is not None)
+    wrong = impossible(stated.mass, stated.inertia)
+    if wrong:
+        return _without_mass(group.name, "override", f"the stated values are impossible: {wrong}", volume)
+    return _with_mass(group.name, stated.mass, volume, stated.centre_of_mass, stated.inertia, 0.0, "override")
 
 
 def _shape(

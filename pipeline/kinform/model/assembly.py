@@ -15,7 +15,7 @@ from kinform.model.arrays import Array, Ints
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
-from kinform.model.quantities import Direction, Inertia, Metres, Place, columns
+from kinform.model.quantities import XYZ, Direction, Inertia, Metres, Place, columns
 from kinform.model.tolerances import PartSize, Tolerances
 
 
@@ -165,15 +165,20 @@ class Part:
     units: str
     """Length unit of this part's mesh file."""
     source: Declared
+    scale: Annotated[Array, "1", XYZ] = field(default_factory=lambda: np.ones(3))
+    """(3,) factors along the axes of the mesh file, by which the mesh was scaled, and mirrored where their product is
+    negative."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Group:
     """Parts fastened by means that the geometry does not show."""
 
     name: str
     parts: tuple[PartName, ...]
     source: Declared
+    override: MassOverride | None = None
+    """Stated for the whole group, in the world frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,6 +243,11 @@ class Assembly:
             for part in self.parts
             if part.mesh is not None and part.mesh.resolution > share * part.mesh.diagonal
         )
+
+    @cached_property
+    def weighed(self) -> frozenset[PartName]:
+        """Parts of groups whose mass is stated as a whole."""
+        return frozenset(part for group in self.groups if group.override is not None for part in group.parts)
 
     def part(self, name: str) -> Part:
         """The part of that name; KeyError otherwise."""

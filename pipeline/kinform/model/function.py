@@ -13,6 +13,8 @@ from kinform.model.quantities import XYZ, Direction, Metres, Place, Ratio, colum
 
 Stated = Annotated[float, "unit of the manifest"]
 """Where only the joint says whether it is an angle or a length."""
+PASSIVE = ("spring", "damper")
+"""Kinds of drives that only answer to motion."""
 StatedRate = Annotated[float, "unit of the manifest a second"]
 
 
@@ -113,6 +115,11 @@ class Requirement:
     file: str
     line: int | None
 
+    @property
+    def when_run(self) -> bool:
+        """Whether it is asked about only when there is a run."""
+        return bool(self.values.get("when_run", False))
+
 
 @dataclass(frozen=True, eq=False)
 class Function:
@@ -125,6 +132,13 @@ class Function:
     drives: tuple[Drive, ...] = ()
     loads: tuple[Load, ...] = ()
     requirements: tuple[Requirement, ...] = ()
+    complete: tuple[str, ...] = ()
+    """Prefixes of the manifests whose joints are all that are meant to move; "" for the top one."""
+
+    @property
+    def driven(self) -> bool:
+        """Whether anything is to be moved: springs and dampers alone move nothing."""
+        return any(drive.kind not in PASSIVE for drive in self.drives)
 
     @property
     def stated(self) -> bool:

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.checks import CheckSettings
 from kinform.model.function import Function, Law, SimulationRequest
 
 NOWHERE = Source("")
+UNSCALED = np.ones(3)
 
 
 def for_contacts(assembly: Assembly) -> Assembly:
@@ -21,6 +24,7 @@ def for_contacts(assembly: Assembly) -> Assembly:
     return replace(
         _bare(assembly),
         parts=_weightless(_bare(assembly).parts),
+        groups=tuple(replace(group, override=None) for group in _bare(assembly).groups),
         assumptions=tuple(
             replace(a, type=None, axis=None, point=None, pitch=None, reason="", source=NOWHERE)
             for a in assembly.assumptions
@@ -39,15 +43,18 @@ def for_joints(assembly: Assembly) -> Assembly:
     bare, function = _bare(assembly), _bare_function(assembly.function)
     joints = tuple(replace(joint, range=None) for joint in function.joints)
     parts = bare.parts if bare.ground is None else _weightless(bare.parts)
+    groups = bare.groups if bare.ground is None else tuple(replace(g, override=None) for g in bare.groups)
     couplings = () if any(part.mesh is not None for part in parts) else function.couplings
-    return replace(bare, parts=parts, function=Function(joints=joints, couplings=couplings), simulation=None)
+    stated = Function(joints=joints, couplings=couplings, complete=function.complete)
+    return replace(bare, parts=parts, groups=groups, function=stated, simulation=None)
 
 
 def for_mass(assembly: Assembly) -> Assembly:
-    """Shapes, poses, densities and stated masses."""
+    """Shapes, poses, densities and stated masses, of groups too."""
+    bare = _bare(assembly)
     return replace(
-        _bare(assembly),
-        groups=(),
+        bare,
+        groups=tuple(group for group in bare.groups if group.override is not None),
         assumptions=(),
         ground=None,
         infer_fasteners=False,
@@ -90,7 +97,7 @@ def _weightless(parts: tuple[Part, ...]) -> tuple[Part, ...]:
 
 def _bare_part(part: Part) -> Part:
     mesh = part.mesh and part.mesh.bare
-    return replace(part, mesh=mesh, material=None, units="m", source=NOWHERE)
+    return replace(part, mesh=mesh, material=None, units="m", scale=UNSCALED, source=NOWHERE)
 
 
 def _bare_function(function: Function) -> Function:
@@ -101,6 +108,7 @@ def _bare_function(function: Function) -> Function:
         drives=tuple(replace(drive, file="", line=None, law=_bare_law(drive.law)) for drive in function.drives),
         loads=tuple(replace(load, file="", line=None) for load in function.loads),
         requirements=function.requirements,
+        complete=function.complete,
     )
 
 

@@ -40,7 +40,7 @@ def simulate(
     asked = asked_level(assembly, level)
     if asked is not None and asked not in LEVELS:
         raise ValueError(f'level "{asked}": expected one of {", ".join(LEVELS)}')
-    if assembly.simulation is None and level is None and not assembly.function.drives:
+    if assembly.simulation is None and level is None and not assembly.function.driven:
         return nothing("not requested", "there is neither [simulation] nor a drive")
     from kinform.simulation.of_assembly import simulate_assembly
 

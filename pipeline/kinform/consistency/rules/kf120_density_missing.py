@@ -46,7 +46,7 @@ def check(context: Context) -> Outcome:
             else "State `mass`, `centre_of_mass` and `inertia` of the part.",
         )
         for part in context.assembly.parts
-        if _lack(part) and part.name not in ground
+        if _lack(part) and part.name not in ground and part.name not in context.assembly.weighed
     )
 
 

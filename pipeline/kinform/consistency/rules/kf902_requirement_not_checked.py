@@ -24,7 +24,10 @@ SPEAKS_FOR = tuple(f"KF{number}" for number in range(421, 434))
 def check(context: Context) -> Outcome:
     """Every requirement that is undecided."""
     if not context.answers:
-        return skipped("the function states no requirement")
+        nothing = (
+            "no requirement but limits of joints, and nothing drives them" if context.dormant else "no requirement"
+        )
+        return skipped(f"the function states {nothing}")
     undecided = {r: answer for r, answer in context.answers.items() if answer.state == "undecided"}
     if not undecided:
         return decided(reason=f"{counted(len(context.answers), 'requirement')} decided")

@@ -145,6 +145,9 @@ class FunctionTable(Table):
     mobility: Annotated[int, Field(ge=0, le=COUNT_MOST)] | None = Field(
         None, description="compared with the effective mobility"
     )
+    complete: bool = Field(
+        False, description="every joint that is meant to move is stated: contact that none of them moves holds"
+    )
     joint: list[IntendedJointTable] = Field([], description="intended joints")
     coupling: list[Coupling] = Field([], description="gears, racks and screws between intended joints")
     drive: list[Drive] = Field([], description="what acts on joints")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -27,6 +27,11 @@ class AssemblyTable(Table):
 
     name: Name = Field(description="name of the assembly, any text but '/'")
     units: Unit = Field(description="lengths of this file and of its meshes: m, cm, mm, um, in or ft")
+    from_: Reference | None = Field(
+        None,
+        alias="from",
+        description="a robot description (URDF, SDF, MJCF) that says the rest; tables of the same name override it",
+    )
     ground: Reference | None = Field(
         None, description="the part or group at rest; default the heaviest body (largest without densities)"
     )
@@ -38,11 +43,59 @@ class Material(Table):
     density: Positive = Field(description="kg/m³, whatever the units of the file")
 
 
+class BoxShape(Table):
+    """A box about the origin of the part."""
+
+    type: Literal["box"]
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)] = Field(description="lengths along x, y, z")
+
+
+class CylinderShape(Table):
+    """A cylinder about the z axis of the part, its middle at the origin."""
+
+    type: Literal["cylinder"]
+    radius: Positive = Field(description="radius")
+    length: Positive = Field(description="length along z")
+
+
+class CapsuleShape(Table):
+    """A cylinder with half balls at its ends, about the z axis of the part, its middle at the origin."""
+
+    type: Literal["capsule"]
+    radius: Positive = Field(description="radius")
+    length: Positive = Field(description="length of the cylinder, without the half balls")
+
+
+class SphereShape(Table):
+    """A ball about the origin of the part."""
+
+    type: Literal["sphere"]
+    radius: Positive = Field(description="radius")
+
+
+class EllipsoidShape(Table):
+    """An ellipsoid about the origin of the part."""
+
+    type: Literal["ellipsoid"]
+    radii: Annotated[list[Positive], Field(min_length=3, max_length=3)] = Field(description="along x, y, z")
+
+
+ShapeTable = Annotated[
+    BoxShape | CylinderShape | CapsuleShape | SphereShape | EllipsoidShape, Field(discriminator="type")
+]
+
+
 class Part(Posed):
     """`[[part]]`."""
 
     name: Name = Field(description="name of the part, any text but '/', which separates sub-assemblies")
-    mesh: Reference | None = Field(None, description="STL or OBJ file, relative to the manifest; absent: a stick body")
+    mesh: Reference | None = Field(
+        None, description="STL or OBJ file (also DAE, GLB, PLY, OFF), relative to the manifest; absent: a stick body"
+    )
+    shape: ShapeTable | None = Field(None, description="a primitive in place of a mesh: box, cylinder, sphere, …")
+    scale: Vector | None = Field(
+        None, description="factors along the axes of the mesh, [1, -1, 1] mirrors it; default [1, 1, 1]"
+    )
     body: Reference | None = Field(
         None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
     )
@@ -62,13 +115,18 @@ class Group(Table):
     parts: Annotated[list[Reference], Field(min_length=1)] = Field(
         description="names of the parts, those of sub-assemblies as 'sub-assembly/part'"
     )
+    mass: Positive | None = Field(None, description="kg of the whole group; with centre_of_mass and inertia")
+    centre_of_mass: Vector | None = Field(None, description="three lengths in the frame of this manifest; with mass")
+    inertia: Matrix | None = Field(
+        None, description="3×3, kg·m², about the centre of mass, along the axes of this manifest; with mass"
+    )
 
 
 class Subassembly(Posed):
-    """`[[subassembly]]`: another manifest, placed as a whole."""
+    """`[[subassembly]]`: another manifest, or a robot description, placed as a whole."""
 
     name: Name = Field(description="prefix of its parts, groups and joints, any text but '/'")
-    file: Reference = Field(description="manifest, relative to this one")
+    file: Reference = Field(description="manifest or robot description, relative to this one")
 
 
 class Assume(Table):

@@ -99,6 +99,7 @@ class Torque(_Require):
     kind: Literal["torque"]
     joint: Annotated[Reference, Joint] = Field(description="a [[function.joint]]")
     limit: Positive = Field(description="N·m or N")
+    when_run: bool = Field(False, description="true: a limit of the joint, asked about only when a run drives it")
 
 
 class Speed(_Require):
@@ -107,6 +108,7 @@ class Speed(_Require):
     kind: Literal["speed"]
     joint: Annotated[Reference, Joint] = Field(description="a [[function.joint]]")
     limit: Annotated[Positive, Quantity("joint_value")] = Field(description="degrees or lengths a second")
+    when_run: bool = Field(False, description="true: a limit of the joint, asked about only when there is a run")
 
 
 class Reaction(_Require):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,3 +71,12 @@ def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = (), 
     """A raw mesh of (F, 3, 3) facet corners, none of them shared."""
     faces = np.arange(3 * len(corners), dtype=np.int64).reshape(-1, 3)
     return RawMesh(corners.reshape(-1, 3), faces, labellings, written)
+
+
+def scaled(raw: RawMesh, factors: Sequence[float]) -> RawMesh:
+    """The facets scaled along the axes of the file; turned round where that mirrors them."""
+    vertices = raw.vertices.astype(np.float64) * np.asarray(factors)
+    mirrors = np.prod(np.sign(factors)) < 0.0
+    faces = np.ascontiguousarray(raw.faces[:, ::-1]) if mirrors else raw.faces
+    written = max(raw.written, float(np.finfo(raw.vertices.dtype).eps) * float(np.abs(raw.vertices).max(initial=0.0)))
+    return replace(raw, vertices=vertices, faces=faces, written=written * float(np.abs(factors).max()))

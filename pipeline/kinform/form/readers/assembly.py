@@ -13,17 +13,18 @@ import numpy as np
 from kinform.errors import InputError, Problem
 from kinform.form.constants import PARTS_MOST, SCOPES_DEEP, SCOPES_MOST, SYMMETRIC, UNIT_QUATERNION
 from kinform.form.files import DesignFiles, MeshUse, earlier_meshes
-from kinform.form.manifest import Manifest
 from kinform.form.manifest.common import Posed
+from kinform.form.manifest.parts import Group as GroupTable
 from kinform.form.manifest.parts import Part as PartTable
 from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
+from kinform.form.meshes.primitives import primitive
 from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.form.readers.function import FunctionReader
-from kinform.form.readers.open_manifest import Scope, parse
+from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
-from kinform.form.readers.toml_lines import LineTable
+from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
@@ -32,19 +33,20 @@ from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
 
-def load(path: str | Path, *, allow_outside: bool = False) -> Assembly:
+def load(path: str | Path, *, allow_outside: bool = False, reading: Reading = AS_IT_IS) -> Assembly:
     """As `load_with_contents`, without the contents."""
-    return load_with_contents(path, allow_outside=allow_outside)[0]
+    return load_with_contents(path, allow_outside=allow_outside, reading=reading)[0]
 
 
 def load_with_contents(
     path: str | Path,
     *,
     allow_outside: bool = False,
+    reading: Reading = AS_IT_IS,
     earlier: Assembly | None = None,
     files: Mapping[str, str] | None = None,
 ) -> tuple[Assembly, dict[str, str]]:
-    """The assembly that the manifest at `path` describes, meshes read and sub-assemblies flattened.
+    """The assembly that the manifest, or the description, at `path` describes: meshes read, sub-assemblies flattened.
 
     Raises InputError with every problem, each with file, line and remedy. Mesh and
     sub-assembly files outside the manifest's folder need `allow_outside`. Also gives the SHA-256 (hex) of every file
@@ -57,7 +59,7 @@ def load_with_contents(
         raise InputError([Problem(f"the manifest {what}", str(path), None, "name a manifest (TOML); see kinform init")])
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
-    design = DesignFiles(path.parent, problems, allow_outside, meshes)
+    design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)
     reader = _AssemblyReader(design, problems)
     reader.read(path, path.name, "", np.eye(4), ())
     assembly = reader.assembly() if reader.scopes else None
@@ -73,25 +75,26 @@ class _AssemblyReader:
         self.files, self.problems = files, problems
         self.scopes: list[Scope] = []
         self.stopped = False
-        self._parsed: dict[Path, tuple[Manifest, LineTable, frozenset[str]] | None] = {}
+        self._parsed: dict[Path, Parsed | None] = {}
         self.subassemblies: list[Subassembly] = []
 
     def read(self, path: Path, file: str, prefix: str, X_WF: Array, above: tuple[Path, ...]) -> None:
         """Read a manifest and all below it, depth first."""
         self.files.note(path)
         if path not in self._parsed:
-            self._parsed[path] = parse(path, file, self.problems)
+            self._parsed[path] = parse(path, file, self.files, self.problems)
         parsed = self._parsed[path]
         if parsed is None:
             return
-        manifest, lines, refused = parsed
-        scope = Scope(manifest, lines, file, path.parent, prefix, X_WF, self.problems, refused)
+        scope = Scope(
+            parsed.manifest, parsed.lines, file, path.parent, prefix, X_WF, self.problems, parsed.refused, parsed.notes
+        )
         self.scopes.append(scope)
         here = (*above, Path(os.path.realpath(path)))
         for at, table in scope.tables("subassembly"):
             if self.stopped:
                 return
-            below = self.files.find(table.file, path.parent, file, scope.line(*at, "file"), "the sub-assembly")
+            below = self.files.find(table.file, path.parent, *scope.where(*at, "file"), "the sub-assembly")
             if below is None:
                 continue
             shown = self.files.shown(below)
@@ -147,6 +150,7 @@ class _AssemblyReader:
             drives=tuple(drive for reader in readers for drive in reader.drives()),
             loads=tuple(load for reader in readers for load in reader.loads()),
             requirements=tuple(requirement for reader in readers for requirement in requirements_of(reader)),
+            complete=tuple(scope.prefix for scope in self.scopes if _complete(scope)),
         )
         ground = top.manifest.assembly.ground
         if ground is not None:
@@ -173,15 +177,19 @@ class _AssemblyReader:
 
     def _notes(self) -> list[str]:
         top, below = self.scopes[0].file, self.scopes[1:]
-        return [
-            f"[tolerances] of {scope.file} are not used: those of {top} hold for the whole assembly"
-            for scope in below
-            if scope.manifest.tolerances.model_fields_set
-        ] + [
-            f"[check] of {scope.file} is not used: that of {top} holds for the whole assembly"
-            for scope in below
-            if scope.manifest.check is not None
-        ]
+        return (
+            [note for scope in self.scopes for note in scope.notes]
+            + [
+                f"[tolerances] of {scope.file} are not used: those of {top} hold for the whole assembly"
+                for scope in below
+                if scope.manifest.tolerances.model_fields_set
+            ]
+            + [
+                f"[check] of {scope.file} is not used: that of {top} holds for the whole assembly"
+                for scope in below
+                if scope.manifest.check is not None
+            ]
+        )
 
     def _check_names(self) -> None:
         """Parts, groups, sub-assemblies share their names; joints and requirements have theirs."""
@@ -223,8 +231,11 @@ class _AssemblyReader:
                         )  # fmt: skip
                         owner[full] = name
                     members.add(PartName(full))
+                what = f"group {in_quotes(table.name)}"
+                stated = _override(scope, table, np.zeros(3), what, *at)
                 if members:
-                    groups.append(Group(name, tuple(sorted(members)), scope.source(*at)))
+                    placed = None if stated is None else _in_world(stated, scope.X_WF)
+                    groups.append(Group(name, tuple(sorted(members)), scope.source(*at), placed))
         return groups
 
     def _part(self, scope: Scope, table: PartTable, tolerances: Tolerances, *path: str | int) -> Part:
@@ -232,14 +243,19 @@ class _AssemblyReader:
         what = f"part {in_quotes(table.name)}"
         units = table.units or scope.manifest.assembly.units
         mesh = None
+        scale = _scale(scope, table, what, *path)
         if table.mesh is not None:
-            line = scope.line(*path, "mesh")
-            file = self.files.find(table.mesh, scope.folder, scope.file, line, f"{what}: the mesh")
+            where = scope.where(*path, "mesh")
+            file = self.files.find(table.mesh, scope.folder, *where, f"{what}: the mesh")
             if file is not None:
-                use = MeshUse(table.body, metres_per(units), tolerances.weld, table.solid)
-                mesh = self.files.mesh(file, use, scope.file, line)
-        elif table.body is not None or table.units is not None:
-            scope.complain(f"{what} has no mesh, but body or units of one", "add mesh, or remove them", *path)
+                use = MeshUse(table.body, metres_per(units), tolerances.weld, table.solid, scale)
+                mesh = self.files.mesh(file, use, *where)
+            if table.shape is not None:
+                scope.complain(f"{what} has both mesh and shape", "remove one of them", *path, "shape")
+        elif table.body is not None or table.units is not None or table.scale is not None:
+            scope.complain(f"{what} has no mesh, but body, units or scale of one", "add mesh, or remove them", *path)
+        elif table.shape is not None:
+            mesh = primitive(table.shape, scope.metres)
         if table.material is not None and table.density is not None:
             scope.complain(f"{what} has both material and density", "remove one of them", *path, "density")
         origin = np.zeros(3) if mesh is None else mesh.origin
@@ -254,7 +270,13 @@ class _AssemblyReader:
             override=override,
             units=units,
             source=scope.source(*path),
+            scale=np.array(scale),
         )
+
+
+def _complete(scope: Scope) -> bool:
+    """Whether the function of a manifest says that it is all of it."""
+    return scope.manifest.function is not None and scope.manifest.function.complete
 
 
 def _pose(scope: Scope, table: Posed, *path: str | int) -> Array:
@@ -265,6 +287,24 @@ def _pose(scope: Scope, table: Posed, *path: str | int) -> Array:
         scope.complain(message, "give a unit quaternion [w, x, y, z]", *path, "quaternion")
         return pose(table.position, None, None, scope.metres)
     return pose(table.position, table.quaternion, table.rpy, scope.metres)
+
+
+def _scale(scope: Scope, table: PartTable, what: str, *path: str | int) -> tuple[float, float, float]:
+    """The factors along the axes of the mesh; a zero is a problem."""
+    if table.scale is None:
+        return 1.0, 1.0, 1.0
+    if 0.0 in table.scale:
+        scope.complain(f"{what}: the scale has a zero", "give factors such as [1, -1, 1]", *path, "scale")
+        return 1.0, 1.0, 1.0
+    x, y, z = table.scale
+    return x, y, z
+
+
+def _in_world(stated: MassOverride, X_WF: Array) -> MassOverride:
+    """A mass stated about the axes of a manifest, about those of the world."""
+    R = X_WF[:3, :3]
+    centre = R @ stated.centre_of_mass + X_WF[:3, 3]
+    return MassOverride(stated.mass, centre, R @ stated.inertia @ R.T)
 
 
 def _density(scope: Scope, table: PartTable, what: str, *path: str | int) -> float | None:
@@ -278,7 +318,9 @@ def _density(scope: Scope, table: PartTable, what: str, *path: str | int) -> flo
     return density
 
 
-def _override(scope: Scope, table: PartTable, origin: Array, what: str, *path: str | int) -> MassOverride | None:
+def _override(
+    scope: Scope, table: PartTable | GroupTable, origin: Array, what: str, *path: str | int
+) -> MassOverride | None:
     """The stated mass of a part whose frame lies at `origin` (3,) m of its file's."""
     keys = ("mass", "centre_of_mass", "inertia")
     missing = [key for key in keys if getattr(table, key) is None]

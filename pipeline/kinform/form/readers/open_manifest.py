@@ -11,14 +11,19 @@ import numpy as np
 from pydantic import ValidationError
 
 from kinform.form.constants import MANIFEST_BYTES
+from kinform.form.files import DesignFiles
 from kinform.form.manifest import Manifest
-from kinform.form.problems import Problems
+from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.form.readers import pydantic_errors
+from kinform.form.readers.overrides import Overlay
+from kinform.form.readers.places import Lines, Places
 from kinform.form.readers.toml_lines import LineTable
 from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
+from kinform.form.sources import Source as SourceFile
+from kinform.form.sources import SourceTables, is_source, source_tables
 from kinform.foundation.texts import TextError, read_text
-from kinform.foundation.units import metres_per
+from kinform.foundation.units import UNITS, metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 
@@ -28,7 +33,7 @@ class Scope:
     """A parsed manifest and where it stands in the whole. `X_WF` is the pose of its frame in the world."""
 
     manifest: Manifest
-    lines: LineTable
+    lines: Lines
     file: str
     """As shown to people: relative to the folder of the top manifest."""
     folder: Path
@@ -38,6 +43,8 @@ class Scope:
     problems: Problems
     refused: frozenset[str]
     """Names of tables that cannot be used: they have been complained of."""
+    notes: tuple[str, ...] = ()
+    """What the reader of a description did on its own account, in sentences."""
 
     @property
     def metres(self) -> float:
@@ -51,7 +58,7 @@ class Scope:
 
     def where(self, *path: str | int) -> tuple[str, int]:
         """File and line of a key."""
-        return self.file, self.line(*path)
+        return self.lines.file(path) or self.file, self.line(*path)
 
     def tables(self, *keys: str) -> Iterator[tuple[tuple[Any, ...], Any]]:
         """The tables of an array such as "function", "joint", each with its path."""
@@ -71,7 +78,7 @@ class Scope:
 
     def complain(self, message: str, remedy: str, *path: str | int) -> None:
         """Note a problem at a key."""
-        self.problems.add(message, self.file, self.line(*path), remedy)
+        self.problems.add(message, *self.where(*path), remedy)
 
     def point(self, stated: list[float] | None) -> Array | None:
         """A point of this manifest in the world (m)."""
@@ -95,9 +102,22 @@ class Scope:
         return vector / size
 
 
-def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTable, frozenset[str]] | None:
-    """The manifest at `path`, as far as it can be used, its lines, and the names of tables that cannot; every problem
-    is noted. None when nothing can be used."""
+@dataclass(frozen=True, eq=False)
+class Parsed:
+    """A manifest as far as it can be used, its lines, the names of tables that cannot be, and notes of its source."""
+
+    manifest: Manifest
+    lines: Lines
+    refused: frozenset[str]
+    notes: tuple[str, ...] = ()
+
+
+def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Parsed | None:
+    """The manifest at `path`, or the tables that a description says; every problem is noted. None when nothing can be
+    used."""
+    if is_source(path):
+        tables = _from_source(path, file, path.parent, None, files, problems)
+        return None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
     try:
         text = read_text(path, MANIFEST_BYTES, "a manifest")
         raw = read_toml(text)
@@ -108,13 +128,64 @@ def parse(path: Path, file: str, problems: Problems) -> tuple[Manifest, LineTabl
         problems.add(error.message, file, error.line, error.remedy)
         return None
     lines = LineTable(text)
+    stated = raw["assembly"].get("from") if isinstance(raw.get("assembly"), dict) else None
+    if isinstance(stated, str) and stated:
+        return _over_source(path, file, raw, lines, files, problems)
+    return _validated(raw, lines, file, (), problems)
+
+
+def _validated(
+    raw: dict[str, Any], lines: Lines, file: str, notes: tuple[str, ...], problems: Problems
+) -> Parsed | None:
     try:
-        return Manifest.model_validate(raw), lines, frozenset()
+        return Parsed(Manifest.model_validate(raw), lines, frozenset(), notes)
     except ValidationError as error:
         pydantic_errors.report(error, raw, lines, file, problems)
         try:
             kept, dropped = pydantic_errors.without_errors(error, raw)
             refused = frozenset(pydantic_errors.names_of(dropped, raw))
-            return Manifest.model_validate(kept), lines.without(dropped), refused
+            return Parsed(Manifest.model_validate(kept), lines.without(dropped), refused, notes)
         except ValidationError:
             return None
+
+
+def _from_source(
+    path: Path, file: str, folder: Path, units: str | None, files: DesignFiles, problems: Problems
+) -> SourceTables | None:
+    """The tables of a source; its files are noted, and its folders may be read."""
+    tables = source_tables(SourceFile(path, file, folder, units, problems, files.reading))
+    if tables is not None:
+        for other in tables.files:
+            files.note(other)
+        files.allow(tables.folders)
+    return tables
+
+
+def _over_source(
+    path: Path, file: str, raw: dict[str, Any], lines: LineTable, files: DesignFiles, problems: Problems
+) -> Parsed | None:
+    """A manifest over the tables that its `from` gives."""
+    key = ("assembly", "from")
+    stated = raw["assembly"]["from"]
+    below = files.find(stated, path.parent, file, lines.line(key), "the source")
+    if below is None:
+        return None
+    if not is_source(below):
+        problems.add(f"from = {in_quotes(stated)} is no description or assembly file", file, lines.line(key),
+                     "name a URDF, SDF or MJCF; a manifest goes into a [[subassembly]]")  # fmt: skip
+        return None
+    units = raw["assembly"].get("units")
+    tables = _from_source(below, files.shown(below), path.parent, units if units in UNITS else None, files, problems)
+    if tables is None:
+        return None
+    named = {part["name"] for part in tables.raw.get("part", [])}
+    parts = raw.get("part")
+    for k, part in enumerate(parts if isinstance(parts, list) else ()):
+        if isinstance(part, dict) and not {"mesh", "shape"} & set(part) and part.get("name") not in named:
+            name = str(part.get("name"))
+            message = f"[[part]] {in_quotes(name)} has no mesh, and {stated} has no part of that name"
+            problems.add(message, file, lines.line(("part", k)), did_you_mean(name, named, "its parts"))
+    above = Places({at: (None, line) for at, line in lines.items()})
+    overlay = Overlay(above, tables.places)
+    both = overlay.tables(raw, tables.raw)
+    return _validated(both, Places(overlay.places), file, tables.notes, problems)

@@ -11,23 +11,24 @@ from pydantic import ValidationError
 from kinform.form.constants import LARGEST_NUMBER, PROBLEMS_MOST, VALUE_LENGTH
 from kinform.form.manifest import json_schema
 from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
-from kinform.form.readers.toml_lines import LineTable, Path
+from kinform.form.readers.places import Lines
+from kinform.form.readers.toml_lines import Path
 
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 
 
-def report(error: ValidationError, raw: dict[str, Any], lines: LineTable, file: str, problems: Problems) -> None:
+def report(error: ValidationError, raw: dict[str, Any], lines: Lines, file: str, problems: Problems) -> None:
     """Add each of pydantic's errors to the problems."""
     schema = json_schema()
     for item in islice(error.errors(include_url=False), PROBLEMS_MOST + 1):
         path = _real_path(item["loc"], raw)
         tagged = item["type"].startswith("union_tag")
         where = _label(path if item["type"] == "missing" or tagged else path[:-1], raw)
-        line = lines.line((*path, item["ctx"]["discriminator"].strip("'")) if tagged else path)
+        key = (*path, item["ctx"]["discriminator"].strip("'")) if tagged else path
         node = _node(schema, item["loc"])
         owner = _node(schema, item["loc"][:-1])
         message, remedy = _words(item, path, where, node, owner)
-        problems.add(message, file, line, remedy)
+        problems.add(message, lines.file(key) or file, lines.line(key), remedy)
 
 
 def _words(item: Any, path: Path, where: str, node: dict[str, Any], owner: dict[str, Any]) -> tuple[str, str]:

@@ -42,6 +42,14 @@ class LineTable:
                 return self._lines[path[:length]]
         return 1
 
+    def file(self, path: Path) -> str | None:
+        """None: all lines are of the manifest itself."""
+        return None
+
+    def items(self) -> Iterator[tuple[Path, int]]:
+        """Each path with its line."""
+        yield from self._lines.items()
+
     def without(self, dropped: Collection[Path]) -> LineTable:
         """The lines of what is left when these tables are taken out: later elements of their arrays move up."""
         out = LineTable("")

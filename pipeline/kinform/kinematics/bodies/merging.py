@@ -62,8 +62,6 @@ class Merger:
         return tuple(sorted(bodies, key=lambda body: body.name))
 
     def _body_name(self, parts: list[PartName]) -> BodyName:
-        if len(parts) == 1:
-            return BodyName(parts[0])
         inside = set(parts)
         groups = sorted(g.name for g in self._assembly.groups if inside.issuperset(g.parts))
         return BodyName(groups[0] if groups else min(parts))
@@ -72,7 +70,11 @@ class Merger:
         """The stated ground, else the heaviest body, or the largest where a density is missing."""
         if self._assembly.ground is not None:
             return self.root(self._assembly.parts_of(self._assembly.ground)[0])
-        weighed = all(p.density is not None or p.override is not None for p in self._assembly.parts)
+        grouped = self._assembly.weighed
+        weighed = all(
+            p.density is not None or p.override is not None or p.name in grouped for p in self._assembly.parts
+        )
+        stated = {group.parts[0]: group.override.mass for group in self._assembly.groups if group.override is not None}
 
         def size(root: int) -> tuple[float, str]:
             total = 0.0
@@ -81,6 +83,8 @@ class Merger:
                 volume = abs(part.mesh.health.volume) if part.mesh is not None else 0.0
                 if not weighed:
                     total += volume
+                elif name in grouped:
+                    total += stated.get(name, 0.0)
                 elif part.override is not None:
                     total += part.override.mass
                 else:

@@ -86,7 +86,7 @@ LAYOUT = Layout(
     HEADER,
     Table("tolerances"),
     _Parts(),
-    Table("groups"),
+    Table("groups", Table("group_overrides", field="override", owner="group")),
     Table("assumptions"),
     Table("subassemblies"),
     Texts("files"),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import h5py
 
 from kinform.model.function import Drive, Function, Law, SimulationRequest
-from kinform.results.layout import Layout, Ragged, Row, Rows, Table
+from kinform.results.layout import Layout, Ragged, Row, Rows, Table, Texts
 from kinform.results.records import columns_of, hint
 from kinform.results.table import read_rows, text, write_rows
 
@@ -50,6 +50,7 @@ FUNCTION = Layout(
     _Drives(),
     Table("loads"),
     Table("requirements"),
+    Texts("complete"),
 )
 REQUEST = Layout(
     SimulationRequest,

@@ -1,0 +1,100 @@
+"""Where the meshes are that a description names: `package://`, `model://`, `file://`, and paths beside the file."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import unquote
+
+from kinform.form.constants import PACKAGE_LEVELS
+
+_PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
+_PACKAGE_FILES = ("package.xml", "model.config")
+
+
+@dataclass(frozen=True)
+class Found:
+    """A file, or the reason why there is none with its remedy; and the folder below which the file may lie."""
+
+    path: Path | None
+    folder: Path | None = None
+    message: str = ""
+    remedy: str = ""
+
+
+class MeshFiles:
+    """Resolves what one description names. `packages` are folders by name, as the user states them."""
+
+    def __init__(self, description: Path, packages: Mapping[str, Path], environment: Mapping[str, str] | None = None):
+        self.folder = description.parent
+        self._packages = packages
+        self._environment = os.environ if environment is None else environment
+        self.home = _home(self.folder)
+        """The package of the description: it may name what lies below."""
+
+    def find(self, stated: str, folder: Path | None = None) -> Found:
+        """The file that a description names; `folder` is where plain paths begin, else that of the description."""
+        text = unquote(stated.strip()) if "://" in stated else stated.strip()
+        text = text.replace("\\", "/")
+        match = _PACKAGE.fullmatch(text)
+        if match:
+            return self._in_package(match[1], match[2])
+        if text.startswith("file:"):
+            text = re.sub(r"^file:(//)?", "", text)
+        elif "://" in text:
+            return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
+        path = (folder or self.folder) / text
+        return Found(path, self.home)
+
+    def _in_package(self, name: str, rest: str) -> Found:
+        for root in self._roots(name):
+            path = root / rest
+            if path.is_file():
+                return Found(path, root)
+        for base in _above(self.folder, PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
+            parts = rest.split("/")
+            for k in range(len(parts)):
+                path = base.joinpath(*parts[k:])
+                if path.is_file():
+                    return Found(path, base)
+        known = next(self._roots(name), None)
+        if known is not None:
+            return Found(None, message=f"package://{name}/{rest} does not exist", remedy=f"there is no {known / rest}")
+        remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
+        return Found(None, message=f"package://{name}/{rest} is not found: no folder {name} is known", remedy=remedy)
+
+    def _roots(self, name: str) -> Iterator[Path]:
+        """Folders that may be the package: beside the description, as stated, then as the environment says."""
+        for above in _above(self.folder, None):
+            if above.name == name:
+                yield above
+            if (above / name).is_dir():
+                yield above / name
+        if name in self._packages:
+            yield self._packages[name]
+        for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
+            yield prefix / "share" / name
+        for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):
+            yield from (folder / name, folder) if folder.name == name else (folder / name,)
+
+
+def _paths(text: str | None) -> list[Path]:
+    return [Path(item) for item in (text or "").split(os.pathsep) if item]
+
+
+def _above(folder: Path, levels: int | None) -> Sequence[Path]:
+    """The folder and those above it; the given number of them."""
+    full = folder.resolve()
+    return [full, *full.parents][:levels]
+
+
+def _home(folder: Path) -> Path:
+    """The nearest folder above with the file of a package; else the one above the description's."""
+    full = folder.resolve()
+    for above in [full, *full.parents][:PACKAGE_LEVELS]:
+        if any((above / name).is_file() for name in _PACKAGE_FILES):
+            return above
+    return full.parent

@@ -1,0 +1,139 @@
+"""XML as descriptions use it: read safely, with the line of each element, and its numbers checked.
+
+Entities are refused, so that nothing can be expanded and no other file be read through them; nothing is loaded from
+a network. A prefix that is nowhere declared is accepted, because descriptions in the wild have such.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from lxml import etree
+
+from kinform.form.constants import VALUE_LENGTH, XML_BYTES
+from kinform.form.descriptions.robot import At
+from kinform.form.problems import Problems, in_quotes
+
+FILE = "{urn:kinform}file"
+"""Attribute of elements that come from another file than the root: that file."""
+
+Element = Any
+"""An lxml element."""
+
+_ENTITY = re.compile(rb"<!\s*(ENTITY|DOCTYPE[^>\[]*\b(SYSTEM|PUBLIC)\b)")
+
+
+def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
+    """The root element of an XML text; None after noting what is wrong with it."""
+    refused = _ENTITY.search(data)
+    if refused is not None:
+        line = data.count(b"\n", 0, refused.start()) + 1
+        problems.add("declares an entity or an external document type, which is refused", file, line,
+                     "write the text in place of the entity, and remove the declaration")  # fmt: skip
+        return None
+    if len(data) > XML_BYTES:
+        problems.add(f"has {len(data):,} bytes, and {XML_BYTES:,} are the most", file, None, "split the description")
+        return None
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True,
+                             remove_pis=True, huge_tree=False, recover=True)  # fmt: skip
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        root, message = None, str(error)
+    else:
+        message = "the file is empty"
+    faults = [entry for entry in parser.error_log if entry.type_name != "NS_ERR_UNDEFINED_NAMESPACE"]
+    if root is None or faults:
+        line = max(faults[0].line, 1) if faults else 1
+        words = faults[0].message.strip() if faults else message
+        problems.add(f"is not well-formed XML: {words}", file, line, "correct the syntax there")
+        return None
+    declared = root.getroottree().docinfo.internalDTD
+    if declared is not None and any(True for _ in declared.iterentities()):
+        problems.add("declares entities, which are refused", file, 1, "write the text in place of the entities")
+        return None
+    return root
+
+
+def tag_of(element: Element) -> str:
+    """The local name of an element."""
+    return re.split("[}:]", element.tag)[-1] if isinstance(element.tag, str) else ""
+
+
+class Xml:
+    """Asks elements for their values; what is wrong with them is noted at their line."""
+
+    def __init__(self, file: str, problems: Problems):
+        self.file, self.problems = file, problems
+
+    def at(self, element: Element) -> At:
+        """Where an element stands."""
+        above = element
+        while above is not None and above.get(FILE) is None:
+            above = above.getparent()
+        return At(self.file if above is None else above.get(FILE), element.sourceline or 1)
+
+    def complain(self, element: Element, message: str, remedy: str) -> None:
+        """Note a problem at an element."""
+        at = self.at(element)
+        self.problems.add(message, at.file, at.line, remedy)
+
+    def children(self, element: Element | None, *tags: str) -> Iterator[Element]:
+        """The children with one of these local names; of all names where none is given."""
+        for child in () if element is None else element:
+            if isinstance(child.tag, str) and (not tags or tag_of(child) in tags):
+                yield child
+
+    def child(self, element: Element | None, *tags: str) -> Element | None:
+        """The first of the children with one of these names."""
+        return next(self.children(element, *tags), None)
+
+    def name(self, element: Element, key: str = "name") -> str | None:
+        """A name that must be there; "/" becomes "_"."""
+        value = str(element.get(key) or "").strip()
+        if not value:
+            self.complain(element, f"<{tag_of(element)}> has no {key}", f'add {key}="…"')
+            return None
+        return value.replace("/", "_")
+
+    def numbers(self, element: Element, text: str | None, what: str, count: int | None) -> tuple[float, ...] | None:
+        """Finite numbers in a text; None after noting that there are none, or not `count`."""
+        words = (text or "").split()
+        values: list[float] = []
+        for word in words:
+            try:
+                value = float(word)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                shown = word if len(word) <= VALUE_LENGTH else word[:VALUE_LENGTH] + "…"
+                wrong = f"<{tag_of(element)}>: {what} has {in_quotes(shown)}, which is no finite number"
+                self.complain(element, wrong, "give finite numbers")
+                return None
+            values.append(value)
+        if count is not None and len(values) != count:
+            self.complain(
+                element, f"<{tag_of(element)}>: {what} has {len(values)} numbers and needs {count}",
+                f"give {count} numbers with blanks between",
+            )  # fmt: skip
+            return None
+        return tuple(values)
+
+    def vector(
+        self, element: Element | None, key: str, default: tuple[float, ...], count: int | None = None
+    ) -> tuple[float, ...]:
+        """The numbers of an attribute; the default where it is absent or wrong."""
+        if element is None or element.get(key) is None:
+            return default
+        values = self.numbers(element, element.get(key), key, len(default) if count is None else count)
+        return default if values is None else values
+
+    def number(self, element: Element | None, key: str, default: float | None = None) -> float | None:
+        """One number of an attribute; the default where it is absent or wrong."""
+        if element is None or element.get(key) is None:
+            return default
+        values = self.numbers(element, element.get(key), key, 1)
+        return default if values is None else values[0]

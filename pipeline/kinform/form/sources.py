@@ -1,0 +1,82 @@
+"""What can stand in place of a manifest, as its `from`, and as the `file` of a sub-assembly: one line a format.
+
+A format is a module with `tables(source)`; it is imported when a file of its suffix is read. It gives the tables of
+the manifest that says the same, and from there everything goes the way of manifests.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from kinform.form.problems import Problems
+    from kinform.form.readers.places import Places
+
+_FORMATS: Mapping[str, str] = {
+    ".urdf": "descriptions.tables",
+    ".xacro": "descriptions.tables",
+    ".xml": "descriptions.tables",
+    ".mjcf": "descriptions.tables",
+    ".sdf": "descriptions.tables",
+}
+"""Module of `form` that reads files of a suffix."""
+
+GEOMETRIES = ("visual", "collision")
+"""Which geometry of a description its parts are."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a user may say of how sources are read."""
+
+    geometry: str = "visual"
+    packages: tuple[tuple[str, str], ...] = ()
+    """Folders of `package://NAME`, by name."""
+
+
+AS_IT_IS = Reading()
+"""Visual geometry, packages where they are found."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file to be read."""
+
+    path: Path
+    file: str
+    """As messages show it."""
+    folder: Path
+    """Paths in the tables are to be relative to it."""
+    units: str | None
+    """Of the lengths in the tables; None: those of the source."""
+    problems: Problems
+    reading: Reading
+
+
+@dataclass(frozen=True)
+class SourceTables:
+    """The tables of a manifest, and where each of its keys was said."""
+
+    raw: dict[str, Any]
+    places: Places
+    notes: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
+    """Files that were read besides the source, meshes apart."""
+    folders: tuple[Path, ...] = field(default=())
+    """Folders in which its meshes may lie, besides that of the source."""
+
+
+def is_source(path: Path) -> bool:
+    """Whether the suffix is that of a description or an assembly file."""
+    return path.suffix.lower() in _FORMATS
+
+
+def source_tables(source: Source) -> SourceTables | None:
+    """What a source says, as tables; None where nothing can be made of it. Every problem is noted."""
+    module = importlib.import_module(f"kinform.form.{_FORMATS[source.path.suffix.lower()]}")
+    tables: SourceTables | None = module.tables(source)
+    return tables
