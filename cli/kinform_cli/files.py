@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 
 MESHES = (".stl", ".obj")
+DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
 
 
 def check_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
@@ -82,7 +83,7 @@ def _try_writing(path: Path) -> None:
 
 def read(path: Path) -> Design:
     """The design in a results file; raises ResultsError, or InputError for another kind of file."""
-    if path.suffix.lower() in (".toml", *MESHES):
+    if path.suffix.lower() in (".toml", *MESHES, *DESCRIPTIONS):
         raise refuse(
             "this command reads a results file",
             file=path,
@@ -157,6 +158,16 @@ def _escape(name: str, *, target: bool = False) -> str:
     return name
 
 
+def is_description(sources: Sequence[Path], units: str | None) -> bool:
+    """Whether the sources are one robot description (else meshes); InputError where they are a mixture."""
+    if sources[0].suffix.lower() in DESCRIPTIONS or sources[0].suffix.lower() == ".toml":
+        manifest = is_manifest(sources, units)
+        if sources[0].suffix.lower() == ".toml":
+            raise refuse("is a manifest already", file=sources[0], remedy="name meshes, or a robot description")
+        return manifest
+    return is_manifest(sources, units)
+
+
 def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
     """Whether the sources are a manifest (else meshes); InputError where they are a mixture."""
     kinds = {source.suffix.lower() for source in sources}
@@ -178,12 +189,17 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
         raise refuse(
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
-            remedy="name one manifest (.toml), or only meshes (.stl, .obj)",
+            remedy="name one manifest (.toml) or robot description (.urdf, .sdf, .xml), or only meshes (.stl, .obj)",
         )
     if units is not None:
         raise refuse(
             "--units is for meshes in place of a manifest",
             file=sources[0],
-            remedy="leave --units out: the manifest states its own `units`",
+            remedy="leave --units out: "
+            + (
+                "descriptions are in metres"
+                if sources[0].suffix.lower() in DESCRIPTIONS
+                else "the manifest states its own `units`"
+            ),
         )
     return True

@@ -10,7 +10,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.options import argument, cores, examples, option
+from kinform_cli.options import Geometry, GeometryKind, Packages, Units, argument, cores, examples, option, reading
 from kinform_cli.progress import Working
 
 if TYPE_CHECKING:
@@ -19,13 +19,15 @@ if TYPE_CHECKING:
 
 
 EXAMPLES = examples(
-    "kinform init parts/*.stl --units mm -o arm.toml", "kinform init scene.obj --units m            # print it"
+    "kinform init parts/*.stl --units mm -o arm.toml",
+    "kinform init robot.urdf -o robot.toml",
+    "kinform init scene.obj --units m            # print it",
 )
 
 
 def init(
-    meshes: Annotated[list[Path], argument("MESH...", "STL and OBJ files of the parts.")],
-    units: Annotated[str, option("--units", "UNIT", "Unit of the meshes: m, cm, mm, um, in or ft.")],
+    meshes: Annotated[list[Path], argument("SOURCE", "A robot description; or STL and OBJ files, with --units.")],
+    units: Units = None,
     output: Annotated[Path | None, option("--output -o", "M.toml", "Manifest to write; else it is printed.")] = None,
     suggest: Annotated[
         bool,
@@ -33,9 +35,12 @@ def init(
             "--suggest/--no-suggest", help="Look for parts that are probably one body, and propose groups as comments."
         ),
     ] = True,
+    geometry: Geometry = GeometryKind.visual,
+    packages: Packages = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
 ) -> None:
-    """Write a manifest for these meshes, ready to be completed."""
+    """Write a manifest: for meshes, ready to be completed; of a robot description, all that it says."""
+    described = files.is_description(meshes, units)
     if output is not None:
         if output.exists() and not force:
             raise refuse("exists already", file=output, remedy="add --force to overwrite it")
@@ -43,10 +48,22 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
+    if described:
+        from kinform.form.write_manifest import init_from_source
+
+        text = init_from_source(meshes[0], relative_to=folder, reading=reading(geometry, packages))
+        _write(text, output)
+        return
+    assert units is not None
     name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
     text = form.init_manifest(
         meshes, units=units, name=name, relative_to=folder, fastened=_suggest_groups if suggest else _no_groups
     )
+    _write(text, output)
+
+
+def _write(text: str, output: Path | None) -> None:
+    """Write or print the manifest, and say what comes next."""
     if output is None:
         console.emit(text)
         console.say("printed only: add -o NAME.toml to write it, then: kinform run NAME.toml -o NAME.h5")

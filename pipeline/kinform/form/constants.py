@@ -181,5 +181,8 @@ ROUND_FACETS = 96
 """Facets round a primitive cylinder, sphere or capsule: its vertices are exact, a fit of them gives the exact radius,
 and its volume is 0.07 % too small."""
 
+XACRO_FILES = 500
+"""Files of a package that are looked through for the names of others, at most."""
+
 AXIS_LENGTH = 1e-9
 """Length of a joint's axis below which it is none: axes are unit vectors, up to digits."""

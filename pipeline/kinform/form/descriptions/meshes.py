@@ -30,7 +30,7 @@ class MeshFiles:
 
     def __init__(self, description: Path, packages: Mapping[str, Path], environment: Mapping[str, str] | None = None):
         self.folder = description.parent
-        self._packages = packages
+        self.packages = packages
         self._environment = os.environ if environment is None else environment
         self.home = _home(self.folder)
         """The package of the description: it may name what lies below."""
@@ -48,6 +48,10 @@ class MeshFiles:
             return Found(None, message=f"{stated} is not a path in a file system", remedy="name a file")
         path = (folder or self.folder) / text
         return Found(path, self.home)
+
+    def package(self, name: str) -> Path | None:
+        """The folder of a package."""
+        return next((root for root in self._roots(name) if root.is_dir()), None)
 
     def _in_package(self, name: str, rest: str) -> Found:
         for root in self._roots(name):
@@ -73,8 +77,8 @@ class MeshFiles:
                 yield above
             if (above / name).is_dir():
                 yield above / name
-        if name in self._packages:
-            yield self._packages[name]
+        if name in self.packages:
+            yield self.packages[name]
         for prefix in _paths(self._environment.get("AMENT_PREFIX_PATH")):
             yield prefix / "share" / name
         for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):

@@ -56,7 +56,7 @@ class _Writer:
     def __init__(self, source: Source):
         self.source = source
         self.metres = metres_per(source.units or "m")
-        self.raw: dict[str, Any] = {"schema": 1, "part": [], "group": [], "function": {}}
+        self.raw: dict[str, Any] = {"schema": 1, "assembly": {}, "part": [], "group": [], "function": {}}
         self.places: dict[tuple[str | int, ...], tuple[str | None, int]] = {}
         self.notes: list[str] = []
 

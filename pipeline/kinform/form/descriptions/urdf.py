@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from kinform.form.constants import AXIS_LENGTH
+from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place, pose, rpy
 from kinform.form.descriptions.robot import Inertial, Link, Ratio, Robot, RobotJoint, Shape, Solid
 from kinform.form.descriptions.tree import Count, Edge, Tree, tree_of
-from kinform.form.descriptions.xml import Element, Xml, parse_xml, tag_of
 from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
@@ -34,10 +34,17 @@ _QUIET = ("material",)
 
 def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:
     """The robot of a URDF text; None where nothing can be made of it, after noting why."""
+    return read_text(path, data, file, problems, meshes)
+
+
+def read_text(
+    path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles, written: str | None = None
+) -> Robot | None:
+    """As `read`; `written` is the text as people wrote it, where the data was expanded from that: lines are its own."""
     root = parse_xml(data, file, problems)
     if root is None:
         return None
-    return _Reader(Xml(file, problems), meshes).robot(root, path.stem)
+    return _Reader(Xml(file, problems, written), meshes).robot(root, path.stem)
 
 
 class _Reader:

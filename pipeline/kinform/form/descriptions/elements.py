@@ -66,11 +66,13 @@ def tag_of(element: Element) -> str:
 class Xml:
     """Asks elements for their values; what is wrong with them is noted at their line."""
 
-    def __init__(self, file: str, problems: Problems):
-        self.file, self.problems = file, problems
+    def __init__(self, file: str, problems: Problems, written: str | None = None):
+        self.file, self.problems, self._written = file, problems, written
 
     def at(self, element: Element) -> At:
         """Where an element stands."""
+        if self._written is not None:
+            return At(self.file, _line_of(element, self._written))
         above = element
         while above is not None and above.get(FILE) is None:
             above = above.getparent()
@@ -137,3 +139,15 @@ class Xml:
             return default
         values = self.numbers(element, element.get(key), key, 1)
         return default if values is None else values[0]
+
+
+def _line_of(element: Element, written: str) -> int:
+    """The line on which an element, or the closest around it that has a name there, is written; else the first."""
+    here = element
+    while here is not None:
+        name = here.get("name")
+        match = name and re.search(rf"<[^<>]*\bname\s*=\s*[\"']{re.escape(name)}[\"']", written)
+        if match:
+            return written.count("\n", 0, match.start()) + 1
+        here = here.getparent()
+    return 1

@@ -1,0 +1,295 @@
+"""MJCF: bodies in bodies, as MuJoCo reads them. Bodies are links; a body without joint is fixed to the one around it.
+
+The frame F is the world's. The drawn pose is that of the file, where joints have their `ref`; several joints of a body
+go through stick bodies. Pairs of `<connect>` make a hinge. What is not carried is listed by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from kinform.form.constants import AXIS_LENGTH
+from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
+from kinform.form.descriptions.inertials import placed, symmetric
+from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.mjcf_closures import closures, ratios
+from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes, from_z, mesh_assets
+from kinform.form.descriptions.poses import place, pose
+from kinform.form.descriptions.robot import Inertial, Link, Robot, RobotJoint, Shape, Solid
+from kinform.form.descriptions.tree import Count, distinct
+from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.model.arrays import Array
+
+WORLD = "world"
+TYPES = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical", "free": ""}
+_QUIET = ("compiler", "default", "asset", "option", "size", "visual", "statistic", "worldbody", "equality", "custom",
+          "keyframe", "sensor", "actuator", "extension")  # fmt: skip
+_BODY = ("body", "joint", "freejoint", "geom", "inertial", "site", "camera", "light", "frame")
+
+
+def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:
+    """The robot of an MJCF text; None where nothing can be made of it, after noting why."""
+    root = parse_xml(data, file, problems)
+    if root is None:
+        return None
+    xml = Xml(file, problems)
+    if tag_of(root) != "mujoco":
+        xml.complain(root, f"the root is <{tag_of(root)}>, and an MJCF has <mujoco>", "name an MJCF")
+        return None
+    includes = Includes(path, xml, meshes)
+    includes.expand(root)
+    return _Reader(xml, meshes, root).robot(root, path.stem, tuple(includes.files))
+
+
+class _Reader:
+    def __init__(self, xml: Xml, meshes: MeshFiles, root: Element):
+        self.xml, self.meshes, self.left = xml, meshes, Count()
+        self.compiler = Compiler.of(xml, root)
+        self.defaults = Defaults(xml, root)
+        self.assets = mesh_assets(xml, root, self.compiler, self.defaults)
+        self.links: dict[str, Link] = {}
+        self.joints: dict[str, RobotJoint] = {}
+        self.sites: dict[str, tuple[str, Array]] = {}
+        self.folders: set[Path] = set()
+        self.free_link, self.free_joint = distinct({WORLD}), distinct(set())
+        self.efforts = dict(self._efforts(root))
+
+    def robot(self, root: Element, name: str, files: tuple[Path, ...]) -> Robot | None:
+        xml = self.xml
+        for child in xml.children(root):
+            if tag_of(child) not in _QUIET:
+                self.left.add(f"<{tag_of(child)}>")
+        worlds = list(xml.children(root, "worldbody"))
+        if not worlds:
+            xml.complain(root, "has no <worldbody>", "name an MJCF with bodies")
+            return None
+        self.links[WORLD] = Link(WORLD, np.eye(4), xml.at(worlds[0]))
+        for world in worlds:
+            self._inside(world, WORLD, np.eye(4), world.get("childclass"))
+        loops = closures(xml, root, self.links, self.sites, self.left)
+        self._leave_out_world(loops)
+        return Robot(
+            name=(root.get("model") or name).replace("/", "_") or name,
+            at=xml.at(root),
+            links=tuple(self.links.values()),
+            joints=(*self.joints.values(), *loops),
+            ratios=tuple(ratios(xml, root, self.joints, self.left)),
+            root=WORLD if WORLD in self.links else next(iter(self.links), None),
+            notes=self.left.sentences(xml.file),
+            files=files,
+            folders=tuple(sorted(self.folders)),
+        )
+
+    def _leave_out_world(self, loops: list[RobotJoint]) -> None:
+        """The world is no link where it has no geometry, and at most one body is fixed to it."""
+        there = [j for j in (*self.joints.values(), *loops) if WORLD in j.between]
+        world = self.links[WORLD]
+        if world.visual or world.collision or len(there) > 1 or any(j.type != "fixed" for j in there):
+            return
+        del self.links[WORLD]
+        self.joints = {name: joint for name, joint in self.joints.items() if WORLD not in joint.between}
+
+    def _inside(self, element: Element, link: str, X: Array, named: str | None) -> None:
+        """Everything in a body, or in a frame of it, whose pose in F is X."""
+        visual: list[Shape] = []
+        collision: list[Shape] = []
+        for child in self.xml.children(element):
+            tag = tag_of(child)
+            if tag == "body":
+                self._body(child, link, X, child.get("childclass") or named)
+            elif tag == "frame":
+                inner = X @ self.compiler.pose(self.xml, child, child.attrib)
+                self._inside(child, link, inner, child.get("childclass") or named)
+            elif tag == "geom":
+                shape, only_seen = self._geom(child, link, X, named)
+                if shape is not None:
+                    (visual if only_seen else collision).append(shape)
+            elif tag == "site":
+                said = self.defaults.said(child, named)
+                if "name" in said:
+                    self.sites[said["name"]] = link, X @ self.compiler.pose(self.xml, child, said)
+            elif tag not in _BODY:
+                self.left.add(f"<{tag}> in bodies")
+        old = self.links[link]
+        seen = (*old.visual, *visual)
+        both = (*old.collision, *collision)
+        self.links[link] = Link(link, old.X_FL, old.at, seen, both, old.inertial)
+        if tag_of(element) != "frame" and not seen:
+            self.links[link] = Link(link, old.X_FL, old.at, both, both, old.inertial)
+
+    def _body(self, element: Element, above: str, X: Array, named: str | None) -> None:
+        X = X @ self.compiler.pose(self.xml, element, element.attrib)
+        stated = (element.get("name") or "").replace("/", "_")
+        if stated in self.links:
+            first = self.links[stated].at.line
+            message = f"two bodies are named {in_quotes(stated)}: the first is at line {first}"
+            self.xml.complain(element, message, "rename one of them")
+        name = self.free_link(stated or f"body {len(self.links)}")
+        at = self.xml.at(element)
+        inertial = self.xml.child(element, "inertial")
+        stated_mass = None if inertial is None or self.compiler.from_geometry else self._inertial(inertial, name, X)
+        joints = [j for j in self._joints(element) if self._type(j, named) is not None]
+        free = self.xml.child(element, "freejoint") is not None or any(self._type(j, named) == "" for j in joints)
+        self.links[name] = Link(name, X, at, inertial=stated_mass)
+        if not free:
+            between = above
+            for k, joint in enumerate(joints):
+                below = name if k == len(joints) - 1 else self.free_link(f"{name} {k + 1}")
+                if below != name:
+                    self.links[below] = Link(below, X, self.xml.at(joint))
+                self._joint(joint, between, below, X, named)
+                between = below
+            if not joints:
+                label = self.free_joint(f"{name} fixed")
+                self.joints[label] = RobotJoint(label, "fixed", (above, name), at)
+        self._inside(element, name, X, named)
+
+    def _joints(self, element: Element) -> Iterator[Element]:
+        for child in self.xml.children(element, "joint", "frame"):
+            if tag_of(child) == "joint":
+                yield child
+            else:
+                yield from self._joints(child)
+
+    def _type(self, element: Element, named: str | None) -> str | None:
+        """kinform's type of a joint, "" of a free one; None after noting that it is not known."""
+        kind = self.defaults.said(element, named).get("type", "hinge")
+        if kind not in TYPES:
+            wrong = f"joint type {in_quotes(kind)} is not known"
+            self.xml.complain(element, wrong, did_you_mean(kind, TYPES, "the types"))
+        return TYPES.get(kind)
+
+    def _joint(self, element: Element, above: str, below: str, X: Array, named: str | None) -> None:
+        xml, said = self.xml, self.defaults.said(element, named)
+        stated = (said.get("name") or f"{below} joint").replace("/", "_")
+        if stated in self.joints:
+            message = f"two joints are named {in_quotes(stated)}: the first is at line {self.joints[stated].at.line}"
+            xml.complain(element, message, "rename one of them")
+        name, kind = self.free_joint(stated), self._type(element, named) or ""
+        frame = element.getparent()
+        while tag_of(frame) == "frame":
+            X = X @ self.compiler.pose(xml, frame, frame.attrib)
+            frame = frame.getparent()
+        axis = np.array(xml.numbers(element, said.get("axis", "0 0 1"), "axis", 3) or (0.0, 0.0, 1.0))
+        if float(np.linalg.norm(axis)) < AXIS_LENGTH:
+            xml.complain(element, f"joint {in_quotes(name)}: its axis is zero", 'give an axis such as "0 0 1"')
+            axis = np.array([0.0, 0.0, 1.0])
+        point = xml.numbers(element, said.get("pos", "0 0 0"), "pos", 3) or (0.0, 0.0, 0.0)
+        for key in ("frictionloss", "armature"):
+            if said.get(key, "0").split() not in (["0"], ["0.0"], []):
+                self.left.add(f"{key} of joints")
+        moves_one = kind in ("revolute", "prismatic")
+        self.joints[name] = RobotJoint(
+            name=name, type=kind, between=(above, below), at=xml.at(element),
+            axis=X[:3, :3] @ (axis / np.linalg.norm(axis)) if kind != "spherical" else None,
+            point=place(X, point) if kind != "prismatic" else None,
+            range=self._range(element, said, kind, name) if moves_one else None,
+            effort=self._effort(element, said, name) if moves_one else None,
+            damping=self._first(element, said, "damping") if moves_one else None,
+            stiffness=self._first(element, said, "stiffness") if moves_one else None,
+            rest=self._angle(element, said, "springref", kind) - self._angle(element, said, "ref", kind),
+        )  # fmt: skip
+
+    def _first(self, element: Element, said: Mapping[str, str], key: str) -> float | None:
+        """The first number of an attribute, where it is positive: later ones are of a polynomial."""
+        values = self.xml.numbers(element, said.get(key, ""), key, None) or ()
+        if len(values) > 1 and any(values[1:]):
+            self.left.add(f"nonlinear {key} of joints")
+        return values[0] if values and values[0] > 0.0 else None
+
+    def _angle(self, element: Element, said: Mapping[str, str], key: str, kind: str) -> float:
+        value = (self.xml.numbers(element, said.get(key, "0"), key, 1) or (0.0,))[0]
+        return self.compiler.radians(value) if kind == "revolute" else value
+
+    def _range(self, element: Element, said: Mapping[str, str], kind: str, name: str) -> tuple[float, float] | None:
+        limited = said.get("limited", "auto")
+        if "range" not in said or limited == "false" or (limited == "auto" and not self.compiler.autolimits):
+            if limited == "true":
+                self.left.notes.append(f"joint {in_quotes(name)} is limited, and states no range")
+            return None
+        values = self.xml.numbers(element, said["range"], "range", 2)
+        if values is None:
+            return None
+        lower, upper = (self.compiler.radians(v) if kind == "revolute" else v for v in values)
+        ref = self._angle(element, said, "ref", kind)
+        if lower < upper:
+            return lower - ref, upper - ref
+        self.left.notes.append(f"joint {in_quotes(name)}: its range {said['range']} is not ascending: taken as none")
+        return None
+
+    def _efforts(self, root: Element) -> Iterator[tuple[str, float]]:
+        for group in self.xml.children(root, "actuator"):
+            for element in self.xml.children(group):
+                said = self.defaults.said(element, None)
+                force = self.xml.numbers(element, said.get("forcerange", ""), "forcerange", None) or ()
+                gear = self.xml.numbers(element, said.get("gear", "1"), "gear", None) or (1.0,)
+                if "joint" in said and len(force) == 2 and max(map(abs, force)) > 0.0:
+                    yield said["joint"], max(map(abs, force)) * abs(gear[0])
+
+    def _effort(self, element: Element, said: Mapping[str, str], name: str) -> float | None:
+        own = self.xml.numbers(element, said.get("actuatorfrcrange", ""), "actuatorfrcrange", None) or ()
+        limits = [max(map(abs, own))] if len(own) == 2 else []
+        limits += [self.efforts[name]] if name in self.efforts else []
+        return min(limits) if limits and min(limits) > 0.0 else None
+
+    def _inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
+        xml, said = self.xml, element.attrib
+        mass = xml.number(element, "mass") or 0.0
+        full = xml.vector(element, "fullinertia", (0.0,) * 6)
+        diagonal = xml.vector(element, "diaginertia", (0.0,) * 3)
+        if mass <= 0.0:
+            self.left.notes.append(f"body {in_quotes(name)} states the mass {mass:g} kg: taken as not stated")
+            return None
+        six = full if "fullinertia" in said else (*diagonal, 0.0, 0.0, 0.0)
+        return placed(mass, X @ self.compiler.pose(xml, element, said), symmetric(*six), xml.at(element))
+
+    def _geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
+        """The shape of a geom, and whether it is seen only: it collides with nothing."""
+        xml, said = self.xml, self.defaults.said(element, named)
+        kind = said.get("type", "mesh" if "mesh" in said else "sphere")
+        seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
+        X_FG = X @ self.compiler.pose(xml, element, said)
+        name = (said.get("name") or "").replace("/", "_") or None
+        if kind == "mesh" or (kind == "sdf" and "mesh" in said):
+            return self._mesh(element, said, link, X_FG, name), seen
+        if kind in ("plane", "hfield", "sdf") or "mesh" in said:
+            self.left.add(f"geom of type {kind}" + (" fitted to a mesh" if "mesh" in said else ""))
+            return None, seen
+        size = list(xml.numbers(element, said.get("size", ""), "size", None) or ())
+        if "fromto" in said:
+            ends = np.array(xml.numbers(element, said["fromto"], "fromto", 6) or (0.0,) * 5 + (1.0,)).reshape(2, 3)
+            X_FG = X @ pose(from_z(ends[0] - ends[1]), 0.5 * (ends[0] + ends[1]))
+            half = 0.5 * float(np.linalg.norm(ends[0] - ends[1]))
+            size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*(size[:1] * 2), half]
+        count = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}.get(kind)
+        if count is None:
+            xml.complain(element, f"geom type {in_quotes(kind)} is not known", "give box, cylinder, sphere or mesh")
+            return None, seen
+        if len(size) < count or min(size[:count]) <= 0.0:
+            xml.complain(element, f"a {kind} of {in_quotes(link)} needs {count} positive sizes", 'give size="…"')
+            return None, seen
+        sizes = {"box": [2.0 * s for s in size[:3]], "cylinder": [size[0], 2.0 * size[-1]]}.get(kind, size[:count])
+        if kind in ("capsule", "cylinder"):
+            sizes = [size[0], 2.0 * size[1]]
+        return Shape(name, Solid(kind, tuple(sizes)), (1.0, 1.0, 1.0), X_FG, xml.at(element)), seen
+
+    def _mesh(self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None) -> Shape | None:
+        stated = said.get("mesh", "")
+        asset = self.assets.get(stated)
+        if asset is None:
+            wrong = f"body {in_quotes(link)}: there is no mesh {in_quotes(stated)}"
+            self.xml.complain(element, wrong, did_you_mean(stated, self.assets, "the meshes"))
+            return None
+        if not asset.file:
+            self.left.add("mesh without file")
+            return None
+        found = self.meshes.find(asset.file, self.meshes.folder / self.compiler.folder)
+        if found.path is None:
+            self.xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
+            return None
+        if found.folder is not None:
+            self.folders.add(found.folder)
+        return Shape(name, found.path, asset.scale, X @ asset.X, self.xml.at(element))

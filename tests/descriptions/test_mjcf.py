@@ -1,0 +1,140 @@
+"""MJCF: what MuJoCo itself makes of a description is what the assembly has; what is wrong is told with its place."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.support.robots import ring
+
+from kinform import form
+from kinform.errors import InputError
+
+HEAD = """<mujoco model="arm">
+<compiler angle="{angle}" eulerseq="{sequence}" meshdir="meshes"/>
+<default>
+<default class="seen"><geom contype="0" conaffinity="0"/><joint axis="0 1 0" damping="0.5"/>
+<default class="thin"><geom type="capsule" size="0.01"/></default></default>
+</default>
+<asset><mesh name="ring" file="ring.obj" scale="0.001 0.001 -0.001"/></asset>
+"""
+WORLD = """<worldbody>
+<body name="base" pos="0 0 0.1" euler="{a} {b} {c}">
+<geom type="mesh" mesh="ring" pos="0.01 0 0"/>
+<inertial pos="0 0 0.02" mass="2" diaginertia="0.04 0.03 0.02" euler="{a} 0 0"/>
+<body name="arm" childclass="seen" pos="0.1 0 0" axisangle="1 2 3 {b}">
+<joint name="turn" range="{low} {high}" pos="0 0 0.01"/>
+<geom class="thin" fromto="0 0 0 0.05 0.02 0.1"/>
+<geom type="box" size="0.01 0.02 0.03" xyaxes="0 1 0 -1 0 0" contype="1"/>
+<frame pos="0 0.2 0" euler="0 {c} 0">
+<body name="wrist" zaxis="0 1 1"><joint name="a" axis="1 0 0"/><joint name="b" type="slide" ref="0.1" range="0 1"/>
+<geom type="sphere" size="0.02"/></body>
+</frame>
+</body>
+</body>
+</worldbody>
+<equality><joint joint1="a" joint2="turn" polycoef="0 -2 0 0 0"/></equality>
+<actuator><motor joint="turn" forcerange="-3 3" gear="2"/></actuator>
+</mujoco>
+"""
+
+
+def text(angle="degree", sequence="xyz"):
+    unit = 1.0 if angle == "degree" else np.pi / 180.0
+    values = {"a": 30.0, "b": -50.0, "c": 70.0, "low": -90.0, "high": 45.0}
+    scaled = {key: repr(value * unit) for key, value in values.items()}
+    return HEAD.format(angle=angle, sequence=sequence) + WORLD.format(**scaled)
+
+
+def write(folder, content):
+    (folder / "meshes").mkdir(exist_ok=True)
+    (folder / "meshes" / "ring.obj").write_text(ring(10.0, 30.0, 60.0))
+    path = folder / "arm.xml"
+    path.write_text(content)
+    return path
+
+
+@pytest.mark.parametrize("angle,sequence", [("degree", "xyz"), ("radian", "xyz"), ("degree", "ZYX"), ("radian", "zXy")])
+def test_poses_axes_and_masses_are_those_of_mujoco(tmp_path, angle, sequence):
+    mujoco = pytest.importorskip("mujoco")
+    path = write(tmp_path, text(angle, sequence))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.qpos0
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    assembly = form.load(path)
+    for joint in assembly.function.joints:
+        if joint.type == "fixed":
+            continue
+        k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint.name)
+        assert np.allclose(joint.axis, data.xaxis[k], atol=1e-12)
+        if joint.point is not None:
+            assert np.allclose(joint.point, data.xanchor[k], atol=1e-12)
+    base = next(group.override for group in assembly.groups if group.name == "base")
+    k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "base")
+    turned = data.ximat[k].reshape(3, 3)
+    assert np.allclose(base.centre_of_mass, data.xipos[k], atol=1e-12)
+    assert np.allclose(base.inertia, turned @ np.diag(model.body_inertia[k]) @ turned.T, atol=1e-12)
+    for name, kind in (("arm capsule", mujoco.mjtGeom.mjGEOM_CAPSULE), ("wrist sphere", mujoco.mjtGeom.mjGEOM_SPHERE)):
+        k = list(model.geom_type).index(int(kind))
+        X = assembly.part(name).X_WP
+        assert np.allclose(X[:3, 3], data.geom_xpos[k], atol=1e-12)
+        assert np.allclose(np.abs(X[:3, 2] @ data.geom_xmat[k].reshape(3, 3)[:, 2]), 1.0, atol=1e-12)
+
+
+def test_function_and_what_is_seen(tmp_path):
+    assembly = form.load(write(tmp_path, text()))
+    assert [group.name for group in assembly.groups] == ["arm", "base", "wrist"]
+    assert [str(part.name) for part in assembly.parts] == ["arm capsule", "ring", "wrist 1", "wrist sphere"]
+    joints = {joint.name: joint for joint in assembly.function.joints}
+    assert joints["turn"].between == ("base", "arm") and joints["turn"].range == pytest.approx((-np.pi / 2, np.pi / 4))
+    assert joints["a"].between == ("arm", "wrist 1") and joints["b"].between == ("wrist 1", "wrist")
+    assert joints["b"].type == "prismatic" and joints["b"].range == pytest.approx((-0.1, 0.9))
+    assert assembly.function.couplings[0].ratio == pytest.approx(-2.0)
+    assert [r.values["limit"] for r in assembly.function.requirements] == [6.0]
+
+
+def test_loops_are_joints(tmp_path):
+    closing = '<equality><connect body1="arm" body2="base" anchor="0 0 0.1"/>'
+    second = '<connect body1="arm" body2="base" anchor="0 0.1 0.1"/>'
+    once = form.load(write(tmp_path, text().replace("<equality>", closing))).function.joints
+    twice = form.load(write(tmp_path, text().replace("<equality>", closing + second))).function.joints
+    assert [j.type for j in once if j.name.startswith("connect")] == ["spherical"]
+    assert [j.type for j in twice if j.name.startswith("connect")] == ["revolute"]
+
+
+BAD = {
+    "unknown mesh": (text().replace('mesh="ring"', 'mesh="rung"'), 10, '"rung"'),
+    "missing mesh": (text().replace("ring.obj", "none.obj"), 10, "does not exist"),
+    "unknown class": (text().replace('class="thin"', 'class="thick"', 2).replace('"thick"><geom', '"thin"><geom'), 14,
+                      'no default class "thick"'),
+    "unknown joint type": (text().replace('name="b" type="slide"', 'name="b" type="glide"'), 17, '"glide"'),
+    "include of itself": (text().replace("<worldbody>", '<include file="arm.xml"/><worldbody>'), 8, "includes itself"),
+    "include outside": (text().replace("<worldbody>", '<include file="/etc/hostname"/><worldbody>'), 8, "outside"),
+    "not a number": (text().replace('pos="0 0 0.1"', 'pos="0 0 nan"'), 9, "no finite number"),
+    "two bodies": (text().replace('body name="wrist"', 'body name="arm"'), 17, "two bodies"),
+    "no size": (text().replace('type="sphere" size="0.02"', 'type="sphere"'), 18, "positive sizes"),
+    "another root": ("<robots/>", 1, "no robot description"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_told_with_file_line_and_remedy(tmp_path, case):
+    content, line, words = BAD[case]
+    with pytest.raises(InputError) as caught:
+        form.load(write(tmp_path, content))
+    problem = caught.value.problems[0]
+    assert words in problem.message
+    assert (problem.file, problem.line) == ("arm.xml", line)
+    assert problem.remedy
+
+
+def test_included_files_have_lines_of_their_own(tmp_path):
+    path = write(tmp_path, text().replace("<worldbody>", '<include file="more.xml"/><worldbody>'))
+    (tmp_path / "more.xml").write_text('<mujoco>\n<worldbody>\n<body name="x" pos="0 0 inf"/></worldbody></mujoco>')
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    assert [(p.file, p.line) for p in caught.value.problems] == [("more.xml", 3)]
+    (tmp_path / "more.xml").write_text('<mujoco>\n<include file="arm.xml"/></mujoco>')
+    with pytest.raises(InputError, match="includes itself"):
+        form.load(path)
