@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.patches import Z, cylinder, plane, ring, sphere
@@ -148,6 +148,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", SCENES)
+@settings(deadline=None)
 @given(
     turn=st.integers(0, 2**31 - 1),
     scale=st.sampled_from([1e-3, 0.37, 1.0, 1e3]),

@@ -1,0 +1,89 @@
+"""What is sensitive to last bits passes as on any other processor: with the kernels that OpenBLAS has for others, and
+with numpy's vector code for newer ones turned off."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.places import FIXTURES, ROOT
+
+SENSITIVE = ("tests/simulation", "tests/kinematics", "tests/surfaces", "tests/fixtures", "tests/mass", "tests/docs")
+"""What hangs on singular values, on integrations and on fits, and what is written and compared byte for byte."""
+ALIKE = ("seekers/seeker_2dof/seeker_2dof", "mechanisms/bennett/bennett", "mechanisms/four_bar/four_bar")
+
+
+def able(*features: str) -> bool:
+    """Whether the processor has these features, as Linux calls them."""
+    try:
+        text = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return False
+    flags = next((line.split(":")[1].split() for line in text.splitlines() if line.startswith("flags")), [])
+    return set(features) <= set(flags)
+
+
+def dispatched() -> str:
+    """The features beyond the least that numpy has code for and this processor has."""
+    from numpy._core import _multiarray_umath as core
+
+    return " ".join(name for name in core.__cpu_dispatch__ if core.__cpu_features__.get(name))
+
+
+PROCESSORS = {
+    "Nehalem": ("sse4_2",),
+    "Haswell": ("avx2", "fma"),
+    "Zen": ("avx2", "fma"),
+    "SkylakeX": ("avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"),
+}
+
+
+def settings_of(name: str) -> dict[str, str]:
+    """The environment of a process that computes as on that processor; numpy's own vector code is that of the oldest
+    for the first and the third."""
+    if not able(*PROCESSORS[name]):
+        pytest.skip(f"this processor has not what OpenBLAS uses for {name}: {', '.join(PROCESSORS[name])}")
+    reduced = dispatched() if name in ("Nehalem", "Zen") else ""
+    return {**os.environ, "OPENBLAS_CORETYPE": name, "NPY_DISABLE_CPU_FEATURES": reduced, "OPENBLAS_NUM_THREADS": "1"}
+
+
+def run_python(name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=ROOT, env=settings_of(name), capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PROCESSORS)
+def test_the_sensitive_part_of_the_suite_passes_as_on(name):
+    done = run_python(name, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *SENSITIVE)
+    assert done.returncode == 0, done.stdout[-4000:]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in PROCESSORS if name != "Nehalem"])
+@pytest.mark.parametrize("fixture", ALIKE)
+def test_results_of_two_processors_are_the_same_behaviour_to_diff(name, fixture, tmp_path):
+    """Last bits differ, and are kept: no finding does, and nothing beyond the tolerances of `diff`."""
+    manifest, files, findings = FIXTURES / f"{fixture}.toml", [], []
+    for each in ("Nehalem", name):
+        files.append(tmp_path / f"{each}.h5")
+        done = run_python(each, "-m", "kinform_cli", "run", str(manifest), "-o", str(files[-1]), "--format", "json")
+        assert done.returncode == 0, done.stderr
+        # what is not zero by rounding alone is said to be so much, and no more
+        findings.append(re.sub(r"\d(\.\d+)?e-(09|1\d)", "0", done.stdout))
+    assert findings[0] == findings[1]
+    same = run_python(name, "-m", "kinform_cli", "diff", *map(str, files))
+    assert (same.returncode, same.stderr) == (0, "")
+    assert "the same behaviour" in same.stdout
+
+
+def test_numpy_can_be_told_to_leave_its_newer_code():
+    """Else the tests above would compare one thing with itself."""
+    from numpy._core import _multiarray_umath as core
+
+    assert set(dispatched().split()) <= set(core.__cpu_dispatch__)
+    assert np.show_config("dicts")["Build Dependencies"]["blas"]["name"].endswith("openblas")
