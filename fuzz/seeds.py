@@ -249,10 +249,17 @@ def catalogs() -> list[bytes]:
 
 @functools.cache
 def results_images() -> tuple[bytes, ...]:
-    """Results files of which edits are made."""
+    """Results files of which edits are made: of an import, of its joints, and of everything."""
+    from dataclasses import replace
+
     from kinform.results.file import to_bytes
 
-    return tuple(to_bytes(design(name)) for name in ("pairs/revolute_collars", "functional/stick_four_bar"))
+    whole = design("pairs/revolute_collars")
+    bare = {"mass": None, "behaviour": None, "simulation": None, "report": None}
+    joints = replace(whole, **bare)
+    imported = replace(joints, surfaces={}, contacts=None, kinematics=None)
+    every = (imported, joints, whole, design("functional/stick_four_bar"))
+    return tuple(to_bytes(made) for made in every)
 
 
 def edits() -> list[bytes]:

@@ -151,7 +151,8 @@ def _results(data: bytes) -> None:
 
     (_FOLDER / "r.h5").write_bytes(edits.edited(seeds.results_images(), data))
     design = results.read(_FOLDER / "r.h5")
-    results.write(design, _FOLDER / "again.h5")
+    if data[-1:] < b"\x20":
+        results.write(design, _FOLDER / "again.h5")
 
 
 def _text_error(run: Callable[[bytes], None]) -> Callable[[bytes], None]:

@@ -98,6 +98,8 @@ def test_what_is_no_lock_is_refused_by_name(text):
         (lambda lock: lock["tolerances"].update(length_mm=math.nan), "NaN is no number"),
         (lambda lock: lock["tolerances"].update(length_mm=-0.1), "length_mm"),
         (lambda lock: lock["tolerances"].update(mass_percent=-1), "mass_percent"),
+        (lambda lock: lock["mobility"].update(effective="one"), "mobility effective is 'one'"),
+        (lambda lock: lock["mobility"].update(effective=1.5), "mobility effective is 1.5"),
         (lambda lock: lock["joints"][0].update(axis=[0, 0, 0]), "not of length 1"),
         (lambda lock: lock["bodies"][0].pop("mass_g"), "has no mass_g"),
     ],

@@ -47,3 +47,19 @@ def test_a_view_that_never_ends_is_not_looked_into(catalog):
     edited(catalog, "DROP TABLE sources", f"CREATE VIEW sources AS {endless}")
     with pytest.raises(InputError, match="this is not a catalog of kinform"):
         read(catalog)
+
+
+@pytest.mark.parametrize("wrong", ["intendXd TEXT", "axi\xff_x REAL"])
+def test_columns_of_other_names(catalog, wrong):
+    right = b"intended TEXT" if "intend" in wrong else b"axis_x REAL"
+    data = catalog.read_bytes()
+    assert right in data
+    catalog.write_bytes(data.replace(right, wrong.encode("latin-1")))
+    with pytest.raises(InputError, match="this is not a catalog of kinform"):
+        read(catalog)
+
+
+def test_text_that_is_none(catalog):
+    edited(catalog, DESIGN.format(name="CAST(x'ff41' AS TEXT)", bodies=2, mass=9, z=1.0))
+    with pytest.raises(InputError, match="the catalog is damaged"):
+        read(catalog)

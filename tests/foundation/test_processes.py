@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import signal
 
@@ -13,6 +14,7 @@ from kinform.foundation.processes import Crash, in_own_process, map_in_processes
 
 def ended(number: int) -> int:
     if number == 5:
+        faulthandler.disable()
         os.kill(os.getpid(), signal.SIGSEGV)
     return number * number
 
@@ -36,6 +38,11 @@ def test_a_process_that_ends_without_an_answer_is_told_with_its_cause():
 def test_a_crash_among_several_is_told_with_the_name_of_the_thing():
     with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
         list(map_in_processes(ended, range(9), jobs=2, name=lambda k: f"part {k}"))
+
+
+def test_a_crash_of_the_only_thing_is_told_too():
+    with pytest.raises(KinformError, match=r"part 5: .*SIGSEGV"):
+        list(map_in_processes(ended, [5], jobs=2, name=lambda k: f"part {k}"))
 
 
 def test_what_was_done_before_a_crash_comes_in_order():

@@ -7,6 +7,7 @@ reader never sees half of it. Infinite ends of ranges are kept as ±9e999, as SQ
 from __future__ import annotations
 
 import contextlib
+import functools
 import sqlite3
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
@@ -73,7 +74,7 @@ def open_catalog(path: str | Path) -> Iterator[sqlite3.Connection]:
     database = _connection(Path(path))
     try:
         yield database
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
         raise _refuse(path, f"the catalog is damaged: {error}", "delete it, and add the designs again") from error
     finally:
         database.close()
@@ -95,21 +96,36 @@ def _connection(path: Path) -> sqlite3.Connection:
     database = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
     try:
         # views and triggers of strangers could do anything, and for ever: there are none in a catalog
-        made = {kind for (kind,) in database.execute("SELECT DISTINCT type FROM sqlite_master")}
-        schemas = database.execute("SELECT schema FROM catalog").fetchall() if made <= {"table", "index"} else []
-    except sqlite3.DatabaseError:
+        made = _definitions(database)
+        schemas = database.execute("SELECT schema FROM catalog").fetchall() if ("table", "catalog") in made else None
+    except (sqlite3.DatabaseError, UnicodeDecodeError):
+        schemas = None
+    if schemas is None:
         database.close()
         raise _refuse(path, *other) from None
-    if not made <= {"table", "index"}:
-        database.close()
-        raise _refuse(path, *other)
     if schemas != [(SCHEMA,)]:
         database.close()
         schema = schemas[0][0] if schemas else "none"
         raise _refuse(path, f"the catalog has the schema {schema}; this kinform reads {SCHEMA}", "make it again")
+    if made != _expected():
+        database.close()
+        raise _refuse(path, *other)
     database.row_factory = sqlite3.Row
     database.create_function("fold", 1, lambda text: "" if text is None else str(text).casefold(), deterministic=True)
     return database
+
+
+def _definitions(database: sqlite3.Connection) -> dict[tuple[str, str], str | None]:
+    """How everything in a database is defined, by kind and name."""
+    return {(kind, name): sql for kind, name, sql in database.execute("SELECT type, name, sql FROM sqlite_master")}
+
+
+@functools.cache
+def _expected() -> dict[tuple[str, str], str | None]:
+    """The definitions of a catalog: with others, such as views, a table could be anything, and without end."""
+    with contextlib.closing(sqlite3.connect(":memory:")) as database:
+        database.executescript(_TABLES)
+        return _definitions(database)
 
 
 def entry_from(database: sqlite3.Connection, row: sqlite3.Row) -> Entry:

@@ -224,9 +224,9 @@ def _read(lock: Mapping[str, Any]) -> Snapshot:
     return Snapshot(
         assembly=str(lock["assembly"]),
         bodies=tuple((str(body["name"]), tuple(map(str, body["parts"]))) for body in bodies),
-        ground=lock["ground"],
+        ground=None if lock["ground"] is None else str(lock["ground"]),
         joints=tuple(_read_joint(joint) for joint in joints),
-        mobility=tuple(lock["mobility"].items()),
+        mobility=tuple((name, _read_count(name, count)) for name, count in lock["mobility"].items()),
         masses=tuple(_read_mass(body) for body in weighed) if weighed else None,
         interferences=None
         if overlaps is None
@@ -237,6 +237,12 @@ def _read(lock: Mapping[str, Any]) -> Snapshot:
         findings=None,
         ranges=tuple(str(joint["name"]) for joint in joints if "range" in joint) or None,
     )
+
+
+def _read_count(name: str, count: object) -> int | None:
+    if count is not None and (not isinstance(count, int) or isinstance(count, bool)):
+        raise ValueError(f"mobility {name} is {count!r}, and has to be a whole number or null")
+    return count
 
 
 def _read_mass(body: Mapping[str, Any]) -> BodyMass:

@@ -44,7 +44,8 @@ def map_in_processes(
     """The function of each item, in their order, whatever the number of `jobs`; `progress(done, total)` counts items.
 
     Items and results are sent between processes, the function is not. Where the system cannot fork, threads do it.
-    Raises Crash, with the `name` of the item, where a process of several ends without an answer.
+    Raises Crash, with the `name` of the item, where another process ends without an answer: with more than one of the
+    `jobs`, also a single item is computed in one.
     """
     for done, result in enumerate(_results(function, items, jobs, name), start=1):
         if progress is not None:
@@ -55,8 +56,11 @@ def map_in_processes(
 def _results(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str]
 ) -> Iterator[Result]:
-    if jobs <= 1 or len(items) < 2:
+    if jobs <= 1:
         yield from map(function, items)
+        return
+    if len(items) < 2:
+        yield from _one_by_one(function, items, name)
         return
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
