@@ -98,6 +98,8 @@ def _work(
         signal.signal(signal.SIGALRM, _hang)
         warnings.simplefilter("error", RuntimeWarning)
         told: set[str] = set()
+        with contextlib.suppress(Exception):
+            target.run(given[0])  # imports and derives, which takes longer than any input may
         while done < most and time.monotonic() < end:
             data = mutated(rng.choice(given), given, target.words, rng) if done >= len(given) else given[done]
             place = 2 * _HEAD.size

@@ -200,6 +200,83 @@ LAW = b"time,value\n0,0\n0.5,1.5\n1,-2e1\n"
 PATH = b"t,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,1,2,3,0,1,0,0\n"
 
 
+URDF = """<?xml version="1.0"?>
+<robot name="r">
+  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>
+  <link name="base">
+    <inertial><origin xyz="0 0 0.1"/><mass value="2.5"/>
+      <inertia ixx="0.01" iyy="0.01" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><origin xyz="0 0 0" rpy="0 0 1.57"/><geometry><mesh filename="a.stl" scale="0.001 0.001 0.001"/></geometry>
+      <material name="grey"/></visual>
+    <collision><geometry><box size="0.1 0.2 0.3"/></geometry></collision>
+  </link>
+  <link name="arm"><visual><geometry><cylinder radius="0.02" length="0.3"/></geometry></visual></link>
+  <link name="tip"><visual><geometry><sphere radius="0.01"/></geometry></visual></link>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 0.3"/><axis xyz="0 0 1"/>
+    <limit lower="-1.5" upper="1.5" effort="10" velocity="2"/><dynamics damping="0.1" friction="0.0"/></joint>
+  <joint name="j2" type="prismatic"><parent link="arm"/><child link="tip"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.1" effort="10" velocity="2"/><mimic joint="j1" multiplier="0.5" offset="0"/></joint>
+</robot>
+"""
+MJCF = """<mujoco model="m">
+  <compiler angle="degree" eulerseq="xyz" autolimits="true"/>
+  <default><geom rgba="1 0 0 1"/><default class="c"><joint damping="0.5" range="-90 90"/></default></default>
+  <asset><mesh name="a" file="a.stl" scale="0.001 0.001 0.001"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 0.1"/>
+    <body name="base" pos="0 0 0.1"><geom type="mesh" mesh="a"/>
+      <body name="arm" pos="0 0 0.3" euler="0 90 0" childclass="c">
+        <joint name="h" type="hinge" axis="0 0 1"/><geom type="capsule" fromto="0 0 0 0 0 0.3" size="0.02"/>
+        <frame pos="0 0 0.1"><body name="tip"><joint name="s" type="slide" axis="1 0 0"/>
+          <inertial pos="0 0 0" mass="0.1" diaginertia="0.001 0.001 0.001"/><geom type="box" size="0.01 0.02 0.03"/>
+        </body></frame>
+      </body>
+    </body>
+  </worldbody>
+  <equality><joint joint1="s" joint2="h" polycoef="0 0.5 0 0 0"/>
+    <connect body1="tip" body2="base" anchor="0 0 0"/></equality>
+  <actuator><position joint="h" kp="10" forcerange="-5 5"/></actuator>
+</mujoco>
+"""
+XACRO = """<?xml version="1.0"?>
+<robot name="x" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="size" value="0.1"/>
+  <xacro:arg name="count" default="2"/>
+  <xacro:macro name="part" params="name length:=1 *block">
+    <link name="${name}"><visual><geometry><box size="${size*2} ${size} ${length/2+0.1}"/></geometry></visual></link>
+    <xacro:insert_block name="block"/>
+  </xacro:macro>
+  <xacro:part name="one" length="3"><link name="two"/></xacro:part>
+  <xacro:if value="${size > 0}">
+    <joint name="j" type="continuous"><parent link="one"/><child link="two"/></joint></xacro:if>
+</robot>
+"""
+
+
+def urdf() -> list[bytes]:
+    """A robot of three links."""
+    return [URDF.encode()]
+
+
+def mjcf() -> list[bytes]:
+    """A model of three bodies."""
+    return [MJCF.encode()]
+
+
+def xacro() -> list[bytes]:
+    """A description with macros, properties and conditions."""
+    return [XACRO.encode(), URDF.encode()]
+
+
+def scenes() -> list[bytes]:
+    """PLY and OFF."""
+    vertices, faces = "".join("{} {} {}\n".format(*v) for v in CUBE.tolist()), SIDES.tolist()
+    triangles = "".join("3 {} {} {}\n".format(*f) for f in faces)
+    head = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+    ply = f"{head}element face 12\nproperty list uchar int vertex_indices\nend_header\n{vertices}{triangles}"
+    return [ply.encode(), f"OFF\n8 12 0\n{vertices}{triangles}".encode()]
+
+
 def csv() -> list[bytes]:
     """Laws and paths."""
     return [LAW, PATH, b"0,0,0,0\n1,1,1,1\n2,2,2,2\n"]

@@ -150,9 +150,28 @@ def _results(data: bytes) -> None:
     from kinform import results
 
     (_FOLDER / "r.h5").write_bytes(edits.edited(seeds.results_images(), data))
-    design = results.read(_FOLDER / "r.h5")
-    if data[-1:] < b"\x20":
-        results.write(design, _FOLDER / "again.h5")
+    results.read(_FOLDER / "r.h5")
+
+
+def _description(suffix: str) -> Callable[[bytes], None]:
+    """Reads a description of a robot, whose mesh lies beside it."""
+
+    def run(data: bytes) -> None:
+        from kinform import form
+
+        _beside()
+        (_FOLDER / f"robot{suffix}").write_bytes(data)
+        form.load(_FOLDER / f"robot{suffix}")
+
+    return run
+
+
+def _scene(data: bytes) -> None:
+    from kinform.form.meshes.by_trimesh import read_by_trimesh
+
+    for kind in ("ply", "off"):
+        with contextlib.suppress(MeshError):
+            _mesh(read_by_trimesh(data, kind))
 
 
 def _text_error(run: Callable[[bytes], None]) -> Callable[[bytes], None]:
@@ -186,6 +205,11 @@ _JSON_WORDS = (
     b"1e999",
     b",",
 )
+_XML_WORDS = (
+    b"<link name='x'/>", b"<body>", b"</", b"/>", b"<!ENTITY a 'b'>", b"&#0;", b"&a;", b"<![CDATA[", b"xmlns:a='b'",
+    b"name=", b"rpy=", b"${1/0}", b"${[0]*9}", b"<xacro:include filename='robot.urdf.xacro'/>", b"<freejoint/>",
+    b"<!--", b"<?x?>",
+)  # fmt: skip
 _STL_WORDS = (b"solid", b"endsolid", b"facet normal", b"outer loop", b"vertex", b"endloop", b"endfacet", b"\n", b" ")
 _OBJ_WORDS = (
     b"v ",
@@ -214,6 +238,10 @@ TARGETS = {
         Target("baseline", _text_error(_baseline), seeds.baselines, _JSON_WORDS, 0.5),
         Target("lock", _text_error(_lock), seeds.locks, _JSON_WORDS),
         Target("catalog", _catalog, seeds.catalogs, (b"CREATE TABLE", b"SELECT", b"joints")),
+        Target("urdf", _description(".urdf"), seeds.urdf, _XML_WORDS),
+        Target("mjcf", _description(".xml"), seeds.mjcf, _XML_WORDS),
+        Target("xacro", _description(".urdf.xacro"), seeds.xacro, _XML_WORDS),
+        Target("scene", _scene, seeds.scenes, (b"element vertex", b"property list", b"OFF", b"\n"), 0.5),
         Target("results", _results, seeds.edits, (), 2.0),
     )
 }

@@ -13,7 +13,7 @@ from typing import Any
 
 from lxml import etree
 
-from kinform.form.constants import VALUE_LENGTH, XML_BYTES
+from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH, XML_BYTES
 from kinform.form.descriptions.robot import At
 from kinform.form.problems import Problems, in_quotes
 
@@ -22,6 +22,9 @@ FILE = "{urn:kinform}file"
 
 Element = Any
 """An lxml element."""
+
+_BOUNDS = ("lower", "upper", "effort", "velocity", "range", "ctrlrange", "forcerange", "actuatorfrcrange")
+"""Attributes in which the largest double there is says that there is no bound."""
 
 _ENTITY = re.compile(rb"<!\s*(ENTITY|DOCTYPE[^>\[]*\b(SYSTEM|PUBLIC)\b)")
 
@@ -110,9 +113,11 @@ class Xml:
                 value = float(word)
             except ValueError:
                 value = math.nan
-            if not math.isfinite(value):
+            most = math.inf if what in _BOUNDS else LARGEST_NUMBER
+            if not (math.isfinite(value) and abs(value) <= most):
                 shown = word if len(word) <= VALUE_LENGTH else word[:VALUE_LENGTH] + "…"
-                wrong = f"<{tag_of(element)}>: {what} has {in_quotes(shown)}, which is no finite number"
+                up_to = "" if what in _BOUNDS else f" up to {LARGEST_NUMBER:g}"
+                wrong = f"<{tag_of(element)}>: {what} has {in_quotes(shown)}, which is no finite number{up_to}"
                 self.complain(element, wrong, "give finite numbers")
                 return None
             values.append(value)

@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from kinform.form.constants import LARGEST_NUMBER
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.registry import FORMATS, reader_of
 from kinform.form.descriptions.robot import At, Inertial, Link, Robot, RobotJoint, Shape, Solid
 from kinform.form.descriptions.tree import distinct
-from kinform.form.problems import first_names
+from kinform.form.problems import first_names, in_quotes
 from kinform.form.readers.places import Places
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions
@@ -80,6 +81,11 @@ class _Writer:
             self._joint(joint)
         kinds = {joint.name: joint.type for joint in robot.joints}
         for ratio in robot.ratios:
+            strange = [name for name in ratio.joints if name not in kinds]
+            if strange:
+                message = f"a coupling names {in_quotes(strange[0])}, which is no joint"
+                self.source.problems.add(message, ratio.at.file, ratio.at.line, "name two joints")
+                continue
             first, second = (self._value(kinds[name]) for name in ratio.joints)
             self._add("coupling", ratio.at, {"joints": list(ratio.joints), "ratio": ratio.ratio * second / first})
         if not held:
@@ -161,7 +167,10 @@ class _Writer:
         if joint.pitch is not None:
             table["pitch"] = joint.pitch / self.metres
         if joint.range is not None:
-            table["range"] = [bound / self._value(joint.type) for bound in joint.range]
+            bounds = (bound / self._value(joint.type) for bound in joint.range)
+            # what writers put in place of no bound is the largest number that they know
+            free = (math.copysign(math.inf, bound) if abs(bound) > LARGEST_NUMBER else bound for bound in bounds)
+            table["range"] = list(free)
         self._add("joint", joint.at, table)
         if joint.damping is not None:
             self._add("drive", joint.at, {"joint": joint.name, "kind": "damper", "damping": joint.damping})
@@ -175,6 +184,8 @@ class _Writer:
             self._limit(joint, "speed", "speed", joint.speed / self._value(joint.type))
 
     def _limit(self, joint: RobotJoint, kind: str, word: str, limit: float) -> None:
+        if limit > LARGEST_NUMBER:
+            return
         table = {"name": f"{word} of {joint.name}", "kind": kind, "joint": joint.name, "limit": limit}
         self._add("require", joint.at, table | {"when_run": True})
 

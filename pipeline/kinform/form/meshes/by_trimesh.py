@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from kinform.form.meshes.raw import REEXPORT, Fault, MeshError, RawMesh, soup
+from kinform.form.constants import LARGEST_NUMBER
+from kinform.form.meshes.raw import REEXPORT, Fault, MeshError, RawMesh, is_coordinate, soup
 
 
 def read_by_trimesh(data: bytes, kind: str) -> RawMesh:
@@ -22,14 +23,14 @@ def read_by_trimesh(data: bytes, kind: str) -> RawMesh:
     try:
         scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False)
         meshes = [item for item in scene.dump() if isinstance(item, trimesh.Trimesh)]
+        corners = [np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)] for mesh in meshes]
     except Exception as error:  # readers of other people raise whatever they please
         words = " ".join(str(error).split()) or type(error).__name__
         raise MeshError([Fault(f"cannot be read as {kind.upper()}: {words[:200]}", REEXPORT)]) from None
-    corners = [np.asarray(mesh.vertices, dtype=np.float64)[np.asarray(mesh.faces)] for mesh in meshes]
     if not sum(map(len, corners)):
         raise MeshError([Fault("is empty: it has no triangle", REEXPORT)])
     every = np.concatenate(corners)
-    if not np.isfinite(every).all():
-        raise MeshError([Fault("has coordinates that are no finite numbers", REEXPORT)])
+    if not is_coordinate(every).all():
+        raise MeshError([Fault(f"has coordinates that are no finite numbers up to {LARGEST_NUMBER:g}", REEXPORT)])
     single = float(np.finfo(np.float32).eps) * float(np.abs(every).max())
     return soup(every, written=single)
