@@ -7,6 +7,7 @@ markup.
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ class Settings:
 
     quiet: bool = False
     debug: bool = False
+    cut: OSError | None = None
+    """What kept some of stdout from its reader."""
 
 
 settings = Settings()
@@ -37,7 +40,7 @@ def _console(stream: IO[str]) -> Console:
         """A console whose reader may leave."""
 
         def on_broken_pipe(self) -> None:
-            _forget(stream)
+            _lose(stream, BrokenPipeError())
 
     return Patient(
         file=stream,
@@ -82,33 +85,38 @@ def _forget(stream: IO[str]) -> None:
         os.dup2(nowhere.fileno(), stream.fileno())
 
 
+def _lose(stream: IO[str], error: OSError) -> None:
+    """Go on without the stream; that not all of stdout was written is remembered for the exit code."""
+    if stream is sys.stdout and settings.cut is None:
+        settings.cut = error
+    _forget(stream)
+
+
 def emit(text: str) -> None:
-    """Write text to stdout as it is, and end the line; a reader that left (`| head`) is no error."""
+    """Write text to stdout as it is, and end the line. What cannot be written is remembered, and no exception: the
+    work goes on, and the verdict counts."""
     try:
         sys.stdout.write(text if text.endswith("\n") else text + "\n")
         sys.stdout.flush()
-    except BrokenPipeError:
-        _forget(sys.stdout)
+    except OSError as error:
+        _lose(sys.stdout, error)
 
 
 def out(item: RenderableType) -> None:
     """Write a table, a tree or sentences for people to stdout; off a terminal no blanks end a line."""
     console = _console(sys.stdout)
-    if console.is_terminal:
-        console.print(item)
-        flush()
-        return
     with console.capture() as drawn:
         console.print(item)
-    emit("\n".join(line.rstrip() for line in drawn.get().splitlines()))
+    text = drawn.get()
+    emit(text if console.is_terminal else "\n".join(line.rstrip() for line in text.splitlines()))
 
 
 def flush() -> None:
-    """Hand everything to the reader now; raises OSError where it cannot be (a full disk)."""
+    """Hand everything to the reader now; what cannot be is remembered as by `emit`."""
     try:
         sys.stdout.flush()
-    except BrokenPipeError:
-        _forget(sys.stdout)
+    except OSError as error:
+        _lose(sys.stdout, error)
 
 
 def give_up() -> None:
@@ -132,6 +140,21 @@ def warn(text: str) -> None:
         from rich.text import Text
 
         tell(Text.assemble(("warning: ", "bold yellow"), text))
+
+
+def write_whole() -> None:
+    """Give stdout a buffer where it has none (`PYTHONUNBUFFERED`): without one, what a full disk takes only half of
+    counts as written."""
+    raw = getattr(sys.stdout, "buffer", None)
+    if isinstance(raw, io.RawIOBase):
+        given = sys.stdout
+        whole = io.BufferedWriter(raw)
+        sys.stdout = io.TextIOWrapper(whole, given.encoding, given.errors, newline="\n", write_through=True)
+        _KEPT.append(given)
+
+
+_KEPT: list[object] = []
+"""Streams that would close their file when they are forgotten."""
 
 
 def tolerate_any_character() -> None:

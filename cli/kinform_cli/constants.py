@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+# supervision
+
+GRACE = 1.5
+"""Seconds after Ctrl-C in which the work may end by itself, with its own words; the promise is two."""
+
 # console
 
 UNBOUNDED = 100_000

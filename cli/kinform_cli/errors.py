@@ -69,6 +69,20 @@ def from_typer(code: object) -> int:
     return code if isinstance(code, int) else OK
 
 
+def of_output(code: int) -> int:
+    """The exit code after all that was to be printed: what did not all reach its reader is no pass. A reader that left
+    (`| head`) is told nothing, and findings stay findings; a disk that is full is told, and what it holds is half of an
+    answer."""
+    if console.settings.cut is None:
+        return code
+    if not isinstance(console.settings.cut, BrokenPipeError):
+        _print(
+            "kinform", f"not all of the output could be written: {console.settings.cut.strerror}", "make room for it"
+        )
+        return NOT_VERIFIED
+    return FINDINGS if code == FINDINGS else NOT_VERIFIED
+
+
 def _traceback(error: BaseException) -> str:
     return "".join(traceback.format_exception(error)).rstrip()
 

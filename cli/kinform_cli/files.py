@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kinform.foundation.regular import not_a_file
 from kinform_cli import console
 from kinform_cli.errors import refuse
 from kinform_cli.progress import Working
@@ -47,6 +48,9 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     _spare_inputs(path, inputs)
     if path.is_dir():
         raise refuse("this is a folder, not a file", file=path, remedy="name a file in it")
+    fault = not_a_file(path)
+    if fault is not None:
+        raise refuse(fault, file=path, remedy="name a file")
     if not path.parent.is_dir():
         raise refuse(f"the folder {path.parent} does not exist", file=path, remedy=f"create it: mkdir -p {path.parent}")
     _try_writing(path)

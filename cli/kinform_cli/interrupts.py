@@ -26,6 +26,8 @@ def raise_unheard() -> None:
 
 
 def _interrupted(number: int, frame: FrameType | None) -> None:
+    """Once: a terminal sends Ctrl-C to all processes, and the one that watches passes it on."""
     global _asked
-    _asked = True
-    raise KeyboardInterrupt
+    if not _asked:
+        _asked = True
+        raise KeyboardInterrupt

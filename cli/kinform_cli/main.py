@@ -6,6 +6,7 @@ installation must not end with 1, which would read as findings.
 
 from __future__ import annotations
 
+import faulthandler
 import gc
 import os
 import sys
@@ -22,7 +23,7 @@ def main(arguments: Sequence[str]) -> int:
 
     # small matrices: threads of BLAS cost more than they give, and `--jobs` shares the work between processes
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    console.settings.quiet = False
+    console.settings.quiet, console.settings.cut = False, None
     console.settings.debug = bool(os.environ.get("KINFORM_DEBUG"))
     try:
         import typer
@@ -32,23 +33,28 @@ def main(arguments: Sequence[str]) -> int:
         command = typer.main.get_command(app)
         code = command.main(args=list(arguments) or ["--help"], prog_name="kinform", standalone_mode=False)
         console.flush()
-        return errors.from_typer(code) if arguments else errors.NOT_VERIFIED
+        code = errors.from_typer(code) if arguments else errors.NOT_VERIFIED
     except SystemExit as stop:  # completion; and typer's help when its reader left
-        return errors.OK if not stop.code or isinstance(stop.__context__, OSError) else errors.NOT_VERIFIED
+        code = errors.OK if not stop.code and not isinstance(stop.__context__, OSError) else errors.NOT_VERIFIED
     except (Exception, KeyboardInterrupt) as error:
         return errors.report(error)
+    return errors.of_output(code)
 
 
 def entry() -> NoReturn:
     """The console script."""
     code = _FAILED
     try:
-        from kinform_cli import console, interrupts
+        from kinform_cli import console, interrupts, supervision
 
+        supervision.divide()
         interrupts.listen()
+        if os.environ.get("KINFORM_DEBUG"):
+            faulthandler.enable()
         # nearly all that is made stays until the end: looking for garbage often finds none
         gc.set_threshold(500_000, 20, 20)
         console.tolerate_any_character()
+        console.write_whole()
         code = main(sys.argv[1:])
         console.give_up()
     except BaseException:  # not even an error could be reported; or Ctrl-C again while it was

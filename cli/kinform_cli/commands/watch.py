@@ -69,7 +69,7 @@ def watch(
             verdict = _run(manifest, output, allow_outside, how, cores(jobs), gate)
             code = errors.NOT_VERIFIED if verdict is None else verdict
             runs += 1
-            if runs == max_runs:
+            if runs == max_runs or console.settings.cut is not None:
                 break
             watched = _files(manifest, output)
             # what was saved while the run went on counts as saved after it

@@ -16,6 +16,7 @@ from typing import Any
 
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, Triple
 from kinform.errors import InputError, Problem
+from kinform.foundation.regular import not_a_file
 from kinform.results import replace_file
 
 SCHEMA = "kinform/catalog/1"
@@ -83,6 +84,9 @@ def open_catalog(path: str | Path) -> Iterator[sqlite3.Connection]:
 def _connection(path: Path) -> sqlite3.Connection:
     """The database behind a file, after its signature and schema; raises InputError with the remedy."""
     make = "make one: kinform catalog add DIR"
+    fault = not_a_file(path)
+    if fault is not None:
+        raise _refuse(path, fault, "name a catalog with --catalog")
     try:
         with path.open("rb") as stream:
             signature = stream.read(len(_SIGNATURE))

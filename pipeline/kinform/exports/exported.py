@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
 from kinform.errors import KinformError
+from kinform.results.replacement import replace_file
 
 
 @dataclass(frozen=True)
@@ -36,25 +35,12 @@ class LostError(KinformError):
 def write(exported: Exported, folder: str | Path) -> tuple[Path, ...]:
     """Write the files, each in one step, making folders as needed; a file with the same bytes is kept.
 
-    Returns their paths, sorted. Raises OSError.
+    Returns their paths, sorted. Raises ResultsError, and OSError where a folder cannot be made.
     """
     out = []
     for name, data in sorted(exported.files.items()):
         target = Path(folder) / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        if target.is_file() and target.stat().st_size == len(data) and target.read_bytes() == data:
-            os.utime(target)
-        else:
-            _replace(target, data)
+        replace_file(target, data)
         out.append(target)
     return tuple(out)
-
-
-def _replace(target: Path, data: bytes) -> None:
-    draft = target.parent / f".kinform-{secrets.token_hex(8)}.tmp"
-    try:
-        draft.write_bytes(data)
-        os.replace(draft, target)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise

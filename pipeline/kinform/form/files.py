@@ -13,6 +13,7 @@ from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems, did_you_mean
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
 
@@ -23,6 +24,11 @@ OTHER_MESHES = (".dae", ".glb", ".ply", ".off")
 """Suffixes of mesh files that trimesh reads: what descriptions name besides."""
 
 
+def no_file(path: Path) -> str:
+    """What is wrong with a path at which no file is, as the end of a sentence."""
+    return "is a folder" if path.is_dir() else not_a_file(path) or "does not exist"
+
+
 def is_mesh(path: Path) -> bool:
     """Whether the name is that of a mesh file."""
     return path.suffix.lower() in MESHES + OTHER_MESHES
@@ -30,6 +36,8 @@ def is_mesh(path: Path) -> bool:
 
 def _digest(path: Path) -> str | None:
     """SHA-256 (hex) of a file; None where it cannot be read."""
+    if not_a_file(path):
+        return None
     try:
         with open(path, "rb") as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()
@@ -39,7 +47,15 @@ def _digest(path: Path) -> str | None:
 
 def read_raw(path: Path) -> RawMesh:
     """Facets of an STL or OBJ file; raises MeshError, or OSError where it cannot be opened."""
+    _check_file(path)
     return _parsed(path, path.read_bytes() if is_mesh(path) else b"")
+
+
+def _check_file(path: Path) -> None:
+    """Raise MeshError where a pipe or a device is in the place of a file."""
+    fault = not_a_file(path)
+    if fault is not None:
+        raise MeshError([Fault(fault, "write the mesh to a file")])
 
 
 def _parsed(path: Path, data: bytes) -> RawMesh:
@@ -139,8 +155,7 @@ class DesignFiles:
             remedy = (
                 did_you_mean(path.name, near, "the files there") if near else f"there is no folder {path.parent.name}"
             )
-            message = f"{what} {stated} " + ("is a folder" if path.is_dir() else "does not exist")
-            self.problems.add(message, file, line, remedy)
+            self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)
         return path
@@ -207,6 +222,7 @@ class DesignFiles:
     def _mesh_content(self, path: Path) -> str:
         """SHA-256 (hex) of the file. Where its mesh may be there already the bytes are not kept."""
         if path not in self._digests:
+            _check_file(path)
             try:
                 if self._earlier:
                     with open(path, "rb") as stream:
@@ -219,6 +235,7 @@ class DesignFiles:
 
     def _bytes(self, path: Path) -> bytes:
         if path not in self._data:
+            _check_file(path)
             self._data[path] = path.read_bytes()
             if self._digests.get(path, "") not in ("", hashlib.sha256(self._data[path]).hexdigest()):
                 raise MeshError([Fault("changed while it was read", "run again when it is saved")])

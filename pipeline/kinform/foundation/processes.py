@@ -74,12 +74,17 @@ def _results(
     else:
         pool, task = ThreadPoolExecutor(jobs), function
     done = 0
+    others = set(multiprocessing.active_children())
     try:
         for result in pool.map(task, items):
             yield result
             done += 1
     except BrokenProcessPool:
         yield from _one_by_one(function, items[done:], name)
+    except BaseException:  # nobody waits any more for what takes long, Ctrl-C first of all
+        for worker in set(multiprocessing.active_children()) - others:
+            worker.kill()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from kinform.foundation.constants import JSON_DEPTH, JSON_DIGITS, JSON_LARGEST
+from kinform.foundation.regular import not_a_file
 
 _JSON_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
 
@@ -23,6 +24,9 @@ class TextError(Exception):
 def read_text(path: Path, most: int, what: str) -> str:
     """The UTF-8 text of a file of at most so many bytes, without its byte order mark; `what` it should be. Raises
     TextError."""
+    fault = not_a_file(path)
+    if fault is not None:
+        raise TextError(fault, f"write it to a file, and name {what}")
     try:
         with open(path, "rb") as stream:
             data = stream.read(most + 1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import stat
 from collections.abc import Iterator
 from io import BufferedReader
 from pathlib import Path
@@ -13,6 +12,7 @@ from pathlib import Path
 import h5py
 
 from kinform.errors import ResultsError
+from kinform.foundation.regular import not_a_file
 from kinform.results import constants
 from kinform.results.replacement import refuse
 from kinform.results.seal import Seal, is_sealed, read_seal
@@ -82,9 +82,9 @@ def fault_of(path: str | Path) -> ResultsError | None:
 def _stream(path: str | Path) -> BufferedReader:
     """The file open for reading, if it is one: opening a pipe would wait for who writes into it."""
     try:
-        mode = os.stat(path).st_mode
-        if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
-            raise refuse(path, "this is a device or a pipe, not a file", _NAME_ONE)
+        fault = not_a_file(path)
+        if fault is not None:
+            raise refuse(path, fault, _NAME_ONE)
         return open(path, "rb")
     except FileNotFoundError as error:
         raise refuse(path, "there is no such file", f"check the name, or {_COMPUTE}") from error

@@ -12,6 +12,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from kinform.foundation.regular import not_a_file
 from kinform.reuse import fingerprints
 from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.digest import digest
@@ -54,6 +55,8 @@ def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
                 whole = os.path.realpath(path) if os.path.islink(path) else os.path.join(folders[folder], base)
                 if not whole.startswith(root):
                     return False
+            if not_a_file(path):
+                return False
             with open(path, "rb") as stream:
                 if hashlib.file_digest(stream, "sha256").hexdigest() != files[name]:
                     return False

@@ -22,12 +22,17 @@ from kinform.form.problems import first_names, in_quotes
 from kinform.form.readers.places import Places
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform.model.arrays import Array
 
 
 def tables(source: Source) -> SourceTables | None:
     """The tables of a robot description; every problem is noted."""
+    fault = not_a_file(source.path)
+    if fault is not None:
+        source.problems.add(fault, source.file, None, "write the description to a file")
+        return None
     try:
         data = source.path.read_bytes()
     except OSError as error:

@@ -44,7 +44,8 @@ _INCLUDE = re.compile(rb"include\s+filename\s*=\s*[\"']([^\"']+)")
 
 def _packages_of(data: bytes, home: Path) -> list[str]:
     """Names of packages that the file, and the xacro files of its package, ask for."""
-    texts = [data, *(path.read_bytes() for path in sorted(home.rglob("*.xacro"))[:XACRO_FILES])]
+    beside = [path for path in sorted(home.rglob("*.xacro")) if path.is_file()]
+    texts = [data, *(path.read_bytes() for path in beside[:XACRO_FILES])]
     return sorted({name.decode("utf-8", "replace") for text in texts for name in _FIND.findall(text)})
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinform.errors import InputError, Problem
 from kinform.form.constants import PARTS_MOST, SCOPES_DEEP, SCOPES_MOST, SYMMETRIC, UNIT_QUATERNION
-from kinform.form.files import DesignFiles, MeshUse, earlier_meshes
+from kinform.form.files import DesignFiles, MeshUse, earlier_meshes, no_file
 from kinform.form.manifest.common import Posed
 from kinform.form.manifest.parts import Group as GroupTable
 from kinform.form.manifest.parts import Part as PartTable
@@ -55,8 +55,8 @@ def load_with_contents(
     """
     path = Path(path)
     if not path.is_file():
-        what = "is a folder" if path.is_dir() else "does not exist"
-        raise InputError([Problem(f"the manifest {what}", str(path), None, "name a manifest (TOML); see kinform init")])
+        fault = f"the manifest {no_file(path)}"
+        raise InputError([Problem(fault, str(path), None, "name a manifest (TOML); see kinform init")])
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
     design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)

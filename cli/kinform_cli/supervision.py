@@ -1,0 +1,98 @@
+"""The command works in a process of its own, and this one watches it: so Ctrl-C is heard also while native code is at
+work, which Python does not interrupt, and a crash of native code ends in words and an exit code.
+
+The process that the user started waits for nothing but signals. On Ctrl-C it passes it on; who has not ended after a
+moment is ended. Where the user's process is killed the other goes with it: the system sees to that. It is so on Linux;
+elsewhere the command works in the process that was started, and native code is deaf for as long as it takes.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from typing import NoReturn
+
+from kinform_cli.constants import GRACE
+
+_FAILED = 2
+
+
+def divide() -> None:
+    """Returns in a new process, which does the work; this one ends with what that one ends with."""
+    if sys.platform != "linux":
+        return
+    awaited = {signal.SIGCHLD}
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as in the background of a shell: it stays so
+        awaited.add(signal.SIGINT)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    watching = os.getpid()
+    try:
+        worker = os.fork()
+    except OSError:  # no more processes are allowed: then without
+        worker = 0
+    if worker:
+        _watch(worker, awaited)
+    if os.getpid() != watching:
+        _end_with(watching)
+    signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _end_with(watching: int) -> None:
+    """Have the system kill this process when the one that watches it is gone, however that was ended."""
+    import ctypes
+
+    set_death_signal = 1  # PR_SET_PDEATHSIG
+    ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL, 0, 0, 0)
+    if os.getppid() != watching:  # already
+        os._exit(_FAILED)
+
+
+def _watch(worker: int, awaited: set[signal.Signals]) -> NoReturn:
+    """Wait until the worker has ended, and end as it did; never later than a moment after Ctrl-C."""
+    asked: float | None = None
+    while True:
+        ended, status = os.waitpid(worker, os.WNOHANG)
+        if ended:
+            os._exit(_code(status, asked is not None))
+        if asked is None:
+            heard: signal.struct_siginfo | None = signal.sigwaitinfo(awaited)
+        else:
+            left = asked + GRACE - time.monotonic()
+            if left <= 0:
+                os.kill(worker, signal.SIGKILL)
+            heard = signal.sigtimedwait(awaited, max(left, GRACE / 10))
+        if heard is not None and heard.si_signo == signal.SIGINT and asked is None:
+            asked = time.monotonic()
+            os.kill(worker, signal.SIGINT)
+
+
+def _code(status: int, asked: bool) -> int:
+    """The exit code that is due, after words for an end that the worker could not find words for."""
+    code = os.waitstatus_to_exitcode(status)
+    if code >= 0:
+        return code
+    if asked:
+        _tell("interrupted; an output file that existed is as it was")
+    elif -code == signal.SIGKILL:
+        _tell("killed from outside, or for want of memory; an output file that existed is as it was")
+    else:
+        try:
+            name = signal.Signals(-code).name
+        except ValueError:
+            name = "unknown"
+        _tell(
+            f"native code crashed (signal {-code}, {name}); an output file that existed is as it was\n"
+            "  remedy: run it again with KINFORM_DEBUG=1 to see where, and report it with its input"
+        )
+    return _FAILED
+
+
+def _tell(text: str) -> None:
+    """A message, by the means of a process that has imported nothing."""
+    try:
+        os.write(2, f"kinform: error: {text}\n".encode())
+    except OSError:
+        return

@@ -1,0 +1,22 @@
+"""Files that are files: a pipe makes who opens it wait for somebody else, and a device may never end."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+
+def not_a_file(path: str | Path) -> str | None:
+    """What is wrong with what stands in the place of a file, as the end of a sentence about it; None for files and
+    folders, and where nothing is, of which opening tells. It is not opened: that alone may wait, or let another program
+    go on."""
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):
+        return None
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
+        return None
+    if stat.S_ISFIFO(mode):
+        return "is a pipe, not a file"
+    return f"is a {'socket' if stat.S_ISSOCK(mode) else 'device'}, not a file"

@@ -1,0 +1,180 @@
+"""Ctrl-C, crashes and kills while the command works, also where native code is at work and Python hears nothing."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from support.command_line import environment, listening
+from support.places import FIXTURES
+
+from kinform import results
+
+PAIR = FIXTURES / "pairs" / "revolute_collars"
+NAME = "revolute_collars.toml"
+
+HELD = """
+import os, signal, sys
+from pathlib import Path
+import kinform.consistency, kinform.results, kinform.stages
+from kinform_cli.main import entry
+
+def held(*given, **named):
+    Path("worker").write_text(str(os.getpid()))
+    Path("begun").touch()
+    {deed}
+
+place, name = sys.argv.pop(1).rsplit(".", 1)
+import importlib
+setattr(importlib.import_module(place), name, held)
+entry()
+"""
+DEAF = "sum(range(10**15))"
+"""One call of C code that asks for no signals and lets no other thread run, for days."""
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a process watches the work on Linux only")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, derive_design) -> Path:
+    """The hinge with its results."""
+    shutil.copytree(PAIR, tmp_path, dirs_exist_ok=True)
+    results.write(derive_design(PAIR / NAME), tmp_path / "r.h5")
+    return tmp_path
+
+
+def begun(folder: Path, place: str, *words: str, deed: str = DEAF) -> subprocess.Popen[str]:
+    """The command, at work in the function that was replaced."""
+    running = subprocess.Popen(
+        [sys.executable, "-c", HELD.format(deed=deed), place, *words],
+        cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=listening,
+    )  # fmt: skip
+    while not (folder / "begun").exists():
+        if running.poll() is not None:
+            pytest.fail(str(running.communicate()))
+        time.sleep(0.01)
+    return running
+
+
+def alive(process: int) -> bool:
+    """Whether it runs; one that ended and was not asked for is none."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+WORK = {
+    "kinform.stages.import_": ("run", NAME, "-o", "r.h5", "--jobs", "1", "--no-ranges"),
+    "kinform.stages.contacts": ("contacts", "r.h5", "-o", "r.h5"),
+    "kinform.stages.joints": ("joints", "r.h5", "-o", "r.h5"),
+    "kinform.stages.mass": ("mass", "r.h5", "-o", "r.h5"),
+    "kinform.stages.simulate": ("simulate", "r.h5", "-o", "r.h5"),
+    "kinform.stages.check": ("check", "r.h5", "-o", "r.h5"),
+    "kinform.results.read": ("show", "r.h5"),
+}
+
+
+QUICK = ("kinform.stages.contacts", "kinform.stages.simulate")
+
+
+@pytest.mark.parametrize(
+    "place", [*QUICK, *(pytest.param(place, marks=pytest.mark.slow) for place in WORK if place not in QUICK)]
+)
+def test_ctrl_c_is_heard_while_native_code_hears_nothing(place: str, folder: Path) -> None:
+    before = (folder / "r.h5").read_bytes()
+    running = begun(folder, place, *WORK[place])
+    running.send_signal(signal.SIGINT)
+    out, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert (out, errors) == ("", "kinform: error: interrupted; an output file that existed is as it was\n")
+    assert not alive(int((folder / "worker").read_text()))
+    assert (folder / "r.h5").read_bytes() == before
+    assert not list(folder.glob("*.tmp"))
+
+
+def test_ctrl_c_of_a_terminal_reaches_all_processes_and_is_told_once(folder: Path) -> None:
+    sleeping = HELD.format(deed="import time; time.sleep(600)")
+    running = subprocess.Popen(
+        [sys.executable, "-c", sleeping, "kinform.stages.check", "check", "r.h5"],
+        cwd=folder, env=environment(), stderr=subprocess.PIPE, text=True, preexec_fn=listening, start_new_session=True,
+    )  # fmt: skip
+    while not (folder / "begun").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
+    os.killpg(running.pid, signal.SIGINT)
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert errors == "kinform: error: interrupted; an output file that existed is as it was\n"
+
+
+def test_workers_in_native_code_end_with_the_command(folder: Path) -> None:
+    """Two processes share the contacts; both are deaf."""
+    deed = (
+        "from kinform.foundation.processes import map_in_processes; "
+        "list(map_in_processes(lambda n: (Path(f'worker{n}').write_text(str(os.getpid())), sum(range(10**15))), "
+        "[1, 2], 2))"
+    )
+    running = begun(folder, "kinform.stages.contacts", "contacts", "r.h5", "-o", "r.h5", deed=deed)
+    places = [folder / "worker1", folder / "worker2"]
+    while not all(place.exists() and place.read_text() for place in places):
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert "interrupted" in errors
+    for place in places:
+        process, end = int(place.read_text()), time.monotonic() + 60
+        while alive(process):
+            assert time.monotonic() < end
+            time.sleep(0.05)
+
+
+@pytest.mark.parametrize("deed", ["os.kill(os.getpid(), signal.SIGSEGV)", "os.abort()", "os.kill(os.getpid(), 9)"])
+def test_a_crash_of_native_code_is_told_and_never_a_verdict(deed: str, folder: Path) -> None:
+    before = (folder / "r.h5").read_bytes()
+    running = begun(folder, "kinform.stages.check", "check", "r.h5", "-o", "r.h5", deed=deed)
+    out, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    assert out == ""
+    assert errors.startswith(
+        "kinform: error: killed" if "9" in deed else "kinform: error: native code crashed (signal "
+    )
+    assert (folder / "r.h5").read_bytes() == before
+
+
+@pytest.mark.parametrize("signal_", [signal.SIGKILL, signal.SIGTERM])
+def test_who_kills_the_command_kills_its_work(signal_: signal.Signals, folder: Path) -> None:
+    running = begun(folder, "kinform.stages.check", "check", "r.h5")
+    running.send_signal(signal_)
+    running.wait(timeout=60)
+    assert running.returncode == -signal_
+    worker, end = int((folder / "worker").read_text()), time.monotonic() + 60
+    while alive(worker):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    running.communicate()
+
+
+def test_a_command_in_the_background_of_a_shell_goes_on(folder: Path) -> None:
+    """There Ctrl-C is ignored, and is meant for others."""
+    deed = "import time\n    while not Path('go').exists(): time.sleep(0.01)\n    raise OSError('went on')"
+    running = subprocess.Popen(
+        [sys.executable, "-c", HELD.format(deed=deed), "kinform.stages.check", "check", "r.h5"],
+        cwd=folder, env=environment(), stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+    )  # fmt: skip
+    while not (folder / "begun").exists():
+        assert running.poll() is None
+        time.sleep(0.01)
+    running.send_signal(signal.SIGINT)
+    (folder / "go").touch()
+    _, errors = running.communicate(timeout=60)
+    assert "went on" in errors
