@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from manifold3d import Manifold
 from support.solids import box, derived, random_pose, rod
 
 FACETS = (6, 7, 8, 9, 10, 11, 12, 16, 24, 64, 200)
@@ -105,3 +106,21 @@ def test_what_encloses_a_crumpled_shaft_makes_its_joint_doubtful(seed):
     shaft = spool(100, radius=2.2, collar=4.0, half=4.0).warp_batch(lambda v: v + 0.05 * rng.normal(size=v.shape))
     joint = joint_of(shaft, sleeve(2.3, 32, half=3.9, size=5.0), seed)
     assert joint.status == "ambiguous" or joint.type == "revolute"
+
+
+@pytest.mark.parametrize(
+    ("collar", "types", "status"),
+    [
+        (7.6, {"cylindrical"}, "determined"),
+        (8.0, {"revolute", "cylindrical"}, "ambiguous"),
+        (8.2, {"revolute", "cylindrical"}, "ambiguous"),
+        (9.0, {"revolute"}, "determined"),
+    ],
+)
+def test_a_shoulder_that_rests_on_less_than_its_outline_is_exact_to_may_not_rest_at_all(collar, types, status):
+    """The bore is countersunk to 8 mm; the flats of twelve and 24 sides stand off their circle by 0.27 and 0.07 mm."""
+    sink = Manifold.cylinder(2.0, 6.0, 8.0, 24).translate((0, 0, 3.0))
+    block = box(-15, 15, -15, 15, -10, 5) - rod(6.0, -11, 6, 24) - sink
+    joint = joint_of(rod(5.98, -20, 12, 12, 10.0) + rod(collar, 5.01, 12, 12, 10.0), block, 3)
+    assert {joint.type, *(reading.type for reading in joint.readings)} == types
+    assert joint.status == status

@@ -53,7 +53,8 @@ def pair_contacts(
     mates = analytic_mates(pair, reach)
     overlap = pair.overlap(MATING_REACH * tolerance)
     mates += one_sided_mates(pair, overlap)
-    patches = mated_patches(pair, mates)
+    mated = mated_patches(pair, mates)
+    patches = [patch for patch in mated if not patch.narrow]
     screwed = threaded_patches(pair, overlap)
     patches += freeform_patches(pair, overlap)
     patches = [*_beside(patches, screwed), *screwed]
@@ -64,12 +65,18 @@ def pair_contacts(
         patches += pins_in_slots(pair, patches)
     patches += enclosing_patches(pair, patches)
     patches = [_of_scattered(pair, patch) for patch in patches]
-    patches.sort(key=lambda patch: (patch.surfaces, patch.one_sided, patch.kind))
+    patches.sort(key=_place_in_list)
     interference = find_interference(pair, patches, solids)
+    if patches:
+        patches = sorted([*patches, *(patch for patch in mated if patch.narrow)], key=_place_in_list)
     if interference is not None:
         place = X_WF[:3, :3] @ interference.place + X_WF[:3, 3]
         interference = replace(interference, place=np.asarray(freeze(place)))
     return PairContacts(tuple(in_world(patch, X_WF) for patch in patches), interference)
+
+
+def _place_in_list(patch: Patch) -> tuple[tuple[int, int], bool, str]:
+    return patch.surfaces, patch.one_sided, patch.kind
 
 
 def _beside(patches: list[Patch], screwed: list[Patch]) -> list[Patch]:

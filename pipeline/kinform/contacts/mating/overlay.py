@@ -46,6 +46,8 @@ class Cells:
     """(r, 2) m: corners that bound the overlap."""
     unit: float
     """m: the contact tolerance."""
+    narrow: bool = False
+    """Whether all of the overlap is narrower than what is thin in any case."""
 
     @property
     def areas(self) -> Array:
@@ -71,7 +73,7 @@ class Cells:
         _, bins = np.unique(self.bins[triangles], return_inverse=True)
         corners = self.corners[triangles]
         touched = np.isin(self._keys(self.rim), self._keys(corners.reshape(-1, 2)))
-        return Cells(corners, bins.ravel().astype(np.int64), self.rim[touched], self.unit)
+        return Cells(corners, bins.ravel().astype(np.int64), self.rim[touched], self.unit, self.narrow)
 
     def _keys(self, points: Array) -> NDArray[np.complex128]:
         """One number a point (n, 2), the same for points that are one."""
@@ -211,10 +213,17 @@ def _rim(polygons: list[Array], flat: bool) -> Array:
 def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: float = 0.0) -> Cells | None:
     """Overlap of the facets `first` (n, 3, 3) and `second` (m, 3, 3) in the chart; None where there is none.
 
-    `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case.
+    `tolerance` (m) sets what is too thin or too small to be a patch, `thin` (m) what is thin in any case: pieces that
+    are narrower than this are left out beside others, and are `narrow` where there are no others.
     """
     region = _overlap(chart, first, second, tolerance)
-    pieces = _pieces(region, max(constants.REGION_THIN, thin / tolerance)) if region is not None else []
+    if region is None:
+        return None
+    wide = max(constants.REGION_THIN, thin / tolerance)
+    pieces = _pieces(region, wide)
+    narrow = not pieces and wide > constants.REGION_THIN
+    if narrow:
+        pieces = _pieces(region, constants.REGION_THIN)
     if not pieces:
         return None
     step = np.array(chart.step) / tolerance
@@ -232,4 +241,4 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     place = np.floor((corners.mean(axis=1) - corners.min(axis=(0, 1))) / size).astype(np.int64)
     _, bins = np.unique(place, axis=0, return_inverse=True)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
-    return Cells(corners * tolerance, bins.ravel().astype(np.int64), rim * tolerance, tolerance)
+    return Cells(corners * tolerance, bins.ravel().astype(np.int64), rim * tolerance, tolerance, narrow)

@@ -133,6 +133,7 @@ def _patch(pair: PairView, mate: Mate, cells: Cells, measured: Array | None) -> 
         chord=chord,
         fit=classify_fit(gaps, chord, mate.uncertainty[1], pair.tolerance),
         tolerance=mate.limit / constants.MATING_REACH,
+        narrow=cells.narrow,
     )
 
 

@@ -20,7 +20,7 @@ from kinform.kinematics import constants
 from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.freedoms import freedoms, preserved_motions
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
-from kinform.kinematics.pair.scraps import scraps
+from kinform.kinematics.pair.scraps import narrow, scraps
 from kinform.kinematics.pair.stops import ROLES, OtherReading, faces_in_words, freed_motions, one_sense, stop_reading
 from kinform.kinematics.pair.uncertainty import uncertainty_doubt
 from kinform.model.arrays import Array, Flags
@@ -162,7 +162,7 @@ def _scrap_reading(
     if freed.shape[1] == 0:
         return None
     flats = all(evidence.items[k].patch.kind == "plane" and not evidence.items[k].interferes for k in out)
-    if flats and freed.shape[1] == 1 and not one_sense(evidence, freed[:, 0], out):
+    if flats and not narrow(evidence)[list(out)].any() and freed.shape[1] == 1 and not one_sense(evidence, freed[:, 0], out):
         return None  # the flat of a shaft holds a turn both ways, however small it is
     return OtherReading(name_space(firm, evidence.frame), firm, out, role)
 

@@ -44,7 +44,12 @@ def scraps(evidence: Evidence, alignment: float) -> Flags:
             slight[members] = arc < constants.SLIVER_ARC_ONE_SIDED or together < constants.SLIVER_SHARE
         else:
             slight[members] = arc < constants.SLIVER_ARC and together < constants.SLIVER_SHARE
-    return slight
+    return slight | narrow(evidence)
+
+
+def narrow(evidence: Evidence) -> Flags:
+    """(items,): which patches are of faces that may not touch at all, as far as their outlines tell."""
+    return np.array([item.patch.narrow for item in evidence.items], dtype=bool)
 
 
 def _dips(item: Item, contact: float) -> bool:
