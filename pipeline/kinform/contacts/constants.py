@@ -78,6 +78,8 @@ PRISM_SIDES = 6
 tessellates a cylinder that coarsely, and from 12 sides on strips are found to be round. Chosen on 300 random shafts of
 3 to 200 facets in bores of as many (play to 0.2 mm, with and without collars), judged on 300 others: 1 wrong and 108 in
 doubt, after 119 wrong and 71 in doubt without rings; the one, an octagon that just cannot turn, is in doubt since."""
+TORN_FLATS = 3
+"""So many flats of a ring that lie on flats of another part go round it: fewer may be those of a D or a key."""
 
 TANGENT_SHARE = 0.5
 """Share of the gap at the corners of a bore that the gap at its flats has at most, where the bore is taken to be

@@ -156,9 +156,9 @@ def _chain(assembly: Assembly, kinematics: Kinematics, joints: Sequence[Joint], 
     bodies = [root, *sorted({name for j in joints for name in j.bodies} - {root})]
     points = np.array([j.point for j in joints if j.point is not None]).reshape(-1, 3)
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
-    if frame.length < 1e-9 or len(points) < 2:
-        halves = [0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None]
-        frame = Frame(frame.centre, max(constants.LEAST_SIZE, *halves, 1e-9))
+    half = max((0.5 * part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
+    if frame.length <= constants.ONE_POINT * half or len(points) < 2:
+        frame = Frame(frame.centre, half or 1.0)
     edges = [(bodies.index(j.bodies[0]), bodies.index(j.bodies[1])) for j in joints]
     ties = [(index[c.joints[0]], index[c.joints[1]], c.meshing.ratio) for c in geared if c.meshing is not None]
     system = loop_system(edges, [j.twists for j in joints], frame, ties)

@@ -20,8 +20,8 @@ RATE_MOVES = 1e-6
 """Rate of a coordinate in a unit motion above which it takes part."""
 BODY_MOVES = 1e-9
 """Twist of a body in a unit motion above which it moves."""
-LEAST_SIZE = 0.05
-"""m: length of the frame of a chain whose joints and parts are smaller; a choice."""
+ONE_POINT = 1e-9
+"""Share of the largest part's size within which the joints of a chain are at one point; rounding."""
 
 # --- clearances -------------------------------------------------------------------------------------------------------
 

@@ -165,6 +165,10 @@ With 0.05 rad, two of 1,000 random assemblies were wrong, both of coarse circles
 shafts in bores whose vertices scatter by 1 to 100 µm, none of which chose it, 0 were wrong, 17 in doubt, 1 blocked
 (without this doubt and that of `contacts.constants.ENCLOSING_*`: 3, 6 and 4)."""
 
+WEYL_SIGMAS = 3.0
+"""A constraint whose singular value is less than so many standard uncertainties of the directions of all rows may be
+none: one of 2,000 random assemblies was wrong without this (two hexagons of 6 mm whose vertices scatter by 3 µm)."""
+
 # --- pair/uncertainty ------------------------------------------------------------------------------------------------
 
 SAYS_DIRECTION = 0.1
@@ -446,9 +450,11 @@ MOST_NAMED = 12
 SAME_RATES = 1e-2
 """An idle turn is one of the assembly's freedoms when it is within this share of one."""
 NO_TURN = 1e-10
-"""Turn (rad/s) beside a velocity (m/s) of at most 1, or its share of a larger one, that is none."""
+"""Turn (rad/s) that is none, as a share of a velocity over the size of the assembly; rounding."""
 NO_PITCH = 1e-6
-"""m a turn beside an arm of at most 1 m, or its share of a longer one, that is none."""
+"""m a turn that is none, as a share of the size of the assembly; a choice: a fine thread has 1e-2 of its screw."""
+PITCH_ROUNDING = 1e-13
+"""The same as a share of the distance of the axis from the origin: what products of doubles lose."""
 EXCHANGED = 0.1
 """Rate in an idle turn from which on a driver may give way to it."""
 NO_TWIST = 1e-12

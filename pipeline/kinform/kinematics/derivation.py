@@ -221,7 +221,7 @@ def _mobility(mechanism: _Mechanism) -> tuple[Mobility, tuple[Coupling, ...]]:
         infinitesimal=finite.infinitesimal,
         singular=finite.singular,
         certificates=finite.certificates,
-        named=named_freedoms(graph, closure, turns, mechanism.places),
+        named=named_freedoms(graph, closure, turns, mechanism.places, mechanism.size),
         redundancies=(*filter(None, within), *redundancies_of_loops(joints, closure, size)),
     )
     return mobility, couplings
@@ -253,7 +253,7 @@ def _with_couplings(mechanism: _Mechanism, kinematics: Kinematics) -> Kinematics
     mobility = replace(
         coupled_mobility(kinematics.mobility, closure, coupled, rows),
         freedoms=_freedoms(coupled, graph),
-        named=named_freedoms(graph, coupled, {}, mechanism.places),
+        named=named_freedoms(graph, coupled, {}, mechanism.places, mechanism.size),
     )
     return replace(kinematics, mobility=mobility)
 

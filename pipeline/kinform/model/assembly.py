@@ -134,7 +134,24 @@ class Mesh:
             area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
             volume = abs(float(np.einsum("ij,ij->", corners[:, 0], across))) / 6.0
             wall = 2.0 * volume / area if area > 0.0 else 0.0
-        return PartSize(self.diagonal, wall if wall > 0.0 else float("inf"))
+        return PartSize(_span(self.vertices), wall if wall > 0.0 else float("inf"))
+
+
+def _span(points: Array) -> float:
+    """m: how far apart two of the points (n, 3) are, at most: however they are turned.
+
+    From the point that is farthest from the mean of all to the one farthest from it, and on as long as it grows: a
+    pair of which neither has anything farther away.
+    """
+    if not len(points):
+        return 0.0
+    here, span = points[np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1))], 0.0
+    while True:
+        away = np.linalg.norm(points - here, axis=1)
+        farthest = int(np.argmax(away))
+        if away[farthest] <= span:
+            return span
+        here, span = points[farthest], float(away[farthest])
 
 
 @dataclass(frozen=True, eq=False)

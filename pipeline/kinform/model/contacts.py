@@ -63,7 +63,8 @@ class Patch:
     )
     """Standard uncertainties of `misalignment` and `offset`: those of both fits together."""
     sides: int = 0
-    """Flats of the prism that this cylinder may be as well; 0 where it is round, and for other kinds."""
+    """Flats of the prism that this cylinder may be as well, or of the coarse cylinder that this plane may be one of;
+    else 0."""
     narrow: bool = False
     """True: the overlap is narrower than the lenses that two outlines of facets make of one edge, so that it is not
     known whether these faces touch. Found beside other patches only."""

@@ -14,8 +14,8 @@ DEGREE = math.pi / 180.0
 class PartSize:
     """The lengths of a part of which tolerances are shares."""
 
-    diagonal: Metres
-    """m, of its bounding box."""
+    span: Metres
+    """m, between the two of its points that are farthest apart."""
     wall: Metres
     """m: its mean thickness."""
 
@@ -45,10 +45,10 @@ class Tolerances:
     coplanar: Radians = 5e-4
     """Dihedral below which facets are one plane (rad)."""
 
-    contact_share: Ratio = 0.029
-    """Share of the smaller part's diagonal that bounds the default contact tolerance."""
-    contact_large: Ratio = 0.007
-    """The same of the larger part's diagonal."""
+    contact_share: Ratio = 0.035
+    """Share of the smaller part's span that bounds the default contact tolerance."""
+    contact_large: Ratio = 0.0085
+    """The same of the larger part's span."""
     contact_wall: Ratio = 0.2
     """The same of the thinner part's wall, but for round surfaces."""
     opposed: Ratio = -0.3
@@ -72,13 +72,13 @@ class Tolerances:
         """Contact tolerance of a part of this size with any other, at most (m)."""
         if self.contact is not None:
             return self.contact
-        return min(self.contact_share * size.diagonal, self.contact_wall * size.wall)
+        return min(self.contact_share * size.span, self.contact_wall * size.wall)
 
     def radial_of(self, first: PartSize, second: PartSize) -> float:
         """Play of round surfaces of parts of these sizes (m): the wall behind a bore does not bound it."""
         if self.contact is not None:
             return self.contact
-        small, large = sorted((first.diagonal, second.diagonal))
+        small, large = sorted((first.span, second.span))
         return min(self.contact_share * small, self.contact_large * large)
 
     def angle_limit(self) -> float:

@@ -9,6 +9,7 @@ flats that a bore or a shaft encloses within the tolerance is a cylinder here, w
 - a ring in a ring whose flats lie on those of the other. Up to `PRISM_SIDES` sides they are prisms (hexagon keys, nut
   traps), unless their play lets the corners pass the flats. From there on, nobody can tell prisms from coarse
   cylinders: the patch is a cylinder that says how many `sides` it has, and the joint is in doubt where that matters;
+- a ring on flats of a hole that something else has torn open: the flats say how many `sides` the ring has;
 - a ring in a ring whose flats do not meet: two tessellations of one cylinder;
 - a shaft in a bore that was tessellated by tangents, so that its flats fit and its corners are too far away.
 """
@@ -61,7 +62,22 @@ def rounded(pair: PairView, patches: list[Patch], reach: float) -> list[Patch]:
     sides = [_rounds(part, near) for part, near in zip(pair.parts, pair.near, strict=True)]
     for first, second in _coaxial(sides, reach):
         patches = _read(pair, patches, first, second)
+    for k in (0, 1):
+        for one in sides[k]:
+            patches = _torn(patches, one, k)
     return patches
+
+
+def _torn(patches: list[Patch], ring: _Round, k: int) -> list[Patch]:
+    """The patches; flats of a ring of part k that lie on flats of the other part, which are no ring there (a relief or
+    a slot may have torn it), say how many `sides` the ring has."""
+    if ring.sides <= constants.PRISM_SIDES:
+        return patches
+    lies = [p.kind == "plane" and not p.one_sided and p.surfaces[k] in ring.surfaces for p in patches]
+    on = {p.surfaces[k] for p, flat in zip(patches, lies, strict=True) if flat}
+    if len(on) < constants.TORN_FLATS:
+        return patches
+    return [replace(p, sides=ring.sides) if flat else p for p, flat in zip(patches, lies, strict=True)]
 
 
 def _rounds(part: PartView, near: NearSurfaces) -> list[_Round]:

@@ -14,7 +14,16 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical, cross, foot
 from kinform.foundation.graphs.graph import Forest, forest
-from kinform.kinematics.constants import AT_REST, EXCHANGED, NO_PITCH, NO_TURN, NO_TWIST, RATE_ROUNDING, SAME_RATES
+from kinform.kinematics.constants import (
+    AT_REST,
+    EXCHANGED,
+    NO_PITCH,
+    NO_TURN,
+    NO_TWIST,
+    PITCH_ROUNDING,
+    RATE_ROUNDING,
+    SAME_RATES,
+)
 from kinform.kinematics.loops.assembly_closure import Closure
 from kinform.kinematics.loops.block_closure import Solution
 from kinform.kinematics.loops.joint_graph import JointGraph
@@ -24,12 +33,12 @@ from kinform.model.names import BodyName, JointName
 
 
 def named_freedoms(
-    graph: JointGraph, closure: Closure, idle: Mapping[BodyName, Array], places: Sequence[Array]
+    graph: JointGraph, closure: Closure, idle: Mapping[BodyName, Array], places: Sequence[Array], size: float
 ) -> tuple[Freedom, ...]:
     """A readable basis of the freedoms of the assembly.
 
     `closure` of the graph's joints; `idle`: idle turns (k, 6) of bodies (ω; v at the world's origin); `places` (3,) m
-    where each body is, for bodies that nothing holds.
+    where each body is, for bodies that nothing holds; `size` (m) of the assembly.
     """
     bodies, joints = graph.bodies, graph.joints
     depth = closure.tree.depths()
@@ -48,7 +57,7 @@ def named_freedoms(
         body, replaced = spinning.get(n, (None, solution))
         k = int(owner[replaced.driver])
         joint, coordinate = joints[k], replaced.driver - closure.offset[k]
-        kind, axis, point, pitch = _read(joint.twists[coordinate], joint.point)
+        kind, axis, point, pitch = _read(joint.twists[coordinate], joint.point, size)
         far = max(graph.edges[k], key=lambda node: depth[node])
         drives = tuple(
             (joints[int(owner[c])].name, int(c) - closure.offset[int(owner[c])], float(rate))
@@ -56,7 +65,7 @@ def named_freedoms(
         )
         if body is not None:
             turn = idle[body[0]][body[1]]
-            kind, axis, point, pitch = _read(turn, joint.point)
+            kind, axis, point, pitch = _read(turn, joint.point, size)
         out.append(
             Freedom(
                 driver=joint.name,
@@ -73,18 +82,20 @@ def named_freedoms(
     return tuple(out)
 
 
-def _read(twist: Array, near: Array | None) -> tuple[str, Array, Array, float]:
-    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist."""
+def _read(twist: Array, near: Array | None, size: float) -> tuple[str, Array, Array, float]:
+    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) in an assembly
+    of this size (m)."""
     omega, velocity = twist[:3], twist[3:]
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
-    if square < NO_TURN**2 * max(float(velocity @ velocity), 1.0):
-        return "slide", canonical(velocity), beside, 0.0
+    there = velocity + cross(omega, beside)
+    if square * size**2 < NO_TURN**2 * float(there @ there):
+        return "slide", canonical(there), beside, 0.0
     axis = omega / np.sqrt(square)
     point = foot(cross(omega, velocity) / square, axis, beside)
     pitch = 2.0 * np.pi * float(omega @ velocity) / square
-    scale = max(1.0, float(np.linalg.norm(velocity)) / np.sqrt(square))
-    if abs(pitch) < NO_PITCH * scale:
+    lost = PITCH_ROUNDING * float(np.linalg.norm(velocity)) / np.sqrt(square)
+    if abs(pitch) < NO_PITCH * size + lost:
         return "turn", canonical(axis), point, 0.0
     return "screw", canonical(axis), point, pitch
 

@@ -54,10 +54,18 @@ def certainty(
             f"singular value {values[count]:.2g} lies between free (< {tolerances.free:g}) "
             f"and held (> {tolerances.held:g})",
         )
+    spread = _spread(evidence)
+    if count < 6 and values[count] < constants.WEYL_SIGMAS * spread:
+        return Certainty(
+            "ambiguous",
+            f"singular value {values[count]:.2g} may be nothing: the directions of the surfaces are known to "
+            f"{np.degrees(spread):.2g}°",
+        )
     form = name_space(basis, evidence.frame)
     touching = momentary(evidence, basis) or (form.type == "general" and meets([item.patch for item in evidence.items]))
     doubt = "" if touching else _loose_doubt(evidence, twists, count, tolerances) or _stray_doubt(evidence)
     doubt = doubt or _near_axes_doubt(evidence, twists, count, tolerances) or _thread_doubt(evidence, basis)
+    doubt = doubt or _torn_doubt(evidence, twists, preserved, count, tolerances)
     doubt = doubt or uncertainty_doubt(evidence.items, form, evidence.frame.length)
     if doubt:
         return Certainty("ambiguous", doubt)
@@ -76,6 +84,16 @@ def certainty(
         return Certainty("ambiguous", words, other)
     weakest = f"; the weakest constraint has singular value {values[count]:.2g}" if count < 6 else ""
     return Certainty("determined", f"the contact leaves {counted(count, 'freedom')}{weakest}")
+
+
+def _spread(evidence: Evidence) -> float:
+    """rad: how well the directions of the surfaces are known, the mean of all by their weights.
+
+    By so much, and no more, do singular values change when the rows turn (H. Weyl, Math. Ann. 71, 1912).
+    """
+    share = np.add.reduceat(evidence.share, evidence.start[:-1])
+    turns = np.array([item.patch.mismatch[0] for item in evidence.items])
+    return float(np.sqrt(share @ turns**2 / share.sum()))
 
 
 def meets(patches: Sequence[Patch]) -> bool:
@@ -162,7 +180,12 @@ def _scrap_reading(
     if freed.shape[1] == 0:
         return None
     flats = all(evidence.items[k].patch.kind == "plane" and not evidence.items[k].interferes for k in out)
-    if flats and not narrow(evidence)[list(out)].any() and freed.shape[1] == 1 and not one_sense(evidence, freed[:, 0], out):
+    if (
+        flats
+        and not narrow(evidence)[list(out)].any()
+        and freed.shape[1] == 1
+        and not one_sense(evidence, freed[:, 0], out)
+    ):
         return None  # the flat of a shaft holds a turn both ways, however small it is
     return OtherReading(name_space(firm, evidence.frame), firm, out, role)
 
@@ -261,10 +284,22 @@ def _about(item: Item, axis: Array) -> bool:
     return float(np.linalg.norm(cross(item.patch.axis, axis))) < constants.ALONG_AXIS
 
 
+def _torn_doubt(evidence: Evidence, twists: Array, preserved: Flags, count: int, tolerances: Tolerances) -> str:
+    """Do flats that may be those of a coarse cylinder hold more than the rest does?"""
+    flats = np.array([item.patch.kind == "plane" and item.patch.sides > 0 for item in evidence.items])
+    if not flats.any():
+        return ""
+    left = 6 if flats.all() else freedoms(evidence, twists, preserved, ~flats, tolerances)[0].shape[1]
+    if left <= count:
+        return ""
+    sides = max(item.patch.sides for item in evidence.chosen(flats))
+    return f"{sides} flats on flats hold it that may be those of a prism, or of a cylinder in a coarse mesh"
+
+
 def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
     """What is left of the freedoms `basis` (6, k) where flats that are taken for a coarse cylinder are those of a
     prism: it does not turn."""
-    if not any(item.patch.sides for item in evidence.items):
+    if not any(item.patch.sides and item.patch.kind == "cylinder" for item in evidence.items):
         return None
     _, turns, mixed = np.linalg.svd(basis[:3], full_matrices=True)
     turning = int(np.count_nonzero(turns > constants.EXACT_PAIR))
@@ -276,7 +311,8 @@ def _prism_reading(evidence: Evidence, basis: Array) -> OtherReading | None:
 
 def _prism_words(evidence: Evidence, form: JointForm, other: OtherReading) -> str:
     """Both readings, with the sides and the size of the flats."""
-    patch = max((item.patch for item in evidence.items if item.patch.sides), key=lambda patch: patch.area)
+    rings = [item.patch for item in evidence.items if item.patch.sides and item.patch.kind == "cylinder"]
+    patch = max(rings, key=lambda patch: patch.area)
     return (
         f"{form.type} if the {patch.sides} flats of {2e3 * max(patch.radii):.3g} mm across their corners are a "
         f"cylinder in a coarse mesh; {other.form.type} if they are {ROLES[other.role]}: a stated joint tells"
