@@ -171,3 +171,14 @@ def test_a_tiny_face_against_a_ball_joint_leaves_it_a_ball_joint():
     found = decision([sphere(0.01), plane((0.012, 0, 0.002), X, (0.0008, 0.0008))])
     assert found.status in ("blocked", "ambiguous")
     assert "spherical" in (found.form.type, found.other.form.type if found.other else "")
+
+
+@pytest.mark.parametrize(
+    ("known_to", "answer"), [(1e-6, ("prismatic", "determined")), (2e-3, ("prismatic", "ambiguous"))]
+)
+def test_a_constraint_that_the_directions_may_lack_is_none_for_sure(known_to, answer):
+    """Two faces that lean by 1.1° against each other are a slider, if they really lean."""
+    leaning = np.array([0.0, np.sin(0.02), np.cos(0.02)])
+    faces = [plane((0, 0.01, 0), size=(0.02, 0.02)), plane((0, -0.01, 0), leaning, size=(0.02, 0.02))]
+    found = decision([replace(face, mismatch=(known_to, 1e-7)) for face in faces])
+    assert types(found)[:2] == answer, found.reason

@@ -83,8 +83,8 @@ def named_freedoms(
 
 
 def _read(twist: Array, near: Array | None, size: float) -> tuple[str, Array, Array, float]:
-    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) in an assembly
-    of this size (m)."""
+    """Kind, axis, point (m, beside `near`) and pitch (m a turn) of one twist (ω; v at the world's origin) in an
+    assembly of this size (m)."""
     omega, velocity = twist[:3], twist[3:]
     square = float(omega @ omega)
     beside = np.zeros(3) if near is None else near
