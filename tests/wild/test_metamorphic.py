@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from random_assemblies import FAMILIES, Wear, case
 from random_assemblies.verdict import judge
-from support.copies import Change, answers, axis_errors, checked, copy_of, derived, joints_of, turned
+from support.copies import Change, answers, axis_errors, bodies_of, checked, copy_of, derived, joints_of, turned
 from support.places import FIXTURES, manifests
 
 FEW = ("pairs/revolute_collars", "pairs/prismatic_dovetail", "pairs/spherical_captive", "mechanisms/slider_crank")
@@ -22,6 +22,7 @@ EXACT = {
     "100 km away, by its poses": Change(offset=(8e4, -5e4, 3.3e4)),
     "other names and order": Change(shuffled=True, seed=5),
 }
+DOUBTFUL = ("ambiguous", "blocked")
 ABSOLUTE = ("KF110",)
 """Findings that know absolute size."""
 
@@ -49,34 +50,51 @@ def copied(name, change, folder):
     return copy_of(FIXTURES / name / f"{name.rpartition('/')[2]}.toml", folder, change)
 
 
-def common(answer):
-    """What copies of any size have in common."""
+def common(answer, scattered):
+    """What copies of any size have in common; of meshes whose vertices scatter only that a joint is in doubt, not how:
+    growth of their surfaces hangs on the last bits of coordinates."""
     findings = {code: count for code, count in answer["findings"].items() if code not in ABSOLUTE}
-    return answer | {"findings": findings}
+    if not scattered:
+        return answer | {"findings": findings}
+    joints = {between: kind if kind[1] not in DOUBTFUL else DOUBTFUL for between, kind in answer["joints"].items()}
+    kept = {code: count for code, count in findings.items() if code not in ("KF204", "KF901")}
+    return answer | {"findings": kept, "joints": joints}
 
 
 def same(plain_design, name, change, folder):
     """Nothing differs but the place."""
     copy = copied(name, change, folder)
     design = checked(copy.path)
-    found, wanted = common(answers(design, copy.originals)), common(answers(plain_design, original_names(plain_design)))
-    if change.baked:  # the tolerance of a pair is a share of the boxes in which the files have the parts
+    scattered = name.startswith("wild/scattered")
+    found = common(answers(design, copy.originals), scattered)
+    wanted = common(answers(plain_design, original_names(plain_design)), scattered)
+    if scattered:
         del found["patches"], wanted["patches"]
     assert found == wanted
     for tilt, far in axis_errors(plain_design, design, copy, change).values():
-        assert tilt < 1e-6
-        assert far < 1e-6
+        assert tilt < (1e-3 if scattered else 1e-6)
+        assert far < (1e-3 if scattered else 1e-6)
 
 
 def no_other_answer(plain_design, name, change, folder, tilt_most):
-    """Each joint is as it was, or ambiguous; none is new and sure."""
+    """Each joint is as it was, or one of its readings, or ambiguous; between bodies that had none, none is sure.
+
+    What contact made one body may fall apart into its parts, and be joined as these are.
+    """
     copy = copied(name, change, folder)
     design = derived(copy.path)
     before = joints_of(plain_design, original_names(plain_design))
+    whole = bodies_of(plain_design, original_names(plain_design)).values()
     for between, joint in joints_of(design, copy.originals).items():
-        if joint.status not in ("ambiguous", "blocked"):
+        if joint.status in DOUBTFUL:
+            continue
+        joined = frozenset(body for body in whole for parts in between if parts & body)
+        if joined == between:
             assert between in before, f"{joint.name}: {joint.type}"
-            assert joint.type == before[between].type, joint.reason
+            readings = [reading.type for reading in before[between].readings]
+            assert joint.type in (before[between].type, *readings), joint.reason
+        elif len(joined) > 1:
+            assert joined in before, f"{joint.name}: {joint.type}"
     errors = axis_errors(plain_design, design, copy, change)
     sure = {joint.name for joint in plain_design.kinematics.joints if joint.status == "determined"}
     assert all(tilt < tilt_most for name, (tilt, _) in errors.items() if name in sure)

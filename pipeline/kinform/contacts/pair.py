@@ -116,11 +116,21 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
 
 
 def _of_scattered(pair: PairView, patch: Patch) -> Patch:
-    """The patch; points and lines of contact of meshes whose vertices scatter are of facets, and of no known curves."""
-    if patch.kind not in ("point", "line"):
+    """The patch, where vertices of a mesh scatter: points and lines of contact are of facets, and of no known curves;
+    facets that lie on a curved surface of the other part have no curve of their own, and may lean on it by as much as
+    they scatter."""
+    scatter = [part.surfaces.noise for part in pair.parts]
+    if not any(
+        noise > pair.tolerances.fit * part.index.mesh.diagonal for noise, part in zip(scatter, pair.parts, strict=True)
+    ):
         return patch
-    scatters = any(part.surfaces.noise > pair.tolerances.fit * part.index.mesh.diagonal for part in pair.parts)
-    return replace(patch, one_sided=patch.one_sided or scatters)
+    if patch.kind in ("point", "line"):
+        return replace(patch, one_sided=True)
+    if patch.one_sided and patch.kind in ("cylinder", "cone", "sphere"):
+        lean = max(scatter) / max(float(np.sqrt(patch.area)), 1e-300)
+        turn, shift = patch.uncertainty
+        return replace(patch, uncertainty=(max(turn, lean), shift))
+    return patch
 
 
 def _across(patch: Patch, along: Array) -> bool:

@@ -87,13 +87,15 @@ def certainty(
 
 
 def _spread(evidence: Evidence) -> float:
-    """rad: how well the directions of the surfaces are known, the mean of all by their weights.
+    """rad: how well the directions of the surfaces are known, the mean of all by their weights, but for those that are
+    known so little that they do not decide alone in any case.
 
     By so much, and no more, do singular values change when the rows turn (H. Weyl, Math. Ann. 71, 1912).
     """
     share = np.add.reduceat(evidence.share, evidence.start[:-1])
     turns = np.array([item.patch.mismatch[0] for item in evidence.items])
-    return float(np.sqrt(share @ turns**2 / share.sum()))
+    share = np.where(turns <= constants.VAGUE_DIRECTION, share, 0.0)
+    return float(np.sqrt(share @ turns**2 / max(float(share.sum()), 1e-300)))
 
 
 def meets(patches: Sequence[Patch]) -> bool:
