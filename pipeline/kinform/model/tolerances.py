@@ -45,9 +45,9 @@ class Tolerances:
     coplanar: Radians = 5e-4
     """Dihedral below which facets are one plane (rad)."""
 
-    contact_share: Ratio = 0.035
+    contact_share: Ratio = 0.029
     """Share of the smaller part's span that bounds the default contact tolerance."""
-    contact_large: Ratio = 0.0085
+    contact_large: Ratio = 0.007
     """The same of the larger part's span."""
     contact_wall: Ratio = 0.2
     """The same of the thinner part's wall, but for round surfaces."""
