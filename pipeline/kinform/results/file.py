@@ -25,7 +25,7 @@ from kinform.results import constants
 from kinform.results.groups import assembly
 from kinform.results.opening import DAMAGE, RECOMPUTE, SCHEMA, NotWholeError, check_replaceable, opened
 from kinform.results.replacement import check_target, refuse, replace_file
-from kinform.results.seal import seal
+from kinform.results.seal import block_of, seal
 from kinform.reuse import lineage
 from kinform.version import __version__
 
@@ -55,7 +55,8 @@ def write(design: Design, path: str | Path) -> None:
     or holds something that is not a results file of this schema: that is never overwritten.
     """
     check_output(path)
-    replace_file(path, to_bytes(design))
+    image = _image(design)
+    replace_file(path, block_of(image, SCHEMA), image)
 
 
 def check_output(path: str | Path) -> None:
@@ -212,6 +213,11 @@ class Earlier:
 
 def to_bytes(design: Design) -> bytes:
     """The results file as bytes: the same design gives the same bytes, everywhere."""
+    return seal(_image(design), SCHEMA)
+
+
+def _image(design: Design) -> bytes:
+    """The HDF5 of a results file, made to stand behind its seal."""
     file = h5py.File(
         "results", "w", driver="core", backing_store=False, block_size=constants.GROWTH, userblock_size=constants.BLOCK,
         libver=("earliest", "v108"), track_order=False,
@@ -222,7 +228,7 @@ def to_bytes(design: Design) -> bytes:
         _write_groups(file, design)
         file.flush()
         image: bytes = file.id.get_file_image()
-    return seal(image, SCHEMA)
+    return image
 
 
 def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:

@@ -43,18 +43,18 @@ def check_target(path: str | Path) -> None:
         raise refuse(path, f"the folder {Path(path).parent} is read-only", "name a file in a writable folder")
 
 
-def replace_file(path: str | Path, data: bytes) -> None:
-    """Put `data` at `path` in one step; keep a file that has these bytes already, with a new time.
+def replace_file(path: str | Path, *pieces: bytes) -> None:
+    """Put these pieces, one after the other, at `path` in one step; keep a file that has them already, with a new time.
 
     Raises ResultsError when that is not possible; the old file is then as it was.
     """
     check_target(path)
     target = Path(os.path.realpath(path))
     try:
-        if _holds(target, data):
+        if _holds(target, pieces):
             os.utime(target)
         else:
-            _swap(target, data)
+            _swap(target, pieces)
     except OSError as error:
         reason = error.strerror or str(error)
         raise refuse(
@@ -66,16 +66,19 @@ def _may(path: Path, mode: int) -> bool:
     return os.access(path, mode, effective_ids=os.access in os.supports_effective_ids)
 
 
-def _holds(target: Path, data: bytes) -> bool:
-    return target.exists() and target.stat().st_size == len(data) and target.read_bytes() == data
+def _holds(target: Path, pieces: tuple[bytes, ...]) -> bool:
+    if not target.exists() or target.stat().st_size != sum(map(len, pieces)):
+        return False
+    with open(target, "rb") as stream:
+        return all(stream.read(len(piece)) == piece for piece in pieces)
 
 
-def _swap(target: Path, data: bytes) -> None:
+def _swap(target: Path, pieces: tuple[bytes, ...]) -> None:
     _sweep(target.parent)
     temporary, handle = _draft(target.parent)
     try:
         with open(handle, "wb") as stream:
-            stream.write(data)
+            stream.writelines(pieces)
             stream.flush()
             os.fsync(stream.fileno())
             if target.exists():

@@ -44,7 +44,12 @@ def block(schema: str, length: int, digest: str) -> bytes:
 
 def seal(image: bytes, schema: str) -> bytes:
     """The bytes of a results file: the block, then the HDF5, which was made to stand behind it."""
-    return b"".join((block(schema, len(image), hashlib.sha256(image).hexdigest()), image))
+    return b"".join((block_of(image, schema), image))
+
+
+def block_of(image: bytes, schema: str) -> bytes:
+    """The block before this HDF5."""
+    return block(schema, len(image), hashlib.sha256(image).hexdigest())
 
 
 def is_sealed(start: bytes) -> bool:
