@@ -193,7 +193,7 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
         raise refuse(
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
-            remedy="name one manifest (.toml) or robot description (.urdf, .sdf, .xml), or only meshes (.stl, .obj)",
+            remedy="name one manifest (.toml) or robot description (.urdf, .xacro, .xml), or only meshes (.stl, .obj)",
         )
     if units is not None:
         raise refuse(

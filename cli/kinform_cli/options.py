@@ -156,7 +156,7 @@ Ranges = Annotated[
 ]
 Sources = Annotated[
     list[Path],
-    argument("SOURCE", "A manifest or a robot description (URDF, SDF, MJCF); or STL and OBJ files, with --units."),
+    argument("SOURCE", "A manifest or a robot description (URDF, xacro, MJCF); or STL and OBJ files, with --units."),
 ]
 Results = Annotated[Path, argument("F.h5", "Results file to read.")]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]

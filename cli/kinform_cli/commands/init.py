@@ -71,7 +71,8 @@ def _write(text: str, output: Path | None) -> None:
     files.write_text(output, text)
     console.say(f"{output}: {counted(text.count('[[part]]'), 'part')}{_proposals(text)}")
     results = output.with_suffix(".h5")
-    console.say(f"complete it (materials, groups, [function]), then: kinform run {output} -o {results}")
+    outside = " --allow-outside" if 'mesh = "../' in text else ""
+    console.say(f"complete it (materials, groups, [function]), then: kinform run {output} -o {results}{outside}")
 
 
 def _proposals(text: str) -> str:

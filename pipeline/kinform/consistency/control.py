@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from kinform.consistency.context import Unused
 from kinform.consistency.outcome import Outcome
+from kinform.consistency.profiles import SETTLED, at_most
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted
 from kinform.model.checks import CheckSettings, Ignore
@@ -35,7 +36,10 @@ def is_selected(rule: Rule, settings: CheckSettings) -> bool:
 def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     """The rule's outcome with other severities, and without what is ignored."""
     levels = [level for word, level in settings.severity if means(rule, word)]
-    findings = [replace(f, severity=levels[-1]) if levels else f for f in outcome.findings]
+    if settings.profile == "description" and outcome.kind == "inconclusive" and rule.code in SETTLED:
+        outcome = replace(outcome, kind="decided")
+    severities = [levels[-1] if levels else at_most(rule.code, f.severity, settings.profile) for f in outcome.findings]
+    findings = [replace(f, severity=severity) for f, severity in zip(outcome.findings, severities, strict=True)]
     entries = [entry for entry in settings.ignore if means(rule, entry.code)]
     kept, ignored, used = [], [], []
     for finding in findings:

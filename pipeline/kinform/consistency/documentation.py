@@ -6,6 +6,7 @@ import difflib
 import inspect
 import re
 
+from kinform.consistency import profiles
 from kinform.consistency.rule import Rule
 from kinform.consistency.rules import RULES
 from kinform.errors import KinformError
@@ -55,6 +56,13 @@ def rules_markdown() -> str:
     lines = [INTRODUCTION, "| code | name | severity | what is wrong |", "|---|---|---|---|"]
     for rule in RULES:
         lines.append(f"| [{rule.code}](#{_anchor(rule)}) | {rule.name} | {rule.severity} | {_summary(rule)} |")
+    lines += ["", "## Profiles", "", inspect.cleandoc(profiles.__doc__ or ""), ""]
+    lines += ["| rule | design | description |", "|---|---|---|"]
+    for rule in RULES:
+        if rule.code in profiles.DESCRIPTION:
+            doubts = ", doubts too" if rule.code in profiles.SETTLED else ""
+            severity = profiles.at_most(rule.code, rule.severity, "description")
+            lines.append(f"| {rule.code} {rule.name} | {rule.severity} | {severity}{doubts} |")
     for prefix, title in FAMILIES:
         lines.append(f"\n## {prefix}: {title}")
         for rule in RULES:

@@ -15,6 +15,7 @@ from kinform.kinematics.axes.misfit import misfit_of, moves_between
 from kinform.kinematics.axes.proportions import fit_proportions
 from kinform.kinematics.axes.snapping import snap_axes
 from kinform.kinematics.bodies.classification import Pairs, decide_all
+from kinform.kinematics.bodies.complete import as_stated
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import (
     fasten,
@@ -93,7 +94,9 @@ def derive(
     merger, decided, hints = _fuse_and_decide(pairs, contacts)
     bodies = merger.bodies()
     decided = choose_readings(assembly, _body_of_part(bodies), decided, patches, size)
-    stated = stated_joints(assembly, _body_of_part(bodies))
+    contact = {pair: joint for pair, (_, joint) in decided.items()}
+    taken = as_stated(assembly, _body_of_part(bodies), contact, size)
+    stated = taken | stated_joints(assembly, _body_of_part(bodies))
     by_contact = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated
     joints = turn_about_suggested_axes(assembly, contacts, [every[pair] for pair in sorted(every)], bodies)

@@ -43,8 +43,9 @@ def compile_mass(
         parts.append(_part_properties(part, shape))
     by_name = {properties.name: properties for properties in parts}
     stated = {group.name: group for group in assembly.groups if group.override is not None}
+    frames = _frames(assembly)
     bodies = tuple(
-        _body_properties(body, _weights(body, by_name, stated))
+        _body_properties(body, _weights(body, by_name, stated, frames))
         for body in sorted(kinematics.bodies, key=lambda body: body.name)
     )
     problems = [(p.name, p.reason) for p in parts if p.mass is None and p.name not in assembly.weighed]
@@ -52,14 +53,25 @@ def compile_mass(
     return MassReport(tuple(sorted(parts, key=lambda p: p.name)), bodies, valid, tuple(sorted(problems)))
 
 
-def _weights(body: Body, parts: Mapping[str, MassProperties], stated: Mapping[str, Group]) -> list[MassProperties]:
+def _frames(assembly: Assembly) -> frozenset[str]:
+    """Stick parts without stated mass in a complete function: frames, which weigh nothing beside other parts."""
+    if not assembly.function.complete:
+        return frozenset()
+    return frozenset(part.name for part in assembly.parts if part.mesh is None and part.override is None)
+
+
+def _weights(
+    body: Body, parts: Mapping[str, MassProperties], stated: Mapping[str, Group], frames: frozenset[str]
+) -> list[MassProperties]:
     """What a body weighs is the sum of: groups with a stated mass, and parts that are in none of them."""
     inside = set(body.parts)
     groups = [group for _, group in sorted(stated.items()) if inside.issuperset(group.parts)]
     taken = {name for group in groups for name in group.parts}
     volumes = {group.name: [parts[name].volume for name in group.parts] for group in groups}
     whole = [_group_properties(group, volumes[group.name]) for group in groups]
-    return whole + [parts[name] for name in body.parts if name not in taken]
+    left = [name for name in body.parts if name not in taken]
+    heavy = [name for name in left if name not in frames]
+    return whole + [parts[name] for name in (heavy if whole or heavy else left)]
 
 
 def _group_properties(group: Group, volumes: Sequence[float | None]) -> MassProperties:

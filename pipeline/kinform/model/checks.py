@@ -31,3 +31,5 @@ class CheckSettings:
     ignore: tuple[Ignore, ...] = ()
     file: str | None = None
     line: int | None = None
+    profile: str = "design"
+    """design or description: which severities findings have (`consistency.profiles`)."""

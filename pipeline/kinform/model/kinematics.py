@@ -29,7 +29,7 @@ JOINT_TYPES = (
     "fixed", "revolute", "prismatic", "cylindrical", "spherical", "planar", "screw", "universal",
     "general",
 )  # fmt: skip
-STATUSES = ("determined", "inferred", "ambiguous", "blocked")
+STATUSES = ("determined", "inferred", "stated", "ambiguous", "blocked")
 
 TWIST = "rad/s, m/s (ω; v)"
 FLANKS = columns(*(f"{side}_{axis}" for side in ("flank", "back") for axis in "xyz"), shape=(2, 3))

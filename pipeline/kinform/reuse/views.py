@@ -58,7 +58,7 @@ def for_mass(assembly: Assembly) -> Assembly:
         assumptions=(),
         ground=None,
         infer_fasteners=False,
-        function=Function(),
+        function=Function(complete=assembly.function.complete),
         simulation=None,
     )
 

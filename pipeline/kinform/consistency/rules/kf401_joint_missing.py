@@ -33,10 +33,16 @@ def check(context: Context) -> Outcome:
                 remedy="Check poses and clearances, add the part that carries the joint, or correct `between`.",
             )
             for c in context.comparisons
-            if c.state == "absent"
+            if c.state == "absent" or _taken(c)
         ),
         reason=f"{counted(len(context.comparisons), 'joint')} compared",
     )
+
+
+def _taken(comparison: Comparison) -> bool:
+    """Whether a complete function states the joint, and there is no contact."""
+    joint = comparison.joint
+    return comparison.state == "stated" and joint is not None and joint.status == "stated" and not joint.motion
 
 
 def _reason(context: Context, comparison: Comparison) -> str:

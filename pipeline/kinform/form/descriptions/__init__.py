@@ -1,1 +1,1 @@
-"""Robot descriptions: URDF, MJCF, SDF, each a module that makes a `robot.Robot`; `tables` makes a manifest of it."""
+"""Robot descriptions: URDF, xacro, MJCF, each a module that makes a `robot.Robot`; `tables` makes a manifest of it."""

@@ -29,7 +29,6 @@ FORMATS = (
     Format("URDF", (".urdf", ".xml"), "robot", "urdf"),
     Format("xacro", (".xacro",), "robot", "xacro"),
     Format("MJCF", (".mjcf", ".xml"), "mujoco", "mjcf"),
-    Format("SDF", (".sdf", ".xml"), "sdf", "sdf"),
 )
 
 _ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")

@@ -39,6 +39,9 @@ def tables(source: Source) -> SourceTables | None:
         source.problems.add(f"cannot be read: {error.strerror}", source.file, None, "name a robot description")
         return None
     read = reader_of(source.path, data)
+    if read is None and source.path.suffix.lower() == ".sdf":
+        source.problems.add("is SDF, which kinform does not read", source.file, 1, "convert it to URDF or MJCF")
+        return None
     if read is None:
         roots = first_names(f"<{f.root}> ({f.name})" for f in FORMATS if source.path.suffix.lower() in f.suffixes)
         source.problems.add(f"is no robot description: its root is none of {roots}", source.file, 1,
@@ -113,7 +116,9 @@ class _Writer:
         shapes = link.shapes(geometry)
         if not shapes:
             part = self._add("part", link.at, {"name": link.name, **self._posed(link.X_FL)})
-            if link.inertial is not None:
+            if link.inertial is not None and not link.inertial.inertia.any():
+                self.notes.append(f"link {in_quotes(link.name)}, a frame, states no inertia: it has no mass")
+            elif link.inertial is not None:
                 part |= self._mass(link.inertial, link.X_FL)
                 self._put(link.inertial.at, ("part", len(self.raw["part"]) - 1, "mass"))
             return

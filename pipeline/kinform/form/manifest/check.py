@@ -30,4 +30,7 @@ class CheckTable(Table):
     severity: dict[str, Literal["note", "warning", "error"]] = Field(
         {}, description="severity of the findings of a rule, by its code or name"
     )
+    profile: Literal["design", "description"] | None = Field(
+        None, description="which severities findings have; default description where a robot description is read"
+    )
     ignore: list[IgnoreTable] = Field([], description="findings that are accepted, each with a reason")

@@ -87,8 +87,9 @@ class _AssemblyReader:
         if parsed is None:
             return
         scope = Scope(
-            parsed.manifest, parsed.lines, file, path.parent, prefix, X_WF, self.problems, parsed.refused, parsed.notes
-        )
+            parsed.manifest, parsed.lines, file, path.parent, prefix, X_WF, self.problems, parsed.refused, parsed.notes,
+            parsed.described,
+        )  # fmt: skip
         self.scopes.append(scope)
         here = (*above, Path(os.path.realpath(path)))
         for at, table in scope.tables("subassembly"):

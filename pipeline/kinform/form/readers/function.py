@@ -176,14 +176,16 @@ class FunctionReader:
     def check(self) -> CheckSettings:
         """`[check]` of the top manifest."""
         table = self.scope.manifest.check
+        usual = "description" if self.scope.described else "design"
         if table is None:
-            return CheckSettings()
+            return CheckSettings(profile=usual)
         ignore = tuple(
             Ignore(entry.code, entry.subject, entry.reason, *self.scope.where(*path))
             for path, entry in self.scope.tables("check", "ignore")
         )
         severity = tuple(sorted(table.severity.items()))
-        return CheckSettings(tuple(table.select), severity, ignore, *self.scope.where("check"))
+        where = self.scope.where("check")
+        return CheckSettings(tuple(table.select), severity, ignore, *where, table.profile or usual)
 
     def simulation(self) -> SimulationRequest | None:
         """`[simulation]` of the top manifest."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +45,8 @@ class Scope:
     """Names of tables that cannot be used: they have been complained of."""
     notes: tuple[str, ...] = ()
     """What the reader of a description did on its own account, in sentences."""
+    described: bool = False
+    """Whether a robot description says it, alone or as `from`."""
 
     @property
     def metres(self) -> float:
@@ -110,6 +112,7 @@ class Parsed:
     lines: Lines
     refused: frozenset[str]
     notes: tuple[str, ...] = ()
+    described: bool = False
 
 
 def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Parsed | None:
@@ -117,7 +120,8 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
     used."""
     if is_source(path):
         tables = _from_source(path, file, path.parent, None, files, problems)
-        return None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
+        parsed = None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
+        return None if parsed is None else replace(parsed, described=True)
     try:
         text = read_text(path, MANIFEST_BYTES, "a manifest")
         raw = read_toml(text)
@@ -172,7 +176,7 @@ def _over_source(
         return None
     if not is_source(below):
         problems.add(f"from = {in_quotes(stated)} is no description or assembly file", file, lines.line(key),
-                     "name a URDF, SDF or MJCF; a manifest goes into a [[subassembly]]")  # fmt: skip
+                     "name a URDF, xacro or MJCF; a manifest goes into a [[subassembly]]")  # fmt: skip
         return None
     units = raw["assembly"].get("units")
     tables = _from_source(below, files.shown(below), path.parent, units if units in UNITS else None, files, problems)
@@ -188,4 +192,5 @@ def _over_source(
     above = Places({at: (None, line) for at, line in lines.items()})
     overlay = Overlay(above, tables.places)
     both = overlay.tables(raw, tables.raw)
-    return _validated(both, Places(overlay.places), file, tables.notes, problems)
+    parsed = _validated(both, Places(overlay.places), file, tables.notes, problems)
+    return None if parsed is None else replace(parsed, described=True)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from kinform.foundation.words import quoted
 from kinform.kinematics.answers import Answers, ask
+from kinform.kinematics.bodies.complete import without_effect
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.bodies.stated_joints import Pair, stated_roots
@@ -60,9 +61,10 @@ def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]
         of_name = {body.name: body for body in bodies}
         of_part = {part: body.name for body in bodies for part in body.parts}
         touching: dict[Pair, list[Member]] = defaultdict(list)
+        nothing = without_effect(pairs.assembly, merger)
         for index, patch in enumerate(pairs.patches):
             a, b = of_part[patch.parts[0]], of_part[patch.parts[1]]
-            if a != b:
+            if a != b and not nothing(*patch.parts):
                 touching[(a, b) if a < b else (b, a)].append((index, patch, a > b))
         out: dict[Pair, tuple[Answer, Joint]] = {}
         fused = False

@@ -22,6 +22,11 @@ class Merger:
         self._reasons: list[tuple[int, str]] = []
         for group in assembly.groups:
             self._join(group.parts, f"group {group.name}")
+        covered = set(assembly.function.complete)
+        for joint in assembly.function.joints:
+            if joint.type == "fixed" and joint.name[: joint.name.rfind("/") + 1] in covered:
+                ends = [assembly.parts_of(name)[0] for name in joint.between]
+                self._join(ends, f"intended fixed joint {joint.name} of a complete function")
         for assumption in assembly.assumptions:
             if assumption.type == "fixed":
                 firsts = [assembly.parts_of(name)[0] for name in assumption.between]

@@ -8,6 +8,7 @@ from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.pair.joint import stated_joint
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.model.assembly import Assembly
+from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Joint
 from kinform.model.names import BodyName, PartName
 
@@ -21,23 +22,28 @@ def pair_between(assembly: Assembly, of_part: Mapping[PartName, BodyName], betwe
     return None if a == b else ((a, b) if a < b else (b, a))
 
 
-def intended_joints(
-    assembly: Assembly, of_part: Mapping[PartName, BodyName], beside: Collection[BodyName] | None = None
-) -> dict[Pair, Joint]:
-    """Joints as the function states them; only those of the bodies `beside` where these are given.
+def joint_form(assembly: Assembly, of_part: Mapping[PartName, BodyName], joint: IntendedJoint, pair: Pair) -> JointForm:
+    """The form of an intended joint between the bodies of a pair.
 
     A universal joint's first axis is fixed in its first body: where the designer's first side is the pair's second
     body, its axes are exchanged.
     """
+    axis, axis2 = joint.axis, joint.axis2
+    if joint.type == "universal" and of_part[assembly.parts_of(joint.between[0])[0]] != pair[0]:
+        axis, axis2 = axis2, axis
+    return JointForm(joint.type, axis, joint.point, joint.pitch, axis2)
+
+
+def intended_joints(
+    assembly: Assembly, of_part: Mapping[PartName, BodyName], beside: Collection[BodyName] | None = None
+) -> dict[Pair, Joint]:
+    """Joints as the function states them; only those of the bodies `beside` where these are given."""
     out: dict[Pair, Joint] = {}
     for joint in assembly.function.joints:
         pair = pair_between(assembly, of_part, joint.between)
         if pair is None or (beside is not None and not set(pair) & set(beside)):
             continue
-        axis, axis2 = joint.axis, joint.axis2
-        if joint.type == "universal" and of_part[assembly.parts_of(joint.between[0])[0]] != pair[0]:
-            axis, axis2 = axis2, axis
-        form = JointForm(joint.type, axis, joint.point, joint.pitch, axis2)
+        form = joint_form(assembly, of_part, joint, pair)
         out[pair] = stated_joint(pair, form, "function", f"intended joint {joint.name}: one side has no geometry")
     return out
 

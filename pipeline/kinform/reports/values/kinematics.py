@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from kinform.consistency.comparisons.answers import IntendedAnswer, answers_of
 from kinform.design import Design
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
@@ -19,12 +20,30 @@ def joint_values(design: Design) -> dict[str, Any]:
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
+        "intended": [
+            _intended(item)
+            for item in answers_of(design.assembly, design.contacts, design.ranged or _kinematics(design))
+        ],
         "mobility": mobility_counts(kinematics.mobility),
         "separations": [
             fields(item, "bodies", "contacts") | {"releases": [release(way) for way in item.releases]}
             for item in kinematics.separations
         ],
         "separations_reason": kinematics.separations_reason or None,
+    }
+
+
+def _intended(item: IntendedAnswer) -> dict[str, Any]:
+    """What contact says of an intended joint."""
+    found = item.comparison
+    return {
+        **fields(found.intended, "name", "between", "type"),
+        "answer": item.answer,
+        "joint": None if found.joint is None else found.joint.name,
+        **fields(found, "angle", "offset"),
+        "free": item.free or None,
+        "blocked_by": [fields(blocker, "parts", "patch", "area", "forbids") for blocker in item.blocked_by],
+        "gap": None,
     }
 
 

@@ -5,4 +5,6 @@ from __future__ import annotations
 from kinform.model.checks import CheckSettings
 from kinform.results.layout import Layout, Row, Table, Texts
 
-CHECK = Layout(CheckSettings, Row("header", "file", "line"), Texts("select"), Table("severity"), Table("ignore"))
+CHECK = Layout(
+    CheckSettings, Row("header", "file", "line", "profile"), Texts("select"), Table("severity"), Table("ignore")
+)
