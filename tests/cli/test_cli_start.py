@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import entry_points
+from pathlib import Path
 
 import pytest
 import typer
@@ -117,7 +118,6 @@ def test_without_arguments_it_helps_and_is_not_a_success(capsys: pytest.CaptureF
         (["query", "a.h5", "a", "b", "--slide", "0,0,0"], "--slide"),
         (["query", "a.h5", "a", "b", "--slide", "0,nan,1"], "--slide"),
         (["report", "a.h5"], "--output"),
-        (["init", "a.stl"], "--units"),
     ],
     ids=" ".join,
 )
@@ -155,3 +155,9 @@ def test_help_reads_at_80_columns(command: Callable[..., Ran]) -> None:
     for name in COMMANDS:
         lines = command(name, "--help", COLUMNS="80").stdout.splitlines()
         assert 60 < max(map(len, lines)) <= 80, name
+
+
+def test_meshes_without_a_unit_are_told_what_to_add(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.stl").write_bytes(bytes(84))
+    assert main(["init", str(tmp_path / "a.stl")]) == 2
+    assert "add --units mm" in capsys.readouterr().err

@@ -267,7 +267,6 @@ ELSEWHERE = {
     "KF411": "tests/consistency/test_couplings.py",
     "KF412": "tests/collisions/test_ranges.py",
     "KF450": "tests/cli/test_change.py",
-    "KF414": "tests/descriptions/test_complete.py",
     "KF505": "tests/collisions/test_ranges.py",
     "KF506": "tests/consistency/test_separating.py",
     "KF507": "tests/consistency/test_separating.py",

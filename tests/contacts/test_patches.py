@@ -272,7 +272,7 @@ def test_the_common_axis_follows_the_better_fit():
 def test_a_gap_of_exactly_the_tolerance_is_a_contact_in_every_pose(degrees):
     block = extrusion(box_loop(-20 * MM, -20 * MM, 20 * MM, 20 * MM), z0=0.0, z1=20 * MM)
     X = pose(turned((1, 2, 3), degrees), (0.3, -0.1, 0.7))
-    tolerance = 0.007 * 60 * MM
+    tolerance = 0.0085 * 60 * MM
     found = contacts(block, block, X_first=X, X_second=X @ pose(translation=(0, 0, 20 * MM + tolerance)))
     assert found.tolerance == {("a", "b"): pytest.approx(tolerance)}
     assert [round(p.gap / MM, 9) for p in found.patches] == [0.42]

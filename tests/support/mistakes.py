@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinform.kinematics.pair.joint import twists_of
 from kinform.model.checks import Ignore
 from kinform.model.contacts import Interference
 from kinform.model.function import Coupling, Drive, Law, Load, Requirement
-from kinform.model.kinematics import Blocker
+from kinform.model.kinematics import Blocker, Membership
 
 
 def with_function(design, function):
@@ -23,6 +24,13 @@ def changed_function(design, **changes):
 def changed_joint(design, **changes):
     kinematics = design.kinematics
     return replace(design, kinematics=replace(kinematics, joints=(replace(kinematics.joints[0], **changes),)))
+
+
+def as_planar(design):
+    """The derived joint slides on a plane across its axis, too."""
+    joint = design.kinematics.joints[0]
+    twists = twists_of("planar", joint.axis, joint.point)
+    return changed_joint(design, type="planar", freedoms=3, twists=twists)
 
 
 def changed_intent(design, **changes):
@@ -71,10 +79,14 @@ WRONG = {
     "KF206": lambda d: replace(
         d, kinematics=replace(d.kinematics, misaligned=((d.kinematics.joints[0].name, 0.01, 0.0),))
     ),
+    "KF208": lambda d: replace(
+        d, kinematics=replace(d.kinematics, membership=(Membership("shaft", "shaft", "cut", 1.0, "block", True),))
+    ),
     "KF301": lambda d: changed_function(d, mobility=2),
     "KF402": lambda d: changed_intent(d, type="prismatic", point=None),
     "KF403": lambda d: changed_intent(d, axis=tilted(d.assembly.function.joints[0].axis, 0.5)),
     "KF404": lambda d: changed_intent(d, point=d.assembly.function.joints[0].point + np.array([0.002, 0.001, -0.003])),
+    "KF414": lambda d: as_planar(d),
     "KF409": lambda d: changed_function(d, drives=(drive("wing"),)),
 }
 

@@ -32,6 +32,7 @@ class Topic(StrEnum):
     assembly = "assembly"
     contacts = "contacts"
     joints = "joints"
+    bodies = "bodies"
     mobility = "mobility"
     mass = "mass"
     behaviour = "behaviour"

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
+from kinform.consistency.comparisons.answers import answers
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.model.collisions import JointRange
@@ -37,6 +38,7 @@ def render(design: Design) -> RenderableType:
             ", ".join(joint.evidence),
         )
     items: list[RenderableType] = [rows]
+    items += _intended(design, lengths)
     items += _leaving(kinematics)
     for joint in kinematics.joints:
         if joint.status != "determined":
@@ -47,6 +49,17 @@ def render(design: Design) -> RenderableType:
     if note is not None:
         items.append(note)
     return stacked(*items)
+
+
+def _intended(design: Design, lengths: Lengths) -> list[RenderableType]:
+    """The answer to each intended joint."""
+    if not design.assembly.function.joints:
+        return []
+    rows = Rows("intended", "type", "answer", "because", title="\nIntended joints")
+    for one in answers(design):
+        gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.unit}"
+        rows.add(one.name, one.type, one.answer, one.free or one.blocked_by or gap)
+    return [rows]
 
 
 def _range(item: JointRange | None, lengths: Lengths) -> str:

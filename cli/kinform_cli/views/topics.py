@@ -13,10 +13,21 @@ from kinform.foundation.words import counted
 from kinform.model.findings import SEVERITIES
 from kinform.reports.values.topics import TOPICS, require
 from kinform_cli.tables import stacked
-from kinform_cli.views import assembly, behaviour, contacts, evidence, findings, joints, mass, mobility, simulation
+from kinform_cli.views import (
+    assembly,
+    behaviour,
+    bodies,
+    contacts,
+    evidence,
+    findings,
+    joints,
+    mass,
+    mobility,
+    simulation,
+)
 
 VIEWS = {
-    "assembly": assembly, "contacts": contacts, "joints": joints, "mobility": mobility, "mass": mass,
+    "assembly": assembly, "contacts": contacts, "joints": joints, "bodies": bodies, "mobility": mobility, "mass": mass,
     "behaviour": behaviour, "simulation": simulation, "findings": findings,
 }  # fmt: skip
 """The module that shows a topic."""

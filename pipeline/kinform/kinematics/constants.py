@@ -546,8 +546,8 @@ MOST_PATCH_SETS = 24
 PRESERVED_SHARE = 0.03
 """A patch mates along a motion whose velocity is within this share of tangential to it."""
 
-# ---- bodies.complete
+# --- bodies/as_stated
 
 ADMITTED = 0.02
 """Share of an intended motion that the freedoms of a contact may miss and still admit it: a degree, or a fiftieth of
-the assembly's size; axes are compared more finely where the types agree (KF403, KF404)."""
+the contact's size; axes are compared more finely where the types agree (KF403, KF404)."""

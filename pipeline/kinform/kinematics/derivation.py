@@ -14,8 +14,9 @@ from kinform.kinematics.axes.higher_pairs import align_higher_pairs
 from kinform.kinematics.axes.misfit import misfit_of, moves_between
 from kinform.kinematics.axes.proportions import fit_proportions
 from kinform.kinematics.axes.snapping import snap_axes
+from kinform.kinematics.bodies.as_stated import as_stated
 from kinform.kinematics.bodies.classification import Pairs, decide_all
-from kinform.kinematics.bodies.complete import as_stated
+from kinform.kinematics.bodies.complete import complete_joints
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.bodies.fasteners import (
     fasten,
@@ -38,6 +39,7 @@ from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restrict_closure
 from kinform.kinematics.pair.question import Answer, bare_patches
+from kinform.kinematics.partition import Partition, partition
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
@@ -45,7 +47,18 @@ from kinform.kinematics.separation.separations import links_between, separations
 from kinform.model.arrays import Array, Ints
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch, Suggestion
-from kinform.model.kinematics import Body, ConstraintMatrix, Coupling, Joint, Kinematics, Misfit, Mobility, Separation
+from kinform.model.kinematics import (
+    Aside,
+    Body,
+    ConstraintMatrix,
+    Coupling,
+    Joint,
+    Kinematics,
+    Membership,
+    Misfit,
+    Mobility,
+    Separation,
+)
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
 
@@ -91,16 +104,23 @@ def derive(
     extents = Extents(assembly)
     patches, size = bare_patches(contacts.patches), extents.assembly
     pairs = Pairs(assembly, contacts, patches, extents, answers)
-    merger, decided, hints = _fuse_and_decide(pairs, contacts)
+    found = partition(assembly, contacts, assembly.function.joints) if _complete(assembly) else None
+    settled = complete_joints(assembly)
+    merger, decided, hints = _fuse_and_decide(pairs, contacts, found)
     bodies = merger.bodies()
     decided = choose_readings(assembly, _body_of_part(bodies), decided, patches, size)
-    contact = {pair: joint for pair, (_, joint) in decided.items()}
-    taken = as_stated(assembly, _body_of_part(bodies), contact, size)
-    stated = taken | stated_joints(assembly, _body_of_part(bodies))
-    by_contact = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
+    stated = stated_joints(assembly, _body_of_part(bodies))
+    answers_of = {joint.name: answer for pair, (answer, joint) in sorted(decided.items()) if pair not in stated}
     every = {pair: joint for pair, (_, joint) in decided.items()} | stated
     joints = turn_about_suggested_axes(assembly, contacts, [every[pair] for pair in sorted(every)], bodies)
     joints = label_inferred(joints, bodies)
+    by_contact = JointGraph(bodies, tuple(joints)).close(size).mobility if settled else None
+    asides: tuple[Aside, ...] = ()
+    if settled:
+        taken = as_stated(assembly, merger, joints, patches, whole=found is not None)
+        joints, asides = list(taken.joints), taken.asides
+        kept = {joint.name for joint in joints if joint.status != "stated"}
+        answers_of = {name: answer for name, answer in answers_of.items() if name in kept}
     bounds = move_bounds(joints, patches, assembly.tolerances.alignment, size)
     snapped = snap_axes(joints, bounds)
     left = bounds.after(moves_between(joints, snapped), joints)
@@ -115,13 +135,43 @@ def derive(
         size=size,
         clusters=_clusters(assembly, hints),
         patches=patches,
-        strict={name: answer.strict for name, answer in by_contact.items() if answer.strict is not None},
+        strict={name: answer.strict for name, answer in answers_of.items() if answer.strict is not None},
         balls=touching_balls(assembly, surfaces, contacts.patches),
         extremes=pairs.extremes,
         answers=answers,
     )
-    misaligned = ((name, a.angle, a.offset) for name, a in by_contact.items() if a.angle > 0.0 or a.offset > 0.0)
-    return replace(_moves_and_parts(mechanism), misfit=misfit_of(moves), misaligned=tuple(misaligned), moves=moves)
+    misaligned = ((name, a.angle, a.offset) for name, a in answers_of.items() if a.angle > 0.0 or a.offset > 0.0)
+    out = _moves_and_parts(mechanism)
+    return replace(
+        out,
+        mobility=replace(out.mobility, by_contact=by_contact),
+        misfit=misfit_of(moves),
+        misaligned=tuple(misaligned),
+        moves=moves,
+        asides=asides,
+        membership=() if found is None else _membership(found, _body_of_part(bodies)),
+    )
+
+
+def _complete(assembly: Assembly) -> bool:
+    """Whether the function of the top states every joint that is meant to move."""
+    return "" in assembly.function.complete and bool(assembly.function.joints)
+
+
+def _membership(found: Partition, of_part: Mapping[PartName, BodyName]) -> tuple[Membership, ...]:
+    """Of every part, what holds it in its body."""
+    names = [of_part[parts[0]] for parts in found.parts]
+    return tuple(
+        Membership(
+            part,
+            of_part[part],
+            placed.how,
+            placed.margin,
+            BodyName("") if placed.other is None else names[placed.other],
+            placed.unclear,
+        )
+        for part, placed in sorted(found.placed.items())
+    )
 
 
 def functional(assembly: Assembly) -> Kinematics:
@@ -159,14 +209,20 @@ def _body_of_part(bodies: Sequence[Body]) -> dict[PartName, BodyName]:
 
 
 def _fuse_and_decide(
-    pairs: Pairs, contacts: Contacts
+    pairs: Pairs, contacts: Contacts, found: Partition | None
 ) -> tuple[Merger, dict[Pair, tuple[Answer, Joint]], list[Suggestion]]:
     """Which parts are one body, what each pair of bodies that touch may do, and the suggestions that were believed.
+    Where the bodies are `found` by the function, contact and suggestions fuse nothing more.
 
     Suggestions are applied to what contact alone makes of the parts. Where contact then fuses what the manifest keeps
     apart, it is started again without those that led to it.
     """
     merger = Merger(pairs.assembly)
+    if found is not None:
+        for parts in found.parts:
+            for other in parts[1:]:
+                merger.fuse(parts[0], other, "function: contact that no stated joint moves holds")
+        return merger, decide_all(pairs, merger, fusing=False), []
     decided = decide_all(pairs, merger)
     hints = fastenings(pairs.assembly, contacts, merger)
     while True:

@@ -318,6 +318,8 @@ class Mobility:
     """One a block of joints with loops and freedoms, in the order of the joints."""
     named: tuple[Freedom, ...] = ()
     """A readable basis of the freedoms: block by block of the graph, then bodies that nothing holds."""
+    by_contact: int | None = None
+    """Instantaneous mobility of what contact alone gives, where joints are taken as the function states them."""
     redundancies: tuple[Redundancy, ...] = ()
     """Those of loops sum to `redundant`; those of pairs come first and are not counted there."""
 
@@ -373,6 +375,38 @@ class Coupling:
 
 
 @dataclass(frozen=True, eq=False)
+class Aside:
+    """Contact between two bodies that the function moves relative to each other by other joints: it holds nothing."""
+
+    name: JointName
+    bodies: Annotated[tuple[BodyName, BodyName], columns("body_a", "body_b")]
+    type: str
+    """Which joint the contact would be, taken alone."""
+    freedoms: int
+    status: str
+    area: SquareMetres
+    axis: Direction | None
+    words: str
+
+
+@dataclass(frozen=True)
+class Membership:
+    """Why a part is in its body, where the bodies follow from the function."""
+
+    part: PartName
+    body: BodyName
+    how: str
+    """held: it is one with a part that a joint names, as no joint may part them. cut: of all bodies, this one breaks
+    least contact. nearest: it touches nothing, and that body is nearest."""
+    margin: Ratio
+    """By how much the next best body would be dearer (prices of `kinematics/partition`); inf: none is in question."""
+    other: BodyName
+    """The next best body; empty where none is in question."""
+    either: bool
+    """Whether it could be in that body as well, as far as joints and contact tell."""
+
+
+@dataclass(frozen=True, eq=False)
 class Kinematics:
     """All of it."""
 
@@ -390,6 +424,10 @@ class Kinematics:
     couplings: tuple[Coupling, ...] = ()
     moves: tuple[Move, ...] = ()
     """What snapping did to each joint that it moved, in the order of the joints; `misfit` has the greatest."""
+    asides: tuple[Aside, ...] = ()
+    """With `[function] complete = true`: contact that constrains nothing, sorted by bodies."""
+    membership: tuple[Membership, ...] = ()
+    """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

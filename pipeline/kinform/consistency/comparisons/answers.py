@@ -1,59 +1,124 @@
-"""One of five answers for every intended joint: what contact says of it.
+"""The answer that geometry gives to each intended joint: agrees, not held, contradicts, no contact, or undecided.
 
-agrees: contact gives this joint (or both sides are one body, where fixed is intended). not held: contact leaves the
-intended motion free, and more. contradicts: contact forbids it, or gives the joint about another axis. no contact: the
-bodies do not touch, or one of them has no geometry. undecided: contact may be read in several ways.
+| answer | contact ... |
+|---|---|
+| agrees | gives this joint, within the limits of KF403 and KF404 |
+| not held | leaves the intended motion free, and more |
+| contradicts | forbids the intended motion, or gives the joint elsewhere |
+| no contact | there is none between the two bodies |
+| undecided | neither |
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
-from kinform.kinematics.bodies.complete import leaves_free
-from kinform.kinematics.bodies.extents import Extents
+from kinform.design import Design
+from kinform.foundation.words import counted
+from kinform.kinematics.bodies.as_stated import leaves_free
+from kinform.kinematics.partition.parting import joint_twists
 from kinform.model.assembly import Assembly
-from kinform.model.contacts import Contacts
-from kinform.model.kinematics import Blocker, Kinematics
+from kinform.model.kinematics import Body
+from kinform.model.tolerances import Tolerances
 
 ANSWERS = ("agrees", "not held", "contradicts", "no contact", "undecided")
 
 
 @dataclass(frozen=True, eq=False)
-class IntendedAnswer:
-    """The answer for one intended joint, with what it rests on."""
+class Answer:
+    """What geometry says to one intended joint. Angles in rad, lengths in m; None: not comparable."""
 
-    comparison: Comparison
+    name: str
+    between: tuple[str, str]
+    type: str
     answer: str
+    joint: str | None
+    """The derived joint."""
+    angle: float | None
+    offset: float | None
     free: str
-    """In words what contact leaves free, where it does not hold the joint."""
-    blocked_by: tuple[Blocker, ...]
+    """What else is free, of joints that are not held."""
+    blocked_by: str
+    """What forbids the motion, of joints that are contradicted."""
+    gap: float | None
+    """Between the boxes of the two bodies, where they do not touch; 0 where the boxes meet."""
 
 
-def answers_of(assembly: Assembly, contacts: Contacts | None, kinematics: Kinematics) -> tuple[IntendedAnswer, ...]:
-    """The answers for all intended joints, in the order of the manifest."""
-    size = Extents(assembly).assembly
-    out = []
-    for joint in assembly.function.joints:
-        found = compare_joint(assembly, contacts, kinematics, joint)
-        answer = _answer(found, assembly, size)
-        free = found.joint.motion if answer == "not held" and found.joint is not None else ""
-        out.append(IntendedAnswer(found, answer, free, () if found.joint is None else found.joint.blockers))
-    return tuple(out)
+def answer_of(assembly: Assembly, c: Comparison) -> Answer:
+    """The answer to the intended joint of a comparison."""
+    kind, free, blocked = _kind(assembly.tolerances, c)
+    return Answer(
+        name=c.intended.name,
+        between=c.intended.between,
+        type=c.intended.type,
+        answer=kind,
+        joint=None if c.joint is None else str(c.joint.name),
+        angle=c.angle,
+        offset=c.offset,
+        free=free,
+        blocked_by=blocked,
+        gap=_gap(assembly, c.bodies) if kind == "no contact" else None,
+    )
 
 
-def _answer(found: Comparison, assembly: Assembly, size: float) -> str:
-    joint = found.joint
-    if found.state == "one body":
-        return "agrees" if found.right_type else "contradicts"
-    if found.state == "stated":
-        return "not held" if joint is not None and joint.status == "stated" and joint.motion else "no contact"
-    if found.state in ("absent", "undecided"):
-        return "no contact" if found.state == "absent" else "undecided"
-    if not found.right_type:
-        free = joint is not None and not found.through and leaves_free(joint, found.intended, size)
-        return "not held" if free else "contradicts"
-    angle, offset = found.angle, found.offset
-    tilted = angle is not None and angle > assembly.tolerances.angle_limit() + found.angle_slack
-    beside = offset is not None and offset > found.position_limit + found.position_slack
-    return "contradicts" if tilted or beside else "agrees"
+def answers(design: Design) -> tuple[Answer, ...]:
+    """The answers to all intended joints, in the order of the function; needs kinematics."""
+    assert design.kinematics is not None
+    return tuple(
+        answer_of(design.assembly, compare_joint(design.assembly, design.contacts, design.kinematics, joint))
+        for joint in design.assembly.function.joints
+    )
+
+
+def _kind(tolerances: Tolerances, c: Comparison) -> tuple[str, str, str]:
+    """The answer, what else is free, and what forbids it."""
+    if c.state == "taken":
+        assert c.joint is not None
+        if not c.joint.patches:
+            return "no contact", "", ""
+        reading = c.joint.readings[0]
+        if reading.cause == "doubt":
+            return "undecided", "", ""
+        return "not held", f"{reading.type}, {counted(reading.freedoms, 'freedom')} by contact", ""
+    if c.state in ("absent", "stated"):
+        return "no contact", "", ""
+    if c.state == "undecided":
+        return "undecided", "", ""
+    if c.state == "one body":
+        return ("agrees", "", "") if c.right_type else ("contradicts", "", c.reason or "both sides are one body")
+    if c.right_type:
+        tilted = c.angle is not None and c.angle > tolerances.angle_limit() + c.angle_slack
+        beside = c.offset is not None and c.offset > c.position_limit + c.position_slack
+        return ("contradicts", "", "its axis is elsewhere") if tilted or beside else ("agrees", "", "")
+    if leaves_more(c):
+        return "not held", f"{c.type}, {counted(c.freedoms, 'freedom')} by contact", ""
+    return "contradicts", "", f"by contact it is {c.type}"
+
+
+def leaves_more(c: Comparison) -> bool:
+    """Whether the joint that was found leaves the intended motion free, and more beside."""
+    wanted = joint_twists(c.intended)
+    if c.state != "found" or c.right_type or c.twists is None or wanted is None:
+        return False
+    place = c.intended.point if c.intended.point is not None else c.point
+    if place is None or c.freedoms <= len(wanted):
+        return False
+    return leaves_free(c.twists, wanted, place, c.size)
+
+
+def _gap(assembly: Assembly, bodies: Sequence[Body]) -> float | None:
+    """m between the bounding boxes of two bodies."""
+    boxes = []
+    for body in bodies:
+        placed = [
+            part.mesh.placed_box(part.X_WP) for name in body.parts if (part := assembly.part(name)).mesh is not None
+        ]
+        if not placed:
+            return None
+        boxes.append((np.min([low for low, _ in placed], axis=0), np.max([high for _, high in placed], axis=0)))
+    (low_a, high_a), (low_b, high_b) = boxes
+    return float(np.linalg.norm(np.maximum(np.maximum(low_a - high_b, low_b - high_a), 0.0)))

@@ -16,7 +16,7 @@ from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.kinematics import Body, Joint, Kinematics
 
-STATES = ("stated", "one body", "absent", "undecided", "found")
+STATES = ("stated", "taken", "one body", "absent", "undecided", "found")
 
 WITH_LINE = ("revolute", "cylindrical", "screw")
 """Joints whose axis is a line: direction and position count."""
@@ -28,7 +28,8 @@ FROM_GEOMETRY = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "
 class Comparison:
     """One intended joint and what was found of it. Angles in rad, lengths in m; None: not comparable.
 
-    `state`: stated (the joint comes from the function, nothing to compare), one body (both sides are
+    `state`: stated (the joint comes from the function, nothing to compare), taken (the function states all joints, and
+    this one as contact leaves it free without holding it, or does not touch it), one body (both sides are
     one body), absent (no contact, direct or through loose parts), undecided (`reason` says why), found.
     """
 
@@ -44,12 +45,16 @@ class Comparison:
     freedoms: int = 0
     joint: Joint | None = None
     """The direct joint of the two bodies."""
+    twists: Array | None = None
+    """(k, 6) what was found leaves free (ω; v at the world's origin)."""
     through: tuple[str, ...] = ()
     """Loose bodies that take part."""
     angle_slack: float = 0.0
     """Uncertainty of the found direction."""
     position_slack: float = 0.0
     """Uncertainty of the found position."""
+    size: float = 1.0
+    """m: diagonal of the smaller body."""
     position_limit: float = 0.0
     """By so much the axis or centre may lie beside the intended one (m)."""
 
@@ -104,6 +109,8 @@ def compare_joint(
         return Comparison(intended, bodies, "one body", reason, type="fixed")
     pair = {first.name, second.name}
     direct = next((joint for joint in kinematics.joints if set(joint.bodies) == pair), None)
+    if direct is not None and direct.status == "stated":
+        return Comparison(intended, bodies, "taken", direct.reason, joint=direct)
     if direct is not None and direct.evidence == ("function",):
         return Comparison(intended, bodies, "stated", "the joint is taken from the function", joint=direct)
     named = {name for joint in assembly.function.joints for name in bodies_of(assembly, kinematics, joint.between)}
@@ -132,9 +139,11 @@ def compare_joint(
         pitch=form.pitch,
         freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
         joint=direct,
+        twists=direct.twists if motion is None and direct is not None else motion.twists if motion else None,
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
+        size=_smaller(assembly, bodies),
         position_limit=assembly.tolerances.offset_limit(_smaller(assembly, bodies)),
     )
 

@@ -42,7 +42,7 @@ def check(context: Context) -> Outcome:
 def _taken(comparison: Comparison) -> bool:
     """Whether a complete function states the joint, and there is no contact."""
     joint = comparison.joint
-    return comparison.state == "stated" and joint is not None and joint.status == "stated" and not joint.motion
+    return comparison.state == "taken" and joint is not None and not joint.patches
 
 
 def _reason(context: Context, comparison: Comparison) -> str:

@@ -1,20 +1,21 @@
-"""Geometry gives a joint of another type than the function intends.
+"""Contact forbids the joint that the function intends: it gives one of another type.
 
-Two sides that are one body have no motion and satisfy only `fixed`. Joints that are ambiguous, and types that
-geometry does not always show (a screw without modelled threads, universal), leave the rule inconclusive. Loose parts
-between the bodies that the function does not name, such as a pin, take part in the decision.
+Contact that leaves the intended motion free, and more, is KF414. Two sides that are one body have no motion and satisfy
+only `fixed`. Joints that are ambiguous, and types that geometry does not always show (a screw without modelled threads,
+universal), leave the rule inconclusive. Loose parts between the bodies that the function does not name, such as a pin,
+take part in the decision.
 
 Why it matters: the mechanism moves in a way that is not wanted, or does not move.
 
-What to do: `kinform show F.h5 joints` shows the evidence. A revolute joint that comes out cylindrical
-lacks a shoulder; one that comes out planar lacks the journal; one that comes out fixed is held by a
+What to do: `kinform show F.h5 joints` shows the evidence. A revolute joint that comes out fixed is held by a
 locator, a misaligned surface or a wrong `[[group]]`.
 
-Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
+Example: a pitch axis whose shaft has a flat in its bore slides, and does not turn.
 """
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.answers import leaves_more
 from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
@@ -25,9 +26,9 @@ from kinform.model.kinematics import FREEDOMS
 
 
 def check(context: Context) -> Outcome:
-    """Intended joints of which another type was found."""
+    """Intended joints of which a type was found that forbids them."""
     present = [c for c in context.comparisons if c.state in ("found", "one body")]
-    findings = [_finding(context, c) for c in present if not c.right_type]
+    findings = [_finding(context, c) for c in present if not c.right_type and not leaves_more(c)]
     unknown = [f"'{c.intended.name}': {c.reason}" for c in context.comparisons if c.state == "undecided"]
     return settled(findings, "; ".join(unknown), f"{counted(len(present), 'joint')} compared")
 

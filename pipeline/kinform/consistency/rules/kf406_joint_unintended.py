@@ -16,15 +16,16 @@ from __future__ import annotations
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Rule
-from kinform.foundation.words import direction, quoted
+from kinform.foundation.words import area, direction, quoted
 from kinform.model.findings import Finding
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Aside, Joint
 
 
 def check(context: Context) -> Outcome:
     """Lower pairs, other than planar, between bodies of the function that no intended joint joins."""
     joints = context.unintended_joints
     findings = [_finding(context, joint) for joint in joints if joint.type not in ("planar", "general")]
+    findings += [_beside(context, one) for one in context.kinematics.asides if one.type not in ("planar", "general")]
     unknown = [joint.name for joint in joints if joint.status == "ambiguous"]
     return settled(findings, f"not intended and ambiguous: {quoted(unknown)}" if unknown else "")
 
@@ -34,6 +35,18 @@ def _finding(context: Context, joint: Joint) -> Finding:
         [joint.name],
         f"{quoted(joint.bodies)} are joined by a {joint.type} joint that the function does not intend",
         found=joint.type + (f" about {direction(joint.axis)}" if joint.axis is not None else ""),
+        intended="no joint",
+        declared=context.assembly.source,
+        remedy="Separate the two bodies, or add the joint to [function].",
+    )
+
+
+def _beside(context: Context, aside: Aside) -> Finding:
+    return RULE.finding(
+        [aside.name],
+        f"{quoted(aside.bodies)} touch like a {aside.type} joint over {area(aside.area, context.units)}, and the "
+        "function moves them otherwise: it is taken to hold nothing",
+        found=aside.type + (f" about {direction(aside.axis)}" if aside.axis is not None else ""),
         intended="no joint",
         declared=context.assembly.source,
         remedy="Separate the two bodies, or add the joint to [function].",

@@ -16,13 +16,14 @@ from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.foundation.words import area, counted, quoted
 from kinform.model.findings import Finding
-from kinform.model.kinematics import Joint
+from kinform.model.kinematics import Aside, Joint
 
 
 def check(context: Context) -> Findings:
     """Planar and general contact between bodies of the function that no intended joint joins."""
     touching = [j for j in context.unintended_joints if j.type in ("planar", "general") and j.status != "ambiguous"]
-    return [_finding(context, joint) for joint in touching]
+    beside = [aside for aside in context.kinematics.asides if aside.type in ("planar", "general")]
+    return [_finding(context, joint) for joint in touching] + [_beside(context, aside) for aside in beside]
 
 
 def _finding(context: Context, joint: Joint) -> Finding:
@@ -33,6 +34,18 @@ def _finding(context: Context, joint: Joint) -> Finding:
         [joint.name],
         f"{quoted(joint.bodies)} touch{over}, which the function does not intend",
         found=f"{joint.type} contact, {counted(joint.freedoms, 'freedom')} left",
+        intended="no contact",
+        declared=context.assembly.source,
+        remedy="Give the bodies a gap, or state the contact in [function] or by [[assume]].",
+    )
+
+
+def _beside(context: Context, aside: Aside) -> Finding:
+    return RULE.finding(
+        [aside.name],
+        f"{quoted(aside.bodies)} touch over {area(aside.area, context.units)}, and the function moves them otherwise: "
+        "the contact is taken to hold nothing",
+        found=f"{aside.type} contact, {counted(aside.freedoms, 'freedom')} left",
         intended="no contact",
         declared=context.assembly.source,
         remedy="Give the bodies a gap, or state the contact in [function] or by [[assume]].",

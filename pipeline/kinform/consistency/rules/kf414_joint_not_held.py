@@ -1,43 +1,63 @@
-"""Contact leaves an intended joint free, and more: the joint is taken as stated, because the function is complete.
+"""Contact leaves the intended joint free, and more: nothing in the geometry holds it.
 
-An error for a design, a note for a robot description (`[check] profile`), whose pins and bearings are rarely modelled.
-The joint has the status `stated`; ranges, collisions and simulations rest on it. Without `complete = true` such a joint
-is of another type than intended: that is KF402. An intended joint without any contact is KF401.
+The intended motion is possible, and so are others. Where the function states all joints (`complete = true`), the joint
+is then taken as stated, and everything that follows from it says so. Contact that forbids the joint is KF402.
 
-Why it matters: what holds the joint is in no mesh, so nothing shows that it is held.
+Why it matters: parts that only lie against each other slide off. In many assemblies the pin or the bearing is just not
+modelled: then say so by `complete = true`, or model it.
 
-What to do: model what holds the joint: the pin, the bearing, the shoulder of the shaft. Or nothing, where that is
-known to be left out.
+What to do: `kinform show F.h5 joints` shows the evidence. A revolute joint that comes out cylindrical lacks a shoulder;
+one that comes out planar lacks the journal.
 
-Example: a link that ends at the flat face of a servo's horn; the axle is not modelled.
+Example: a pitch axis whose shaft can slide out is cylindrical, not revolute.
 """
 
 from __future__ import annotations
 
+from kinform.consistency.comparisons.answers import leaves_more
+from kinform.consistency.comparisons.intended_joints import Comparison
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Outcome, decided, skipped
-from kinform.consistency.rule import Rule
-from kinform.foundation.words import counted, direction
+from kinform.consistency.rule import Findings, Rule
+from kinform.foundation.words import counted, direction, quoted
+from kinform.model.findings import Finding
+from kinform.model.kinematics import FREEDOMS
 
 
-def check(context: Context) -> Outcome:
-    """Stated joints that contact leaves free and does not hold."""
-    if not context.function.complete:
-        return skipped("the function does not say that it is complete")
-    findings = [
-        RULE.finding(
-            [c.intended.name],
-            f"joint '{c.intended.name}' is not held by contact, which leaves more free: {c.joint.motion}",
-            found=c.joint.motion,
-            intended=c.intended.type + (f" about {direction(c.intended.axis)}" if c.intended.axis is not None else ""),
-            place=c.intended.point,
-            declared=c.intended,
-            remedy="Model what holds the joint, or accept that it is taken as stated.",
-        )
-        for c in context.comparisons
-        if c.joint is not None and c.state == "stated" and c.joint.status == "stated" and c.joint.motion
-    ]
-    return decided(findings, f"{counted(len(context.comparisons), 'joint')} compared")
+def check(context: Context) -> Findings:
+    """Intended joints that contact leaves free without holding them."""
+    return [_finding(c) for c in context.comparisons if leaves_more(c) or _taken_with_contact(c)]
+
+
+def _taken_with_contact(c: Comparison) -> bool:
+    """Whether the function states all joints, and this one as contact leaves more free."""
+    return c.state == "taken" and c.joint is not None and any(one.cause == "contact" for one in c.joint.readings)
+
+
+def _finding(c: Comparison) -> Finding:
+    intended = c.intended
+    reading = c.joint.readings[0] if c.state == "taken" and c.joint is not None else None
+    found = reading.type if reading is not None else c.type
+    freedoms = reading.freedoms if reading is not None else c.freedoms
+    axis = reading.axis if reading is not None else c.axis
+    through = f" (through {quoted(c.through)})" if c.through else ""
+    more = freedoms - FREEDOMS.get(intended.type, 0)
+    word = found if found != "general" else f"general with {counted(freedoms, 'freedom')}"
+    return RULE.finding(
+        [intended.name],
+        f"joint '{intended.name}' is {word}{through} by contact, intended is {intended.type}: "
+        f"{counted(more, 'freedom')} too many",
+        found=word + (f" about {direction(axis)}" if axis is not None else ""),
+        intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
+        place=c.point if c.point is not None else intended.point,
+        declared=intended,
+        remedy=_remedy(intended.type, found),
+    )
+
+
+def _remedy(wanted: str, found: str) -> str:
+    if wanted == "revolute" and found == "cylindrical":
+        return "Give the shaft shoulders or clips that hold it along the axis."
+    return "Model what holds the joint, or state `complete = true` in [function] if it is in no mesh."
 
 
 RULE = Rule("KF414", "joint-not-held", "error", __doc__, check, needs=("comparisons",))

@@ -27,11 +27,16 @@ from kinform.model.kinematics import Joint
 
 def check(context: Context) -> Outcome:
     """Joints whose status is ambiguous."""
-    ambiguous = [joint for joint in context.kinematics.joints if joint.status == "ambiguous"]
+    ambiguous = [joint for joint in context.kinematics.joints if joint.status == "ambiguous" or _doubted(joint)]
     wanted = {joint.name: _wanted(context, joint) for joint in ambiguous}
     findings = [_finding(context, joint, wanted[joint.name]) for joint in ambiguous]
     intended = [want.name for want in wanted.values() if want is not None]
     return settled(findings, f"ambiguous: {quoted(intended)}" if intended else "")
+
+
+def _doubted(joint: Joint) -> bool:
+    """Whether it is taken as stated where contact is in doubt."""
+    return any(reading.cause == "doubt" for reading in joint.readings)
 
 
 def _wanted(context: Context, joint: Joint) -> IntendedJoint | None:

@@ -52,8 +52,9 @@ class Pairs:
         return answer
 
 
-def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]:
-    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses."""
+def decide_all(pairs: Pairs, merger: Merger, *, fusing: bool = True) -> dict[Pair, tuple[Answer, Joint]]:
+    """Decide every pair of touching bodies; fuse what is fixed; repeat until nothing fuses. Not `fusing`: bodies are
+    known, and stay."""
     known_answers: dict[tuple[int, ...], Answer] = {}
     stated = stated_roots(pairs.assembly, merger)
     while True:
@@ -80,7 +81,7 @@ def decide_all(pairs: Pairs, merger: Merger) -> dict[Pair, tuple[Answer, Joint]]
             other = None if answer.other is None else joint_between(answer.other, pair, places)
             out[pair] = replace(answer, other=other), joint_between(answer.joint, pair, places)
             parts = members[0][1].parts
-            if frozenset(merger.root(p) for p in parts) in stated:
+            if not fusing or frozenset(merger.root(p) for p in parts) in stated:
                 continue
             if answer.joint.type == "fixed" and answer.joint.status == "determined":
                 merger.fuse(parts[0], parts[1], f"contact {parts[0]}~{parts[1]} leaves no freedom")

@@ -15,6 +15,7 @@ import numpy as np
 from kinform.foundation.algebra.screws import Frame, scaled, span
 from kinform.kinematics.loops.assembly_closure import body_twists, close
 from kinform.kinematics.pair.lower_pairs import JointForm, name_space
+from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint, Kinematics
 
 
@@ -27,6 +28,8 @@ class HelperMotion:
     helpers: tuple[str, ...]
     joints: tuple[Joint, ...]
     """All that take part, in the order of the kinematics."""
+    twists: Array
+    """(k, 6) of the second relative to the first (ω; v at the world's origin)."""
 
 
 def motion_through_helpers(
@@ -49,7 +52,7 @@ def motion_through_helpers(
     frame = Frame.of(points) if len(points) else Frame(np.zeros(3), 1.0)
     basis = span(scaled(twists.T, frame))
     names = tuple(sorted(used))
-    return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints))
+    return HelperMotion(name_space(basis, frame), basis.shape[1], names, tuple(joints), twists)
 
 
 def _connecting(joints: tuple[Joint, ...], first: str, second: str, helpers: set[str]) -> set[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from kinform.consistency.comparisons.answers import IntendedAnswer, answers_of
+from kinform.consistency.comparisons.answers import answers
 from kinform.design import Design
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
@@ -20,10 +20,8 @@ def joint_values(design: Design) -> dict[str, Any]:
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
-        "intended": [
-            _intended(item)
-            for item in answers_of(design.assembly, design.contacts, design.ranged or _kinematics(design))
-        ],
+        "intended": [asdict(answer) for answer in answers(design)],
+        "asides": [asdict(aside) for aside in kinematics.asides],
         "mobility": mobility_counts(kinematics.mobility),
         "separations": [
             fields(item, "bodies", "contacts") | {"releases": [release(way) for way in item.releases]}
@@ -33,17 +31,12 @@ def joint_values(design: Design) -> dict[str, Any]:
     }
 
 
-def _intended(item: IntendedAnswer) -> dict[str, Any]:
-    """What contact says of an intended joint."""
-    found = item.comparison
+def body_values(design: Design) -> dict[str, Any]:
+    """Bodies, and why each part is in its own where that follows from the function."""
+    kinematics = _kinematics(design)
     return {
-        **fields(found.intended, "name", "between", "type"),
-        "answer": item.answer,
-        "joint": None if found.joint is None else found.joint.name,
-        **fields(found, "angle", "offset"),
-        "free": item.free or None,
-        "blocked_by": [fields(blocker, "parts", "patch", "area", "forbids") for blocker in item.blocked_by],
-        "gap": None,
+        "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
+        "membership": [asdict(one) for one in kinematics.membership],
     }
 
 
@@ -108,7 +101,7 @@ def mobility_values(design: Design) -> dict[str, Any]:
 def mobility_counts(mobility: Mobility) -> dict[str, int | None]:
     """All counts by name."""
     counts = fields(mobility, "instantaneous", "finite", "effective", "idle", "redundant")
-    return counts | {"blocked_mobility": mobility.blocked}
+    return counts | {"blocked_mobility": mobility.blocked, "contact_mobility": mobility.by_contact}
 
 
 def _named(kinematics: Kinematics) -> list[dict[str, Any]]:

@@ -16,7 +16,7 @@ from kinform.errors import StageError
 from kinform.kinematics import insight
 from kinform.reports import as_json
 from kinform.reports.values.form import assembly_values, contact_values, mass_values
-from kinform.reports.values.kinematics import joint_values, mobility_values, one_joint, ranged
+from kinform.reports.values.kinematics import body_values, joint_values, mobility_values, one_joint, ranged
 from kinform.reports.values.plain import fields, plain
 from kinform.reports.values.runs import behaviour_values, simulation_values
 
@@ -24,8 +24,8 @@ from kinform.reports.values.runs import behaviour_values, simulation_values
 def summary(design: Design, topic: str | None = None) -> dict[str, Any]:
     """The values of one topic, or of all of them, as JSON has them: dicts, lists, text, numbers, None.
 
-    Topics: assembly, contacts, joints, mobility, mass, behaviour, simulation, findings. Raises StageError when the
-    stage of the topic has not run, and ValueError for another topic.
+    Topics: assembly, contacts, joints, bodies, mobility, mass, behaviour, simulation, findings. Raises StageError when
+    the stage of the topic has not run, and ValueError for another topic.
     """
     if topic is None:
         known = {name: summary(design, name) if TOPICS[name].computed(design) else None for name in TOPICS}
@@ -96,6 +96,7 @@ TOPICS = {
     "assembly": Topic("import", "assembly", assembly_values),
     "contacts": Topic("contacts", "contacts", contact_values),
     "joints": Topic("joints", "kinematics", joint_values),
+    "bodies": Topic("joints", "kinematics", body_values),
     "mobility": Topic("joints", "kinematics", mobility_values),
     "mass": Topic("mass", "mass", mass_values),
     "behaviour": Topic("simulate", "behaviour", behaviour_values),

@@ -38,6 +38,8 @@ LAYOUT = Layout(
     Table("misfit"),
     Table("moves"),
     Table("misaligned"),
+    Table("asides"),
+    Table("membership"),
     Table("couplings", Table("meshings", field="meshing", owner="coupling")),
 )
 """The matrix and the mobility have groups of their own."""

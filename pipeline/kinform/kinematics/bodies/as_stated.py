@@ -1,0 +1,134 @@
+"""`[function] complete = true`: joints as the function states them, where contact leaves them free.
+
+The pins and bearings of most assemblies are in no mesh: parts end at a flush plane, or with a gap. Where the function
+states all joints, one that contact leaves free, with more beside, is taken as stated (`stated`), and so is one whose
+bodies do not touch; what contact says stays beside it as a reading. One that contact determines as it is stated stays
+as it was derived, and so does one that contact certainly forbids: the function never overrides what holds. Where
+contact is ambiguous or blocked the joint is taken as stated, too, and the doubt is kept. Contact between bodies that
+stated joints move relative to each other, without one of their own, constrains nothing and is set aside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.words import counted, quoted
+from kinform.kinematics.bodies.complete import complete_joints, without_effect
+from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.bodies.stated_joints import Pair, joint_form, pair_between
+from kinform.kinematics.constants import ADMITTED
+from kinform.kinematics.pair.joint import reading_of, stated_joint
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Aside, Joint
+
+
+@dataclass(frozen=True, eq=False)
+class AsStated:
+    """The joints in force, and contact that constrains nothing."""
+
+    joints: tuple[Joint, ...]
+    asides: tuple[Aside, ...]
+
+
+def as_stated(
+    assembly: Assembly, merger: Merger, joints: Sequence[Joint], patches: Sequence[Patch], *, whole: bool
+) -> AsStated:
+    """Joints by contact, sorted by their bodies, in the light of a function that states all joints.
+
+    `whole`: it states those of all parts; else contact of bodies that none of its joints reaches stays.
+    """
+    of_part = {part: body.name for body in merger.bodies() for part in body.parts}
+    meshed = {of_part[part.name] for part in assembly.parts if part.mesh is not None}
+    wanted: dict[Pair, list[IntendedJoint]] = {}
+    for intended in sorted(complete_joints(assembly), key=lambda joint: joint.name):
+        pair = pair_between(assembly, of_part, intended.between)
+        if pair is not None and intended.type != "fixed" and meshed.issuperset(pair):
+            wanted.setdefault(pair, []).append(intended)
+    derived = {joint.bodies: joint for joint in joints}
+    assumed = {pair for a in assembly.assumptions if (pair := pair_between(assembly, of_part, a.between)) is not None}
+    sticks = {joint.bodies for joint in joints if not joint.patches}
+    idle = without_effect(assembly, merger)
+    some_part = {body: part for part, body in of_part.items()}
+    out, asides = [], []
+    for pair in sorted({*derived, *wanted}):
+        joint = derived.get(pair)
+        if pair in wanted and pair not in assumed:
+            forms = [joint_form(assembly, of_part, one, pair) for one in wanted[pair]]
+            stated = [stated_joint(pair, form, "function", "") for form in forms]
+            out.append(_in_force(wanted[pair], stated, joint, patches))
+        elif joint is not None and (
+            pair in assumed or pair in sticks or not (whole or idle(*(some_part[name] for name in pair)))
+        ):
+            out.append(joint)
+        elif joint is not None:
+            asides.append(_aside(joint, patches))
+    return AsStated(tuple(out), tuple(asides))
+
+
+def leaves_free(twists: Array, motions: Array, place: Array, length: float) -> bool:
+    """Whether a joint that allows `twists` (n, 6) lets a body do all of these motions (k, 6), but for a small share of
+    each; twists as (ω; v at the world's origin).
+
+    Speeds are compared at `place` (3,) m; `length` (m), of the contact or the bodies, makes turns and slides alike.
+    """
+    if not len(motions):
+        return True
+    if not len(twists):
+        return False
+    scale = np.r_[np.ones(3), np.full(3, 1.0 / length)]
+    own, asked = _at(twists, place) * scale, _at(motions, place) * scale
+    basis, _ = np.linalg.qr(own.T)
+    left = asked - asked @ basis @ basis.T
+    return bool((np.linalg.norm(left, axis=1) <= ADMITTED * np.linalg.norm(asked, axis=1)).all())
+
+
+def _at(twists: Array, place: Array) -> Array:
+    """Twists (k, 6) with their velocities at a place instead of the origin."""
+    return np.concatenate([twists[:, :3], twists[:, 3:] + cross(twists[:, :3], place)], axis=1)
+
+
+def _in_force(
+    wanted: Sequence[IntendedJoint], stated: Sequence[Joint], joint: Joint | None, patches: Sequence[Patch]
+) -> Joint:
+    """The joint between two bodies that the function joins, by one or more joints; `joint` is that of contact."""
+    types = [one.type for one in wanted]
+    if joint is not None and joint.type in types and joint.status != "ambiguous":
+        return joint
+    chosen = types.index(joint.type) if joint is not None and joint.type in types else 0
+    name, taken = wanted[chosen].name, stated[chosen]
+    if joint is None or not joint.patches:
+        return replace(
+            taken, status="stated", reason=f"the bodies do not touch: '{name}' is taken as stated", motion=""
+        )
+    corners = np.concatenate([patches[k].points for k in joint.patches])
+    place = corners.mean(axis=0) if taken.point is None else taken.point
+    if joint.status in ("ambiguous", "blocked"):
+        cause, why = "doubt", "contact leaves it undecided"
+    elif leaves_free(joint.twists, taken.twists, place, float(np.linalg.norm(np.ptp(corners, axis=0))) or 1.0):
+        cause, why = "contact", "contact leaves it free and does not hold it"
+    else:
+        return joint
+    return replace(
+        taken,
+        status="stated",
+        reason=f"'{name}' is taken as stated: {why}; by contact {joint.status} {joint.type}: {joint.reason}",
+        motion=joint.motion or counted(joint.freedoms, "freedom"),
+        evidence=(*joint.evidence, "function"),
+        patches=joint.patches,
+        singular_values=joint.singular_values,
+        readings=(replace(reading_of(replace(joint, blockers=()), ""), cause=cause),),
+    )
+
+
+def _aside(joint: Joint, patches: Sequence[Patch]) -> Aside:
+    """Contact that no stated joint goes with."""
+    area = float(sum(patches[k].area for k in joint.patches))
+    words = f"{quoted(joint.bodies)} touch; the function moves them otherwise"
+    return Aside(joint.name, joint.bodies, joint.type, joint.freedoms, joint.status, area, joint.axis, words)

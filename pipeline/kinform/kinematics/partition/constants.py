@@ -1,0 +1,40 @@
+"""Numbers that decide which parts are one body when the function names all joints. Prices have no unit: what counts is
+their order. The first values are those of a trial on nine public robots (none of its numbers was tuned there)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+OPPOSED = 0.03
+"""Share of the local speed that a normal may oppose, and still slide on itself."""
+SLOW = 1e-4
+"""The same as a share of the greatest speed in the contact: near the axis nothing moves."""
+OPPOSED_AREA = 0.05
+"""Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing."""
+JOURNAL = 1.0
+"""Price of parting a journal, a collar or a guide: what joints are made of."""
+FACE_ROUND = 30.0
+"""Price of parting a face that goes round the axis, without a journal: a flange may turn, and seldom does."""
+SERRATED = 100.0
+"""Price of parting serrations about the axis: those of a servo's output turn with what they drive."""
+FLAT_BESIDE = 300.0
+"""Price of parting a flat beside the axis."""
+JOURNAL_OFF = 0.7
+"""Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
+FACE_OFF = 0.5
+"""The same of other faces."""
+GUIDED_ROUND = np.radians(181.0)
+"""rad: normals of a guide leave no wider gap round it than this."""
+FASTENED = {"holes": 5000.0, "pocket": 1000.0, "pressed": 20.0}
+"""Price of parting what is fastened, by what suggests it: screws that are not modelled, a pocket, a press."""
+BROKEN = 20000.0
+"""Price of a contact between bodies that no joint of theirs may part: legs that cross are drawn touching, too."""
+EITHER = 25.0
+"""Margin up to which a part may go either way: less than the price of a flange."""
+TOUCH_WORTH = 0.5
+"""Price of parting the pair that touches over the largest area of all, in proportion for others: what nothing else
+tells apart goes with the part that it touches most."""
+NEAREST_TRIED = 6
+"""Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for."""
+MOST_SECONDS = 60.0
+"""s: what the integer program may take before the best answer so far is taken and said to be unproven."""

@@ -1,0 +1,209 @@
+"""The cheapest body for every part: a multiway cut of the graph of contacts, as an integer program.
+
+Nodes are what is one body anyway; some are seeds, whose body is known. Every edge says what it costs to put its two
+ends into two bodies: less where a joint of these two bodies may part it. A node that no seed's contacts reach has no
+label. What seeds separate is solved on its own, so that programs stay small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.partition import constants
+from kinform.model.arrays import Array
+
+Labels = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A contact between two nodes."""
+
+    ends: tuple[int, int]
+    parted: Mapping[Labels, float]
+    """Price for the labels of the first and the second end, where a joint of the two bodies parts it."""
+    broken: float
+    """Price for any other two labels."""
+
+    def price(self, first: int, second: int) -> float:
+        """What it costs that its ends have these labels."""
+        return 0.0 if first == second else min(self.parted.get((first, second), self.broken), self.broken)
+
+
+@dataclass(frozen=True, eq=False)
+class Labelling:
+    """The label of every node, and how it came about."""
+
+    labels: tuple[int | None, ...]
+    proven: bool
+    """Whether the integer programs were solved to the end."""
+
+
+def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> Labelling:
+    """Labels of all nodes that make the sum of the prices least; `seeds` have theirs."""
+    labels: list[int | None] = [seeds.get(node) for node in range(nodes)]
+    proven = True
+    for members in regions(nodes, seeds, edges):
+        inside = set(members)
+        near = [edge for edge in edges if inside & set(edge.ends)]
+        touched = {seeds[n] for edge in near for n in edge.ends if n in seeds}
+        # a body that touches nothing here may be on the other side of a joint that does
+        candidates = sorted(touched | {b for edge in near for a, b in edge.parted if a in touched})
+        if not candidates:
+            continue
+        if len(candidates) == 1:
+            for node in members:
+                labels[node] = candidates[0]
+            continue
+        found, sure = _solve(members, candidates, near, seeds)
+        proven &= sure
+        for node, label in found.items():
+            labels[node] = label
+    return Labelling(tuple(labels), proven)
+
+
+def regions(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> list[list[int]]:
+    """Nodes without a seed, those together that contacts without seeds connect."""
+    sets = UnionFind(nodes)
+    for edge in edges:
+        if not set(edge.ends) & set(seeds):
+            sets.union(*edge.ends)
+    out: dict[int, list[int]] = {}
+    for node in range(nodes):
+        if node not in seeds:
+            out.setdefault(sets.find(node), []).append(node)
+    return sorted(out.values())
+
+
+def _solve(
+    members: Sequence[int], candidates: Sequence[int], edges: Sequence[Edge], seeds: Mapping[int, int]
+) -> tuple[dict[int, int], bool]:
+    """The labels of some nodes, by an integer program.
+
+    x[i, l]: node i has label l. Of an edge between two nodes, y[a, b] says that its ends have the labels a and b, for
+    equal labels and for those that a joint parts; what is left of 1 is broken. With y below x on both sides the
+    relaxation is that of the local polytope, and mostly whole.
+    """
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import coo_matrix
+
+    place = {node: k for k, node in enumerate(members)}
+    number = {label: k for k, label in enumerate(candidates)}
+    wide = len(candidates)
+    cost = [0.0] * (len(members) * wide)
+    rows: list[int] = []
+    columns: list[int] = []
+    values: list[float] = []
+    lowest: list[float] = []
+    highest: list[float] = []
+
+    def constrain(terms: Sequence[tuple[int, float]], low: float, high: float) -> None:
+        for column, value in terms:
+            rows.append(len(lowest))
+            columns.append(column)
+            values.append(value)
+        lowest.append(low)
+        highest.append(high)
+
+    for k in range(len(members)):
+        constrain([(k * wide + c, 1.0) for c in range(wide)], 1.0, 1.0)
+    for edge in edges:
+        first, second = edge.ends
+        if first in seeds or second in seeds:
+            free, fixed = (second, first) if first in seeds else (first, second)
+            for label, c in number.items():
+                ends = (seeds[fixed], label) if fixed == first else (label, seeds[fixed])
+                cost[place[free] * wide + c] += edge.price(*ends)
+            continue
+        allowed = [(a, a) for a in candidates]
+        allowed += sorted(ends for ends in edge.parted if set(ends) <= set(number) and edge.price(*ends) < edge.broken)
+        at = len(cost)
+        cost += [edge.price(*ends) - edge.broken for ends in allowed]
+        for side, node in enumerate((first, second)):
+            for label, c in number.items():
+                terms = [(at + k, 1.0) for k, ends in enumerate(allowed) if ends[side] == label]
+                constrain([*terms, (place[node] * wide + c, -1.0)], -np.inf, 0.0)
+    whole = np.zeros(len(cost))
+    whole[: len(members) * wide] = 1
+    answer = milp(
+        np.array(cost),
+        constraints=LinearConstraint(
+            coo_matrix((values, (rows, columns)), shape=(len(lowest), len(cost))), lowest, highest
+        ),
+        integrality=whole,
+        bounds=Bounds(0.0, 1.0),
+        options={"time_limit": constants.MOST_SECONDS, "mip_rel_gap": 0.0},
+    )
+    if answer.x is None:
+        return dict.fromkeys(members, candidates[0]), False
+    chosen: Array = np.asarray(answer.x)[: len(members) * wide].reshape(-1, wide)
+    return {node: candidates[int(np.argmax(chosen[place[node]]))] for node in members}, bool(answer.status == 0)
+
+
+@dataclass(frozen=True)
+class Margin:
+    """By how much the next best label of a node is dearer, and which that is; with the nodes that go along."""
+
+    cost: float
+    label: int | None
+    along: tuple[int, ...]
+    moves: bool
+    """Whether joints may part all that would be parted then: nothing but likelihood speaks against it."""
+
+
+def margins(labels: Sequence[int | None], seeds: Mapping[int, int], edges: Sequence[Edge]) -> dict[int, Margin]:
+    """The margin of every labelled node that is no seed.
+
+    Nodes of one label are joined in the order of what holds them, the dearest first; each cluster so made is offered
+    the labels that it touches. A node's margin is that of the cheapest cluster around it.
+    """
+    nodes = len(labels)
+    around: dict[int, list[Edge]] = {}
+    for edge in edges:
+        for end in edge.ends:
+            around.setdefault(end, []).append(edge)
+    best: dict[int, Margin] = {}
+    clusters = {n: {n} for n in range(nodes) if labels[n] is not None and n not in seeds}
+    sets = UnionFind(nodes)
+
+    def offer(members: set[int]) -> None:
+        label = labels[next(iter(members))]
+        outward = [e for n in sorted(members) for e in around.get(n, ()) if len(members & set(e.ends)) == 1]
+        assert label is not None
+        touched = {labels[n] for e in outward for n in e.ends if n not in members}
+        across = {b for e in outward for a, b in e.parted if a == label}
+        for other in sorted({one for one in touched | across if one is not None} - {label}):
+            change, moves = 0.0, True
+            for edge in outward:
+                inner = edge.ends[0] in members
+                beyond = labels[edge.ends[1] if inner else edge.ends[0]]
+                if beyond is None:
+                    continue
+                then, now = (((one, beyond) if inner else (beyond, one)) for one in (other, label))
+                change += edge.price(*then) - edge.price(*now)
+                moves &= other == beyond or then in edge.parted
+            for node in members:
+                if node not in best or (not moves, change) < (not best[node].moves, best[node].cost):
+                    best[node] = Margin(change, other, tuple(sorted(members)), moves)
+
+    for members in clusters.values():
+        offer(members)
+    joined = [e for e in edges if labels[e.ends[0]] == labels[e.ends[1]] and not set(e.ends) & set(seeds)]
+    for edge in sorted(joined, key=lambda e: (-_hold(e), e.ends)):
+        one, two = (sets.find(end) for end in edge.ends)
+        if one == two or labels[edge.ends[0]] is None:
+            continue
+        together = clusters.pop(one) | clusters.pop(two)
+        sets.union(one, two)
+        clusters[sets.find(one)] = together
+        offer(together)
+    return best
+
+
+def _hold(edge: Edge) -> float:
+    """How firmly an edge holds, whatever the labels."""
+    return min([edge.broken, *edge.parted.values()])

@@ -1,0 +1,187 @@
+"""What it costs to part two parts that touch along the motion of a joint.
+
+A joint's motions are a few twists. Two parts may be parted by it where next to none of the area between them opposes
+any of them. How readily: a journal or a collar that goes round the joint's axis is what joints are made of; an annular
+face without a journal may be a flange; a flat beside the axis that a turn leaves free is chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import cross, perpendicular, widest_gap
+from kinform.kinematics.partition import constants
+from kinform.model.arrays import Array, Flags, Ints
+from kinform.model.contacts import Patch, Suggestion
+from kinform.model.function import IntendedJoint
+from kinform.model.names import PartName
+
+PartPair = tuple[PartName, PartName]
+
+ROUND = ("cylinder", "cone", "sphere", "torus", "revolution", "helicoid")
+"""Kinds of patches that bear a turn."""
+
+
+def joint_twists(joint: IntendedJoint) -> Array | None:
+    """(k, 6) motions of an intended joint (ω; v at the world's origin); None where it does not say where they are."""
+    z = np.zeros(3)
+    point = joint.point
+    if joint.type == "fixed":
+        return np.zeros((0, 6))
+    if joint.type == "spherical":
+        return None if point is None else np.array([_turn(direction, point) for direction in np.eye(3)])
+    if joint.axis is None:
+        return None
+    axis = joint.axis / np.linalg.norm(joint.axis)
+    slide = np.concatenate([z, axis])
+    if joint.type == "prismatic":
+        return slide[None]
+    if joint.type == "planar":
+        u, v = perpendicular(axis)
+        place = z if point is None else point
+        return np.array([_turn(axis, place), np.concatenate([z, u]), np.concatenate([z, v])])
+    if point is None:
+        return None
+    if joint.type == "revolute":
+        return _turn(axis, point)[None]
+    if joint.type == "cylindrical":
+        return np.array([_turn(axis, point), slide])
+    if joint.type == "screw" and joint.pitch is not None:
+        return (_turn(axis, point) + joint.pitch / (2.0 * np.pi) * slide)[None]
+    if joint.type == "universal" and joint.axis2 is not None:
+        return np.array([_turn(axis, point), _turn(joint.axis2 / np.linalg.norm(joint.axis2), point)])
+    return None
+
+
+def _turn(axis: Array, point: Array) -> Array:
+    return np.concatenate([axis, cross(point, axis)])
+
+
+@dataclass(frozen=True, eq=False)
+class Prices:
+    """What parting each pair of parts costs."""
+
+    by_joint: Mapping[PartPair, Mapping[int, float]]
+    """For each pair that touches, the joints that may part it, by number, and the price. Without any it is held."""
+    held: Mapping[PartPair, float]
+    """What it costs to part a pair although no joint may: what holds it is broken."""
+
+
+def prices(
+    joints: Sequence[IntendedJoint],
+    twists: Sequence[Array | None],
+    patches: Sequence[Patch],
+    suggestions: Sequence[Suggestion],
+) -> Prices:
+    """The price of parting every pair of parts that touch, by every joint that may."""
+    between: dict[PartPair, list[Patch]] = {}
+    for patch in patches:
+        if not patch.narrow:
+            between.setdefault(patch.parts, []).append(patch)
+    hints: dict[PartPair, float] = {}
+    for suggestion in suggestions:
+        if suggestion.fastens:
+            worth = constants.FASTENED[suggestion.kind]
+            hints[suggestion.parts] = max(hints.get(suggestion.parts, 0.0), worth)
+    by_joint, held = {}, {}
+    for pair in sorted(between):
+        contact = _Contact.of(between[pair])
+        hint = hints.get(pair, 0.0)
+        costs = {}
+        for number, (joint, motions) in enumerate(zip(joints, twists, strict=True)):
+            if motions is None or not len(motions):
+                continue
+            cost = contact.price(joint, motions)
+            if cost is not None:
+                costs[number] = cost + hint
+        by_joint[pair] = costs
+        held[pair] = constants.BROKEN + hint
+    return Prices(by_joint, held)
+
+
+@dataclass(frozen=True, eq=False)
+class _Contact:
+    """All contact of a pair of parts."""
+
+    patches: tuple[Patch, ...]
+    points: Array
+    normals: Array
+    weights: Array
+    start: Ints
+
+    @staticmethod
+    def of(patches: Sequence[Patch]) -> _Contact:
+        return _Contact(
+            tuple(patches),
+            np.concatenate([patch.points for patch in patches]),
+            np.concatenate([patch.normals for patch in patches]),
+            np.concatenate([patch.weights for patch in patches]),
+            np.cumsum([0, *(len(patch.points) for patch in patches)]),
+        )
+
+    def price(self, joint: IntendedJoint, motions: Array) -> float | None:
+        """What it costs to part them by this joint; None where it may not."""
+        opposed = np.zeros(len(self.points), dtype=bool)
+        for motion in motions:
+            speeds = motion[3:] + cross(motion[:3], self.points)
+            pace = np.linalg.norm(speeds, axis=1)
+            slow = constants.SLOW * float(pace.max(initial=0.0))
+            opposed |= np.abs(np.einsum("ij,ij->i", speeds, self.normals)) > constants.OPPOSED * pace + slow
+        total = float(self.weights.sum())
+        if total <= 0.0:
+            return None
+        turns = bool((np.linalg.norm(motions[:, :3], axis=1) > 0.0).any())
+        serrated = self._serrated(joint) if turns else np.zeros(len(self.points), dtype=bool)
+        if float(self.weights[opposed & ~serrated].sum()) > constants.OPPOSED_AREA * total:
+            return None
+        if not turns:
+            return self._guided(joint, opposed)
+        price = self._round(joint, opposed)
+        return max(price, constants.SERRATED) if (opposed & serrated).any() else price
+
+    def _serrated(self, joint: IntendedJoint) -> Flags:
+        """(n,) points on facets of no known surface that go round the joint's axis: serrations of a servo's output,
+        which is one mesh with the servo, in what it turns."""
+        out = np.zeros(len(self.points), dtype=bool)
+        for k, patch in enumerate(self.patches):
+            rows = slice(int(self.start[k]), int(self.start[k + 1]))
+            if patch.kind in ("freeform", "other"):
+                out[rows] = self._off(joint, k) < constants.FACE_OFF
+        return out
+
+    def _off(self, joint: IntendedJoint, k: int) -> float:
+        """How far the middle of patch k lies beside the joint's axis, or centre, as a share of its reach from there."""
+        assert joint.point is not None
+        arms = self.points[int(self.start[k]) : int(self.start[k + 1])] - joint.point
+        if joint.type != "spherical" and joint.axis is not None:
+            axis = joint.axis / np.linalg.norm(joint.axis)
+            arms = arms - np.outer(arms @ axis, axis)
+        weights = self.patches[k].weights
+        reach = float(np.linalg.norm(arms, axis=1).max(initial=0.0))
+        middle = weights @ arms / max(float(weights.sum()), 1e-300)
+        return float(np.linalg.norm(middle)) / max(reach, 1e-300)
+
+    def _round(self, joint: IntendedJoint, opposed: Flags) -> float:
+        """The price along a turn: do patches go round its axis, or its centre?"""
+        journal, farthest = False, 0.0
+        for k, patch in enumerate(self.patches):
+            rows = slice(int(self.start[k]), int(self.start[k + 1]))
+            if opposed[rows].any():
+                continue
+            off = self._off(joint, k)
+            journal |= patch.kind in ROUND and off < constants.JOURNAL_OFF
+            farthest = max(farthest, off)
+        round_it = farthest < constants.FACE_OFF
+        if journal and round_it:
+            return constants.JOURNAL
+        return constants.FACE_ROUND if journal or round_it else constants.FLAT_BESIDE
+
+    def _guided(self, joint: IntendedJoint, opposed: Flags) -> float:
+        """The price along a slide: do faces that run along it stand round it?"""
+        assert joint.axis is not None
+        axis = joint.axis / np.linalg.norm(joint.axis)
+        gap = widest_gap(self.normals[~opposed], axis)
+        return constants.JOURNAL if gap < constants.GUIDED_ROUND else constants.FLAT_BESIDE

@@ -1,0 +1,149 @@
+"""Bodies from function: the cheapest labels are the cheapest of all, and parts part where their joints may."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.assemblies import HERE, assembly
+from support.solids import box, part, random_pose, rod
+
+from kinform import contacts, kinematics, surfaces
+from kinform.kinematics.partition import partition
+from kinform.kinematics.partition.labelling import Edge, label_all, margins
+from kinform.model.function import Function, IntendedJoint
+
+PRICES = st.sampled_from([1.0, 30.0, 300.0])
+
+
+@st.composite
+def graphs(draw):
+    """Seeds 0 to k − 1 with their own label, a few free nodes, and contacts at any price."""
+    seeds, free = draw(st.integers(2, 3)), draw(st.integers(1, 4))
+    pairs = [(a, b) for a in range(seeds + free) for b in range(max(a + 1, seeds), seeds + free)]
+    chosen = draw(st.lists(st.sampled_from(pairs), min_size=1, max_size=9, unique=True))
+    edges = []
+    for ends in chosen:
+        joints = draw(st.lists(st.tuples(st.integers(0, seeds - 1), st.integers(0, seeds - 1), PRICES), max_size=2))
+        parted = {}
+        for a, b, price in joints:
+            if a != b:
+                parted[(a, b)] = parted[(b, a)] = price
+        edges.append(Edge(ends, parted, draw(st.sampled_from([1000.0, 6000.0]))))
+    return seeds, free, edges
+
+
+def cost(labels, edges):
+    return sum(edge.price(labels[edge.ends[0]], labels[edge.ends[1]]) for edge in edges)
+
+
+@settings(max_examples=150, deadline=None)
+@given(graphs())
+def test_no_labels_cost_less(graph):
+    seeds, free, edges = graph
+    own = {k: k for k in range(seeds)}
+    found = label_all(seeds + free, own, edges)
+    labels = [seeds - 1 if label is None else label for label in found.labels]  # what touches no seed costs nothing
+    best = min(cost([*range(seeds), *rest], edges) for rest in product(range(seeds), repeat=free))
+    reached = [k for k, label in enumerate(found.labels) if label is None]
+    if not reached:
+        assert cost(labels, edges) == pytest.approx(best)
+    for margin in margins(found.labels, own, edges).values():
+        assert margin.cost >= -1e-9
+
+
+def joint(name, between, type_="revolute", axis=(0, 0, 1), point=(0, 0, 0)):
+    at = None if point is None else np.asarray(point, float)
+    return IntendedJoint(name, between, type_, np.asarray(axis, float), None, at, None, None, HERE.file, None)
+
+
+def moved(one, X, scale):
+    """The joint with the assembly; points in mm of the drawing."""
+    at = X[:3, :3] @ (scale * one.point) + X[:3, 3]
+    return IntendedJoint(one.name, one.between, one.type, X[:3, :3] @ one.axis, None, at, None, None, one.file, None)
+
+
+def stack(lift=0.0):
+    """A base with a pivot, an arm on it made of two plates and two bolts, and a cover on the base."""
+    base = box(-30, 30, -30, 30, -10, 0) + rod(5, -1, 30, 48)
+    low = box(-10, 60, -10, 10, 0.0, 6) - rod(5.02, -1, 7, 48) - rod(2, -1, 7, 24).translate((40, 0, 0))
+    low -= rod(2, -1, 7, 24).translate((50, 0, 0))
+    high = (
+        box(30, 60, -10, 10, 6, 12) - rod(2, 5, 13, 24).translate((40, 0, 0)) - rod(2, 5, 13, 24).translate((50, 0, 0))
+    )
+    bolts = [(rod(1.98, 0, 12, 24) + rod(3.5, 12, 15, 24)).translate((x, 0, 0)) for x in (40, 50)]
+    cover = box(-30, -12, -30, 30, 0, 4)
+    arm = {"low": low, "high": high, "bolt_1": bolts[0], "bolt_2": bolts[1]}
+    return {"base": base, "cover": cover} | {name: solid.translate((0, 0, lift)) for name, solid in arm.items()}
+
+
+def made(X=None, scale=1e-3, groups=(), joints=(), order=None, lift=0.0):
+    X = np.eye(4) if X is None else X
+    solids = stack(lift)
+    names = order or list(solids)
+    parts = [part(name, solids[name], X, scale) for name in names]
+    whole = assembly(*parts, groups=groups)
+    stated = Function(joints=tuple(moved(one, X, scale) for one in joints), complete=("",))
+    whole = type(whole)(**{f: getattr(whole, f) for f in whole.__dataclass_fields__} | {"function": stated})
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    return whole, found, contacts.find(whole, found)
+
+
+ARM = joint("turn", ("base", "low"))
+
+
+@pytest.mark.parametrize("seed", [None, 0])
+@pytest.mark.parametrize("scale", [1e-3, 1.0])
+@pytest.mark.parametrize(("lift", "status", "by_contact"), [(0.0, "determined", 1), (2.0, "stated", 2)])
+def test_an_arm_of_plates_and_bolts_is_one_body(seed, scale, lift, status, by_contact):
+    """Lifted off the base, only its pivot guides it: contact alone lets it slide off."""
+    X = None if seed is None else random_pose(np.random.default_rng(seed))
+    whole, found, touching = made(X, scale, joints=[ARM], lift=lift)
+    K = kinematics.derive(whole, found, touching)
+    assert sorted(set(body.parts) == {"base", "cover"} for body in K.bodies) == [False, True]
+    (arm,) = K.joints
+    assert (arm.type, arm.status) == ("revolute", status)
+    assert [(reading.cause, reading.type) for reading in arm.readings] == (
+        [("contact", "cylindrical")] if status == "stated" else []
+    )
+    assert K.mobility.instantaneous == 1
+    assert K.mobility.by_contact == by_contact
+
+
+def test_contact_that_forbids_the_joint_stands():
+    """The arm cannot slide along x: its pivot is in the way."""
+    slide = joint("slide", ("base", "low"), "prismatic", (1, 0, 0))
+    whole, found, touching = made(joints=[slide])
+    (arm,) = kinematics.derive(whole, found, touching).joints
+    assert (arm.type, arm.status) == ("revolute", "determined")
+
+
+def test_the_order_of_parts_and_joints_does_not_matter():
+    one = made(joints=[ARM])
+    other = made(joints=[ARM], order=["cover", "bolt_2", "high", "low", "bolt_1", "base"])
+    first, second = (partition(whole, touching, whole.function.joints) for whole, _, touching in (one, other))
+    assert first.parts == second.parts
+    assert {name: (p.how, p.margin, p.other) for name, p in first.placed.items()} == {
+        name: (p.how, p.margin, p.other) for name, p in second.placed.items()
+    }
+
+
+def test_a_group_wins_over_what_the_joints_ask_for():
+    whole, _, touching = made(joints=[ARM], groups=(("odd", ("base", "high")),))
+    found = partition(whole, touching, whole.function.joints)
+    assert found.placed["high"].body == found.placed["base"].body != found.placed["low"].body
+
+
+def test_what_touches_nothing_goes_with_the_nearest_and_says_so():
+    whole, _, touching = made(joints=[ARM])
+    lonely = part("lonely", box(0, 5, 40, 45, 0, 5), np.eye(4))
+    whole = type(whole)(
+        **{f: getattr(whole, f) for f in whole.__dataclass_fields__} | {"parts": (*whole.parts, lonely)}
+    )
+    found = partition(whole, touching, whole.function.joints)
+    assert found.placed["lonely"].how == "nearest"
+    assert found.placed["lonely"].body == found.placed["base"].body
+    assert "lonely" in {one.part for one in found.unclear}
