@@ -13,6 +13,7 @@ from support.mistakes import (
     UNDECIDED,
     WRONG,
     changed_function,
+    changed_intent,
     changed_mesh,
     with_function,
 )
@@ -200,3 +201,15 @@ def test_the_verdict_is_one_for_findings_two_for_doubt_and_zero_only_for_a_pass(
     bad = any(SEVERITIES.index(s) >= SEVERITIES.index(fail_on) for s in severities)
     doubt = "inconclusive" in outcomes or all(name == "skipped" for name in outcomes)
     assert verdict(report, fail_on) == (1 if bad else 2 if doubt else 0)
+
+
+def test_a_closure_is_contradicted_only_by_contact_that_lets_nothing_of_it_move(hinge):
+    """A hinge does part of what two points that are one leave free; about another axis it does nothing of it."""
+    closing = check(changed_intent(hinge, type="spherical", closure=True))
+    assert "KF402" not in {finding.code for finding in closing.findings}
+    assert next(rule.outcome for rule in closing.rules if rule.code == "KF402") == "inconclusive"
+    beside = hinge.assembly.function.joints[0].point + np.array([1.0, 2.0, 3.0])
+    elsewhere = check(changed_intent(hinge, type="spherical", closure=True, point=beside))
+    assert "KF402" in {finding.code for finding in elsewhere.findings}
+    stated = check(changed_intent(hinge, type="spherical"))
+    assert "KF402" in {finding.code for finding in stated.findings}

@@ -96,6 +96,8 @@ INERTIA_SPREAD = 5.0 / 3.0
 
 SAME_DIRECTION = math.cos(math.radians(1.0))
 """Cosine of the angle within which directions agree."""
+SHARED_MOTION = 0.02
+"""Share of a motion within which what contact leaves is a motion that a loop's closure leaves, too; as `ADMITTED`."""
 NAMED_UNCLEAR = 8
 """So many parts of unclear bodies are named in one finding."""
 NO_TURN = 1e-6

@@ -37,6 +37,8 @@ class IntendedJoint:
     """(lower, upper) rad or m; ±inf for a free side."""
     file: str
     line: int | None
+    closure: bool = False
+    """It only closes a loop at its point: contact that lets the bodies do some of its motion does not contradict it."""
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.consistency.constants import SHARED_MOTION
 from kinform.foundation.algebra.vectors import cross
 from kinform.kinematics.bodies.extents import Extents
+from kinform.kinematics.partition.parting import joint_twists
 from kinform.kinematics.questions.through_helpers import motion_through_helpers
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
@@ -127,6 +129,9 @@ def compare_joint(
     form = direct if motion is None else motion.form
     assert form is not None
     state, reason = _certainty(intended, form.type, used)
+    found = direct.twists if motion is None and direct is not None else motion.twists if motion else None
+    if state == "found" and intended.closure and found is not None and _shares(intended, form.type, found):
+        state, reason = "undecided", f"it only closes a loop, and by contact that joint is {form.type}"
     return Comparison(
         intended,
         bodies,
@@ -139,7 +144,7 @@ def compare_joint(
         pitch=form.pitch,
         freedoms=direct.freedoms if motion is None and direct is not None else motion.freedoms if motion else 0,
         joint=direct,
-        twists=direct.twists if motion is None and direct is not None else motion.twists if motion else None,
+        twists=found,
         through=motion.helpers if motion is not None else (),
         angle_slack=angle_slack,
         position_slack=position_slack,
@@ -158,6 +163,22 @@ def _certainty(intended: IntendedJoint, found: str, used: tuple[Joint, ...]) -> 
         article = "an" if intended.type[0] in "aeio" else "a"
         return "undecided", f"{article} {intended.type} joint is not recognised from geometry yet"
     return "found", ""
+
+
+def _shares(intended: IntendedJoint, kind: str, found: Array) -> bool:
+    """Whether contact of another kind leaves free some of what the intended joint does."""
+    wanted = joint_twists(intended)
+    if wanted is None or kind == intended.type or not len(found) or not len(wanted):
+        return False
+    middle = np.zeros(3) if intended.point is None else intended.point
+
+    def at(twists: Array) -> Array:
+        return np.concatenate([twists[:, :3], twists[:, 3:] + cross(twists[:, :3], middle)], axis=1)
+
+    together = np.concatenate([at(found), at(wanted)])
+    scale = max(float(np.abs(together[:, 3:]).max()), 1e-300)
+    together = together / np.r_[np.ones(3), np.full(3, scale)]
+    return int(np.linalg.matrix_rank(together, tol=SHARED_MOTION)) < len(found) + len(wanted)
 
 
 def _slack(patches: list[Patch]) -> tuple[float, float]:

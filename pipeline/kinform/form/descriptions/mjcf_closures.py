@@ -51,7 +51,8 @@ def closures(
             axis = (far[0] - points[0]) / np.linalg.norm(far[0] - points[0])
             out.append(RobotJoint(name, "revolute", (first, second), xml.at(element), axis=axis, point=points[0]))
         else:
-            out.append(RobotJoint(name, "spherical", (first, second), xml.at(element), point=points[0]))
+            pair, at = (first, second), xml.at(element)
+            out.append(RobotJoint(name, "spherical", pair, at, point=points[0], closure=True))
     return out
 
 

@@ -97,6 +97,8 @@ class RobotJoint:
     """N·m/rad or N/m."""
     rest: float = 0.0
     """Of the spring, rad or m."""
+    closure: bool = False
+    """It closes a loop: two points are one, whatever joint does that."""
 
 
 @dataclass(frozen=True)

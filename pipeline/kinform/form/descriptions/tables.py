@@ -181,6 +181,8 @@ class _Writer:
             # what writers put in place of no bound is the largest number that they know
             free = (math.copysign(math.inf, bound) if abs(bound) > LARGEST_NUMBER else bound for bound in bounds)
             table["range"] = list(free)
+        if joint.closure:
+            table["closure"] = True
         self._add("joint", joint.at, table)
         if joint.damping is not None:
             self._add("drive", joint.at, {"joint": joint.name, "kind": "damper", "damping": joint.damping})

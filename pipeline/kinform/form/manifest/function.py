@@ -24,6 +24,9 @@ class IntendedJointTable(Table):
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = Field(
         None, description="[lower, upper] in degrees (prismatic: lengths); inf for a free side"
     )
+    closure: bool = Field(
+        False, description="it only closes a loop at its point, whatever joint does that: the type is no more than that"
+    )
 
 
 class Coupling(Table):

@@ -104,7 +104,8 @@ class FunctionReader:
             geometry = self.geometry(table, table.type, what, *path)
             bounds = self._range(table, what, *path)
             name = self.scope.prefix + table.name
-            yield IntendedJoint(name, between, table.type, *geometry, bounds, *self.scope.where(*path))
+            where = self.scope.where(*path)
+            yield IntendedJoint(name, between, table.type, *geometry, bounds, *where, closure=table.closure)
 
     def _range(self, table: Any, what: str, *path: str | int) -> tuple[float, float] | None:
         if table.range is None:
