@@ -10,6 +10,7 @@ import importlib
 import keyword
 from collections.abc import Iterator, Mapping
 from functools import cache
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -69,6 +70,12 @@ class _Kinform(Group):
     def __init__(self, **settings: Any):
         super().__init__(**settings)
         self.commands = _Modules()  # type: ignore[assignment]
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """As typer; `kinform .` and `kinform M.toml` run what they name."""
+        if args and args[0] not in COMMANDS and not args[0].startswith("-") and Path(args[0]).exists():
+            args = ["run", *args]
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Their names, in the order of the help."""

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import io
 import os
+import shutil
 import sys
+import textwrap
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
-from kinform_cli.constants import UNBOUNDED
+from kinform_cli.constants import LEAST_WIDTH, UNBOUNDED, WIDTH
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -44,7 +46,7 @@ def _console(stream: IO[str]) -> Console:
 
     return Patient(
         file=stream,
-        width=None if stream.isatty() else UNBOUNDED,
+        width=None if stream.isatty() else _asked_width() or UNBOUNDED,
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         markup=False,
         highlight=False,
@@ -52,9 +54,20 @@ def _console(stream: IO[str]) -> Console:
     )
 
 
+def _asked_width() -> int | None:
+    """The columns that `COLUMNS` asks for, as in `COLUMNS=80 kinform show F.h5 | less`."""
+    asked = os.environ.get("COLUMNS", "")
+    return max(int(asked), LEAST_WIDTH) if asked.isascii() and asked.isdigit() and len(asked) < 6 else None
+
+
 def decorated() -> bool:
     """Whether stdout is a terminal, or is to be taken for one; else text needs no rich, whose import costs time."""
     return sys.stdout.isatty() or any(name in os.environ for name in ("FORCE_COLOR", "TTY_COMPATIBLE"))
+
+
+def columns() -> int:
+    """Of the terminal, and 80 where there is none: as wide as what is told in lines may be."""
+    return max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH) if sys.stdout.isatty() else WIDTH
 
 
 def stderr() -> Console:
@@ -131,7 +144,24 @@ def give_up() -> None:
 def say(text: str | None) -> None:
     """One line on stderr about what was done; silent with --quiet, or where there is nothing to say."""
     if text is not None and not settings.quiet:
-        tell(text)
+        tell(_broken(text) if sys.stderr.isatty() else text)
+
+
+def _broken(text: str) -> str:
+    """The text with its lines broken between words where the terminal ends."""
+    width = max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH)
+    lines = []
+    for line in text.split("\n"):
+        margin = " " * (len(line) - len(line.lstrip()) + 2)
+        lines += textwrap.wrap(
+            line,
+            width,
+            subsequent_indent=margin,
+            break_long_words=False,
+            break_on_hyphens=False,
+            replace_whitespace=False,
+        ) or [""]
+    return "\n".join(lines)
 
 
 def warn(text: str) -> None:

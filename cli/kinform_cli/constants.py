@@ -12,6 +12,12 @@ GRACE = 1.5
 UNBOUNDED = 100_000
 """Characters of a line off a terminal: columns take what they need there."""
 
+WIDTH = 80
+"""Columns of sentences where there is no terminal: what a pager or a log shows without cutting."""
+
+LEAST_WIDTH = 40
+"""Columns below which sentences are not broken further; a choice."""
+
 # tables
 
 GAP = 3

@@ -16,6 +16,7 @@ from kinform.foundation.regular import not_a_file
 from kinform_cli import console
 from kinform_cli.errors import refuse
 from kinform_cli.progress import Working
+from kinform_cli.text import command
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -25,9 +26,35 @@ MESHES = (".stl", ".obj")
 DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
 
 
+FOREIGN = frozenset(
+    {
+        *(".h5", ".hdf5", ".html", ".htm", ".pdf", ".png", ".svg", ".jpg", ".jpeg", ".docx", ".md", ".txt", ".csv"),
+        *(".json", ".sarif", ".toml", ".yaml", ".yml", *MESHES, *DESCRIPTIONS),
+    }
+)
+"""Ends of names that say what a file is: where another kind of file would be written they are a mistake."""
+
+
+def check_page(path: Path, *, inputs: Iterable[Path] = ()) -> None:
+    """As check_text_output, for a page; an error where its name says that it is something else."""
+    if path.suffix.lower() in FOREIGN - {".html", ".htm"}:
+        raise refuse(
+            f"the page is HTML, and not what {path.suffix} says",
+            file=path,
+            remedy=f"name it {path.with_suffix('.html')}; a browser prints it as PDF, and --png DIR writes pictures",
+        )
+    check_text_output(path, inputs=inputs)
+
+
 def check_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     """Raise an error if a results file could not be written to `path`, or if that is one of the inputs."""
     _spare_inputs(path, inputs)
+    if path.suffix.lower() in FOREIGN - {".h5", ".hdf5"}:
+        raise refuse(
+            f"a results file is HDF5, and not what {path.suffix} says",
+            file=path,
+            remedy=f"name it {path.with_suffix('.h5')}; pages are made of it by `kinform report`",
+        )
     from kinform import results
 
     results.check_output(path)
@@ -52,7 +79,11 @@ def check_text_output(path: Path, *, inputs: Iterable[Path] = ()) -> None:
     if fault is not None:
         raise refuse(fault, file=path, remedy="name a file")
     if not path.parent.is_dir():
-        raise refuse(f"the folder {path.parent} does not exist", file=path, remedy=f"create it: mkdir -p {path.parent}")
+        raise refuse(
+            f"the folder {path.parent} does not exist",
+            file=path,
+            remedy=f"create it: {command('mkdir', '-p', path.parent)}",
+        )
     _try_writing(path)
 
 
@@ -64,6 +95,12 @@ def check_outputs(sources: Sequence[Path], output: Path | None, depfile: Path | 
         if output is None:
             raise refuse("--depfile names what the output depends on", file=depfile, remedy="add -o F.h5")
         check_text_output(depfile, inputs=[*sources, output])
+
+
+def check_findings(written: Iterable[tuple[object, Path]], others: Iterable[Path]) -> None:
+    """As check_text_output, for files that findings are written to, beside the other files of the command."""
+    for _, path in written:
+        check_text_output(path, inputs=others)
 
 
 def _spare_inputs(path: Path, inputs: Iterable[Path]) -> None:
@@ -91,7 +128,7 @@ def read(path: Path) -> Design:
         raise refuse(
             "this command reads a results file",
             file=path,
-            remedy=f"first `kinform import {path} -o F.h5`, then name F.h5",
+            remedy=f"first `{command('kinform', 'import', path)} -o F.h5`, then name F.h5",
         )
     from kinform import results
 
@@ -109,7 +146,7 @@ def needing(path: Path) -> Iterator[None]:
         raise refuse(
             f"has no results of `kinform {error.needs}`, which {error.stage} needs",
             file=path,
-            remedy=f"kinform {error.needs} {path} -o {path}",
+            remedy=command("kinform", error.needs, path, "-o", path),
         ) from None
 
 
@@ -160,6 +197,39 @@ def _escape(name: str, *, target: bool = False) -> str:
     for character in " #" + ("%:" if target else ""):
         name = name.replace(character, "\\" + character)
     return name
+
+
+def sources_of(named: Sequence[Path]) -> list[Path]:
+    """What is named; of a folder the manifest in it. InputError where there is none, or several."""
+    if len(named) != 1 or not named[0].is_dir():
+        return list(named)
+    from kinform.form.problems import first_names
+
+    manifests = [path for path in sorted(named[0].glob("*.toml")) if _is_manifest_file(path)]
+    if len(manifests) == 1:
+        return manifests
+    if not manifests:
+        raise refuse(
+            "there is no manifest in this folder",
+            file=named[0],
+            remedy="write one: kinform init *.stl --units mm -o NAME.toml",
+        )
+    raise refuse(
+        f"there are several manifests in this folder: {first_names(path.name for path in manifests)}",
+        file=named[0],
+        remedy=f"name one of them, as in: {command('kinform', 'run', manifests[0])}",
+    )
+
+
+def _is_manifest_file(path: Path) -> bool:
+    """Whether it has what a manifest begins with; a file that cannot be read as TOML may be one."""
+    import tomllib
+
+    try:
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return path.is_file() and path.name != "pyproject.toml"
+    return "schema" in tables and "assembly" in tables
 
 
 def is_description(sources: Sequence[Path], units: str | None) -> bool:

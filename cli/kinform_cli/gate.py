@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinform.foundation.words import counted
-from kinform_cli import console
+from kinform_cli import console, files
 from kinform_cli.errors import FINDINGS
-from kinform_cli.options import FindingsFormat, Severity
-from kinform_cli.text import ground_note
+from kinform_cli.options import FindingsFormat, Printed, Severity
+from kinform_cli.text import command, ground_note
 
 if TYPE_CHECKING:
     from kinform.api import Outcome
@@ -23,13 +24,15 @@ if TYPE_CHECKING:
 class Gate:
     """How findings are printed, and which of them fail."""
 
-    format: FindingsFormat
+    printed: Printed
     fail_on: Severity
     manifest_folder: Path | None = None
     """Formats that a repository's host reads name files as seen from here: this goes before them."""
 
     def judge_run(self, outcome: Outcome) -> int:
         """What a run says on its own account, then its findings; returns the exit code of the gate."""
+        if self.printed.format is FindingsFormat.brief:  # which tells it in its own words
+            return self.judge(outcome.gist, outcome)
         assembly = outcome.gist.assembly
         if not assembly.function.stated:
             console.say("note: no [function] is stated: nothing is compared with what the design is for")
@@ -43,32 +46,49 @@ class Gate:
 
         Of a run, `outcome` says what was computed and why: lines on stderr, and part of the JSON.
         """
-        if self.manifest_folder is not None and self.format in (FindingsFormat.sarif, FindingsFormat.github):
-            design = _seen_from_here(design, self.manifest_folder)
         report, fail_on = design.report, self.fail_on.value
         assert report is not None
-        from kinform import reports
         from kinform.model.findings import SEVERITIES, verdict
 
         run = None
         if outcome is not None:
             run = {"account": outcome.account, "reused": outcome.reused, "recomputed": outcome.recomputed}
             afresh = outcome.account.startswith("no earlier results")
-            for sentence in () if afresh else outcome.recomputed:
+            brief = self.printed.format is FindingsFormat.brief
+            for sentence in () if afresh or brief else outcome.recomputed:
                 console.say(f"computed: {sentence}")
-            console.say(outcome.account)
-        if self.format is FindingsFormat.full and console.decorated():
+            console.say(None if afresh and brief else outcome.account)
+        for format, path in self.printed.files:
+            files.write_text(path, self._text(design, format, run))
+        if self.printed.format in (FindingsFormat.full, FindingsFormat.brief) and console.decorated():
             from kinform_cli.views import findings
 
-            console.out(findings.render(design, fail_on))
+            console.out(findings.coloured(self._text(design, self.printed.format, run)))
         else:
-            console.emit(reports.render(report, design, self.format.value, fail_on=fail_on, run=run))
+            console.emit(self._text(design, self.printed.format, run))
         code = verdict(report, fail_on)
         if code == FINDINGS and self.fail_on is not Severity.error:
             failing = SEVERITIES[SEVERITIES.index(fail_on) :]
             many = sum(finding.severity in failing for finding in report.findings)
             console.say(f"{counted(many, 'finding')} at or above {fail_on}")
         return code
+
+    def _text(self, design: Design, format: FindingsFormat, run: Mapping[str, Any] | None) -> str:
+        """The findings in that format."""
+        from kinform import reports
+
+        if self.manifest_folder is not None and format in (FindingsFormat.sarif, FindingsFormat.github):
+            design = _seen_from_here(design, self.manifest_folder)
+        assert design.report is not None
+        return reports.render(
+            design.report, design, format.value, fail_on=self.fail_on.value, run=run, width=console.columns()
+        )
+
+
+def next_look(results: Path) -> str:
+    """The commands that show more of these results."""
+    page = command("kinform", "report", results, "-o", results.with_suffix(".html"))
+    return f"next: {page}   (one page to look at)\n  or: {command('kinform', 'show', results)}"
 
 
 def _seen_from_here(design: Design, folder: Path) -> Design:

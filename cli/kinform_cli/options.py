@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from pathlib import Path
@@ -21,14 +22,20 @@ class _WithExamples:
     """Help at whose end examples stand, line by line as they are written."""
 
     epilog: str | None
+    params: list[Any]
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Print typer's help, then the examples (kept in `epilog`)."""
         text, self.epilog = self.epilog, None
+        told = [(item, item.help) for item in (self, *self.params) if getattr(item, "help", None)]
+        for item, help in told:
+            item.help = help.replace("[", r"\[")  # else `[function]` would be read as markup, and be gone
         try:
             super().format_help(ctx, formatter)  # type: ignore[misc]
         finally:
             self.epilog = text
+            for item, help in told:
+                item.help = help
         if text:
             console.emit(text)
 
@@ -42,7 +49,14 @@ class Command(_WithExamples, TyperCommand):
 
 
 class Group(_WithExamples, TyperGroup):
-    """A command with others below it."""
+    """A command with others below it; alone it shows its help, and has done nothing."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """As typer; the help where nothing is asked."""
+        if not args and ctx.parent is not None:
+            self.format_help(ctx, ctx.make_formatter())
+            ctx.exit(2)
+        return super().parse_args(ctx, args)
 
 
 @cache
@@ -112,6 +126,7 @@ class Severity(StrEnum):
 class FindingsFormat(StrEnum):
     """How findings are printed."""
 
+    brief = "brief"
     full = "full"
     concise = "concise"
     json = "json"
@@ -121,11 +136,54 @@ class FindingsFormat(StrEnum):
     md = "md"
 
 
+@dataclass(frozen=True)
+class Printed:
+    """Where findings go: in one format to stdout, in others to files."""
+
+    format: FindingsFormat
+    files: tuple[tuple[FindingsFormat, Path], ...] = ()
+
+
+def printed(
+    stated: list[str] | None, verbose: bool = False, otherwise: FindingsFormat = FindingsFormat.brief
+) -> Printed:
+    """What `--format` and `--verbose` ask for; `otherwise` is the format of stdout where they do not say. A usage
+    error where a format is none, or two go to one place."""
+    shown: list[FindingsFormat] = [FindingsFormat.full] if verbose else []
+    written: dict[Path, FindingsFormat] = {}
+    for text in stated or ():
+        name, equals, file = text.partition("=")
+        if name not in set(FindingsFormat):
+            from kinform.form.problems import did_you_mean
+
+            remedy = did_you_mean(name, FindingsFormat, "the formats")
+            raise typer.BadParameter(f"{name!r} is no format: {remedy}", param_hint="--format")
+        if equals and not file:
+            raise typer.BadParameter(f"{text!r} names no file after the =", param_hint="--format")
+        if not equals:
+            shown.append(FindingsFormat(name))
+        elif Path(file) in written:
+            raise typer.BadParameter(f"two formats go to {file}", param_hint="--format")
+        else:
+            written[Path(file)] = FindingsFormat(name)
+    if len(set(shown)) > 1:
+        raise typer.BadParameter(
+            f"{' and '.join(dict.fromkeys(shown))} both go to stdout: give one of them a file, as in {shown[-1]}=FILE",
+            param_hint="--format",
+        )
+    return Printed(shown[0] if shown else otherwise, tuple((format, path) for path, format in written.items()))
+
+
 class TableFormat(StrEnum):
     """How results are printed."""
 
     table = "table"
     json = "json"
+
+
+def _formats(incomplete: str) -> list[str]:
+    """What a shell may complete `--format` to."""
+    return [format.value for format in FindingsFormat if format.value.startswith(incomplete)]
 
 
 def _set_quiet(value: bool) -> None:
@@ -187,5 +245,17 @@ Tolerances = Annotated[
     ),
 ]
 FailOn = Annotated[Severity, typer.Option("--fail-on", help="Least severity of a finding that gives exit code 1.")]
-PrintedFindings = Annotated[FindingsFormat, typer.Option("--format", "-f", help="How findings are printed.")]
+PrintedFindings = Annotated[
+    list[str] | None,
+    option(
+        "--format -f",
+        "FORMAT[=FILE]",
+        "How findings are printed: brief, full, concise, json, sarif, junit, github or md; with =FILE written there. "
+        "May be given for each file, and once without.",
+        autocompletion=_formats,
+    ),
+]
+Verbose = Annotated[
+    bool, option("--verbose -v", None, "Print every finding in full, and what was skipped and why: --format full.")
+]
 PrintedTable = Annotated[TableFormat, typer.Option("--format", "-f", help="json: SI units and radians.")]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import shlex
+import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -17,6 +20,34 @@ if TYPE_CHECKING:
 
 NONE = "–"
 """What stands where there is no value."""
+
+
+def command(*words: object) -> str:
+    """The words as a command line that a shell reads as they are, whatever blanks are in them."""
+    return shlex.join(map(str, words))
+
+
+def wrapped(text: str, width: int) -> str:
+    """The text with no line longer than `width`, unless one word is; what goes on keeps the margin of its line. Lines
+    that follow each other in a paragraph are joined where one was too long."""
+    return "\n\n".join(_paragraph(part, width) for part in text.rstrip("\n").split("\n\n")) + "\n"
+
+
+def _paragraph(text: str, width: int) -> str:
+    lines = text.split("\n")
+    if max(map(len, lines)) <= width:
+        return text
+    joined: list[str] = []
+    for line in lines:
+        if joined and not line.startswith((" ", "-", "*", "|")) and not re.match(r"[A-Z][A-Za-z ]+: ", line):
+            joined[-1] += " " + line
+        else:
+            joined.append(line)
+    out = []
+    for line in joined:
+        margin = " " * (len(line) - len(line.lstrip()))
+        out += textwrap.wrap(line, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(out)
 
 
 def number(value: float | None) -> str:
@@ -52,10 +83,15 @@ def vector(direction: Iterable[float] | None) -> str:
 
 @dataclass(frozen=True)
 class Lengths:
-    """Lengths in the unit of the assembly, without its name."""
+    """Lengths without the name of their unit: places in that of the assembly, as the command line takes them too; gaps,
+    areas and volumes in one in which they read well."""
 
     unit: str
     metres: float
+    """A unit of places."""
+    small: str
+    """The unit of gaps, areas and volumes: mm where that of places is larger."""
+    small_metres: float
     decimals: int
     """Of places."""
 
@@ -67,13 +103,14 @@ class Lengths:
         metres = metres_per(assembly.units)
         largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
         fine = FINE * (largest or 1.0) / metres
-        return Lengths(assembly.units, metres, math.ceil(-math.log10(fine)))
+        small = "mm" if assembly.units in ("m", "cm") else assembly.units
+        return Lengths(assembly.units, metres, small, metres_per(small), math.ceil(-math.log10(fine)))
 
     def length(self, metres: float | None) -> str:
         """A gap, a depth, a pitch: to four digits, and nothing below a billionth of a metre."""
         if metres is None or not math.isfinite(metres):
             return number(metres)
-        return number(0.0 if abs(metres) < NO_LENGTH else metres / self.metres)
+        return number(0.0 if abs(metres) < NO_LENGTH else metres / self.small_metres)
 
     def place(self, metres: float) -> str:
         """A coordinate, to as many decimals as the parts call for."""
@@ -90,11 +127,11 @@ class Lengths:
 
     def area(self, square_metres: float) -> str:
         """An area."""
-        return number(square_metres / self.metres**2)
+        return number(square_metres / self.small_metres**2)
 
     def volume(self, cubic_metres: float) -> str:
         """A volume."""
-        return number(cubic_metres / self.metres**3)
+        return number(cubic_metres / self.small_metres**3)
 
 
 def ground_note(design: Design) -> str | None:

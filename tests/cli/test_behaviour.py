@@ -155,7 +155,7 @@ def test_bad_models_are_refused_with_the_name_of_the_component(
 ) -> None:
     text, subject, told = BAD[name]
     (tmp_path / "bad.toml").write_text(BASE + text + '[simulation]\nlevel = "dynamic"\nduration = 0.5\nstep = 0.1\n')
-    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q"]) in (1, 2)
+    assert main(["run", str(tmp_path / "bad.toml"), "-o", str(tmp_path / "b.h5"), "-q", "-v"]) in (1, 2)
     said = " ".join(capsys.readouterr().out.split())
     assert all(f"'{name}'" in said for name in subject.split(", "))
     assert "not simulated" in said

@@ -47,7 +47,7 @@ REPORTS = {
 @pytest.mark.parametrize("code", REPORTS)
 def test_each_verdict_has_its_code_in_each_format(code, format, derive_design, capsys):
     design = dataclasses.replace(derive_design(MANIFEST), report=REPORTS[code])
-    assert gate.Gate(options.FindingsFormat(format), options.Severity.error).judge(design) == code
+    assert gate.Gate(options.Printed(options.FindingsFormat(format)), options.Severity.error).judge(design) == code
     assert capsys.readouterr().out.strip()
 
 

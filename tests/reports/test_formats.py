@@ -21,8 +21,8 @@ from kinform.reports import FORMATS, render
 
 GOLDEN = Path(__file__).parent / "golden"
 FILES = {
-    "concise": "findings.concise.txt", "full": "findings.full.txt", "github": "findings.github",
-    "json": "findings.json",
+    "brief": "findings.brief.txt", "concise": "findings.concise.txt", "full": "findings.full.txt",
+    "github": "findings.github", "json": "findings.json",
     "junit": "findings.xml", "md": "findings.md", "sarif": "findings.sarif",
 }  # fmt: skip
 DOCUMENTED = Rule(

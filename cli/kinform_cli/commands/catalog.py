@@ -11,6 +11,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.options import Command, Group, PrintedTable, TableFormat, argument, examples, option
+from kinform_cli.text import command
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -111,7 +112,9 @@ def find(
     else:
         console.out(view.render(designs, states, total))
     if any(states):
-        console.warn(f"results changed since they were added: kinform catalog rebuild --catalog {file}")
+        console.warn(
+            "results changed since they were added: " + command("kinform", "catalog", "rebuild", "--catalog", file)
+        )
 
 
 @app.command(cls=Command, epilog=examples("kinform catalog rebuild", "kinform catalog rebuild -c robots.sqlite"))

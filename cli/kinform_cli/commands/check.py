@@ -12,7 +12,7 @@ import typer
 from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.errors import refuse
-from kinform_cli.gate import Gate
+from kinform_cli.gate import Gate, next_look
 from kinform_cli.options import (
     FailOn,
     FindingsFormat,
@@ -20,8 +20,10 @@ from kinform_cli.options import (
     PrintedFindings,
     Results,
     Severity,
+    Verbose,
     examples,
     option,
+    printed,
 )
 from kinform_cli.progress import Working
 
@@ -48,7 +50,8 @@ def check(
         Path | None,
         option("--output -o", "F.h5", "Also write the findings to a results file; may be the one that is read."),
     ] = None,
-    format: PrintedFindings = FindingsFormat.full,
+    format: PrintedFindings = None,
+    verbose: Verbose = False,
     fail_on: FailOn = Severity.error,
     baseline: Annotated[Path | None, option("--baseline", "B.json", "Findings of this file do not count.")] = None,
     write_baseline: Annotated[
@@ -63,6 +66,8 @@ def check(
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
     """
+    how = printed(format, verbose)
+    files.check_findings(how.files, [source, *filter(None, (output, write_baseline))])
     if output is not None:
         files.check_output(output)
     if write_baseline is not None:
@@ -88,7 +93,10 @@ def check(
     design = replace(design, report=report)
     if lock is not None:
         design = _with_lock(design, lock, manifest_folder)
-    raise typer.Exit(Gate(format, fail_on, manifest_folder).judge(design))
+    code = Gate(how, fail_on, manifest_folder).judge(design)
+    if code and how.format is FindingsFormat.brief:
+        console.say(next_look(source if output is None else output))
+    raise typer.Exit(code)
 
 
 def _without_baseline(report: CheckReport, baseline: Path) -> CheckReport:

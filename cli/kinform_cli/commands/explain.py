@@ -6,18 +6,21 @@ from typing import Annotated
 
 from kinform_cli import console
 from kinform_cli.options import argument, examples
+from kinform_cli.text import wrapped
 
-EXAMPLES = examples("kinform explain", "kinform explain KF203")
+EXAMPLES = examples("kinform explain", "kinform explain KF203", "kinform explain KF4        # all rules about function")
 
 
 def explain(
-    code: Annotated[str | None, argument("CODE", "Code or name of a rule; without it all are listed.")] = None,
+    code: Annotated[
+        str | None, argument("CODE", "Code or name of a rule, or how codes begin; without it all are listed.")
+    ] = None,
 ) -> None:
     """Explain a finding by its code: what it means, why it matters, what to do."""
     from kinform import consistency
 
     if code is not None:
-        console.emit(consistency.explain(code))
+        console.emit(wrapped(consistency.explain(code), console.columns()))
         return
     from kinform_cli.tables import Rows
 

@@ -12,6 +12,7 @@ from kinform_cli import console, files
 from kinform_cli.errors import refuse
 from kinform_cli.options import Geometry, GeometryKind, Packages, Units, argument, cores, examples, option, reading
 from kinform_cli.progress import Working
+from kinform_cli.text import command
 
 if TYPE_CHECKING:
     from kinform.model.assembly import Assembly
@@ -23,6 +24,10 @@ EXAMPLES = examples(
     "kinform init robot.urdf -o robot.toml",
     "kinform init scene.obj --units m            # print it",
 )
+
+
+SCHEMA = "kinform.schema.json"
+"""The file beside a manifest that its first line names."""
 
 
 def init(
@@ -63,7 +68,8 @@ def init(
 
 
 def _write(text: str, output: Path | None) -> None:
-    """Write or print the manifest, and say what comes next."""
+    """Write or print the manifest, and say what comes next. Its first line tells editors where its schema is."""
+    text = f"#:schema ./{SCHEMA}\n{text}"
     if output is None:
         console.emit(text)
         console.say("printed only: add -o NAME.toml to write it, then: kinform run NAME.toml -o NAME.h5")
@@ -71,8 +77,12 @@ def _write(text: str, output: Path | None) -> None:
     files.write_text(output, text)
     console.say(f"{output}: {counted(text.count('[[part]]'), 'part')}{_proposals(text)}")
     results = output.with_suffix(".h5")
-    outside = " --allow-outside" if 'mesh = "../' in text else ""
-    console.say(f"complete it (materials, groups, [function]), then: kinform run {output} -o {results}{outside}")
+    schema = output.parent / SCHEMA
+    if not schema.exists():
+        console.say(f"for editors that know #:schema: kinform schema > {command(schema)}")
+    outside = ["--allow-outside"] if 'mesh = "../' in text else []
+    then = command("kinform", "run", output, "-o", results, *outside)
+    console.say(f"complete it (materials, groups, [function]), then: {then}")
 
 
 def _proposals(text: str) -> str:

@@ -10,6 +10,7 @@ from kinform_cli import console, files
 from kinform_cli.commands.diff import tolerance
 from kinform_cli.errors import refuse
 from kinform_cli.options import Results, Tolerances, examples, option
+from kinform_cli.text import command
 
 EXAMPLES = examples(
     "kinform lock arm.h5 -o behaviour.lock.json",
@@ -33,7 +34,7 @@ def lock(
 
     behaviour = changes.snapshot(files.read(source))
     if behaviour.joints is None:
-        raise refuse("has no joints to lock", file=source, remedy=f"kinform joints {source} -o {source}")
+        raise refuse("has no joints to lock", file=source, remedy=command("kinform", "joints", source, "-o", source))
     files.write_text(output, changes.write_lock(behaviour) if within is None else changes.write_lock(behaviour, within))
     console.say(
         f"{output}: {counted(len(behaviour.bodies or ()), 'body', 'bodies')}, {counted(len(behaviour.joints), 'joint')}"

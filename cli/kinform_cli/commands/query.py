@@ -75,7 +75,7 @@ def query(
     try:
         answer = kinematics.query(design, a, b, turn=rotation, slide=None if direction is None else np.array(direction))
     except KeyError as error:
-        raise refuse(str(error.args[0]), file=source, remedy="name two of them, as they are written") from None
+        raise refuse(str(error.args[0]), file=source) from None
     if format is TableFormat.json:
         motion = {"slide": direction} if rotation is None else {"turn": {"axis": axis, "point": rotation[1]}}
         console.emit(text.dumps(_data(design, motion, answer)))
@@ -193,9 +193,9 @@ def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
 def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) -> RenderableType:
     from kinform_cli.tables import Rows
 
-    unit = lengths.unit
+    unit = lengths.small
     numeric = ("patch", f"area {unit}²")
-    headings = ("part", "part", "patch", "surface", numeric[1], f"at {unit}")
+    headings = ("part", "part", "patch", "surface", numeric[1], f"at {lengths.unit}")
     rows = Rows(*headings, title=title, right=numeric, keys=2)
     for blocker in blockers:
         rows.add(

@@ -29,7 +29,7 @@ def report(
     ] = None,
 ) -> None:
     """Write one self-contained page: verdict, findings, the assembly in 3D, joints, motion, curves."""
-    files.check_text_output(output, inputs=[source])
+    files.check_page(output, inputs=[source])
     if png is not None:
         _make_folder(png)
     design = files.read(source)

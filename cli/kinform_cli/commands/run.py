@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.gate import Gate
+from kinform_cli.gate import Gate, next_look
 from kinform_cli.options import (
     AllowOutside,
     Depfile,
@@ -23,9 +23,11 @@ from kinform_cli.options import (
     Severity,
     Sources,
     Units,
+    Verbose,
     cores,
     examples,
     option,
+    printed,
     reading,
 )
 from kinform_cli.progress import Working
@@ -37,6 +39,8 @@ EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5 --ranges",
     "kinform run robot.urdf -o robot.h5",
     "kinform run arm.toml                # verify only, keep nothing",
+    "kinform .                           # the same, of the manifest in this folder",
+    "kinform run arm.toml -v -f sarif=arm.sarif -f junit=arm.xml",
 )
 
 
@@ -49,7 +53,8 @@ def run(
     allow_outside: AllowOutside = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
-    format: PrintedFindings = FindingsFormat.full,
+    format: PrintedFindings = None,
+    verbose: Verbose = False,
     fail_on: FailOn = Severity.error,
     ranges: Ranges = None,
     jobs: Jobs = None,
@@ -63,8 +68,11 @@ def run(
     1: findings at or above --fail-on.
     2: not verified: a rule could not decide, none ran, or the input is bad.
     """
+    sources = files.sources_of(sources)
+    how = printed(format, verbose)
     manifest = files.is_manifest(sources, units)
     files.check_outputs(sources, output, depfile)
+    files.check_findings(how.files, [*sources, *filter(None, (output, depfile))])
     first = output is not None and not output.exists()
     import kinform
 
@@ -82,10 +90,9 @@ def run(
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)
-    code = Gate(format, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
+    code = Gate(how, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
     if output is None:
-        console.say("nothing was kept: add -o F.h5, and `kinform show` and `kinform report` can look at the results")
-    elif first:
-        page = output.with_suffix(".html")
-        console.say(f"next: kinform report {output} -o {page}   (one page to look at), or: kinform show {output}")
+        console.say("nothing was kept: with -o F.h5 `kinform show` and `report` can look at it")
+    elif first or (how.format is FindingsFormat.brief and code):
+        console.say(next_look(output))
     raise typer.Exit(code)

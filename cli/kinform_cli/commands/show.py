@@ -89,7 +89,7 @@ def _print_joint(design: Design, joint: str, source: Path, format: TableFormat) 
             else:
                 console.out(topics.render_joint(design, joint))
     except KeyError as error:
-        raise refuse(str(error.args[0]), file=source, remedy="name one of them") from None
+        raise refuse(str(error.args[0]), file=source) from None
 
 
 def _draw(source: Path, topic: Topic | None, path: Path) -> None:

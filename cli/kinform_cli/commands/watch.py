@@ -24,6 +24,7 @@ from kinform_cli.options import (
     cores,
     examples,
     option,
+    printed,
     reading,
 )
 from kinform_cli.progress import Working
@@ -47,7 +48,7 @@ def watch(
     allow_outside: AllowOutside = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
-    format: PrintedFindings = FindingsFormat.concise,
+    format: PrintedFindings = None,
     fail_on: FailOn = Severity.error,
     jobs: Jobs = None,
     period: Annotated[
@@ -59,9 +60,11 @@ def watch(
 
     Bad input is reported, and the next save tried. The exit code is that of the last run; as for `run`.
     """
+    shown = printed(format, otherwise=FindingsFormat.concise)
     files.check_output(output, inputs=[manifest])
+    files.check_findings(shown.files, [manifest, output])
     how = reading(geometry, packages)
-    gate = Gate(format, fail_on, manifest.parent)
+    gate = Gate(shown, fail_on, manifest.parent)
     code, runs = errors.NOT_VERIFIED, 0
     try:
         while True:

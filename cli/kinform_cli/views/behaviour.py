@@ -121,7 +121,7 @@ def _joint(joint: JointComponent, lengths: Lengths) -> str:
     if joint.kind.name not in ("fixed", "prismatic") and g.point is not None:
         facts.append(f"at {lengths.point(g.point)} {lengths.unit}")
     if joint.kind.name == "screw":
-        facts.append(f"{lengths.length(g.pitch)} {lengths.unit} a turn")
+        facts.append(f"{lengths.length(g.pitch)} {lengths.small} a turn")
     return ", ".join(facts)
 
 
@@ -153,7 +153,7 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
 
 
 def _length(metres: float, lengths: Lengths) -> str:
-    return f"{lengths.length(metres)} {lengths.unit}"
+    return f"{lengths.length(metres)} {lengths.small}"
 
 
 def _triple(values: Any) -> str:

@@ -14,7 +14,7 @@ def render(design: Design) -> RenderableType:
     """One row a patch, then one row an overlap, then one row a suggestion."""
     contacts, lengths = design.contacts, Lengths.of(design.assembly)
     assert contacts is not None
-    unit = lengths.unit
+    unit = lengths.small
     pairs = len({patch.parts for patch in contacts.patches})
     many = counted(len(contacts.patches), "contact patch", "contact patches")
     title = f"{many} between {counted(pairs, 'pair')} of parts"
@@ -27,7 +27,7 @@ def render(design: Design) -> RenderableType:
     if contacts.interferences:
         sizes = (f"volume {unit}³", f"depth {unit}")
         title = "\nOverlapping solids"
-        overlaps = Rows("part", "part", *sizes, f"at {unit}", "kind", title=title, right=sizes, keys=2)
+        overlaps = Rows("part", "part", *sizes, f"at {lengths.unit}", "kind", title=title, right=sizes, keys=2)
         for overlap in contacts.interferences:
             overlaps.add(
                 *overlap.parts,

@@ -49,7 +49,7 @@ def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:
 
 def _patches(evidence: Insight, lengths: Lengths) -> Rows:
     """A row for each patch of the joint, with its weight in the decision."""
-    unit = lengths.unit
+    unit = lengths.small
     title = f"\n{counted(len(evidence.patches), 'patch', 'patches')}"
     numeric = (f"gap {unit}", f"area {unit}²", "weight", "rows")
     headings = ("patch", "kind", "part", "part", "surfaces", "fit", *numeric, "role")

@@ -29,7 +29,7 @@ def render(design: Design) -> RenderableType:
     for joint in kinematics.joints:
         rows.add(
             joint.name,
-            joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.unit}/turn)",
+            joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.small}/turn)",
             vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
             lengths.point(joint.point),
             str(joint.freedoms),
@@ -133,7 +133,7 @@ def blockers(joint: Joint, lengths: Lengths) -> list[RenderableType]:
     """A line for each patch that blocks the joint."""
     lines: list[RenderableType] = []
     for blocker in joint.blockers:
-        extent = f"{lengths.area(blocker.area)} {lengths.unit}², {100 * blocker.share:.2g} % of the contact"
+        extent = f"{lengths.area(blocker.area)} {lengths.small}², {100 * blocker.share:.2g} % of the contact"
         lines.append(
             f"  {' and '.join(blocker.parts)}, patch {blocker.patch} ({extent}) at "
             f"({lengths.point(blocker.place)}) {lengths.unit}: forbids {blocker.forbids}"

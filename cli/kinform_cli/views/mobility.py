@@ -101,7 +101,7 @@ def _freedoms(design: Design) -> Rows:
             freedom_text(
                 freedom,
                 lambda point: f"({lengths.point(point)}) {lengths.unit}",
-                lambda lead: f"{lengths.length(lead)} {lengths.unit}",
+                lambda lead: f"{lengths.length(lead)} {lengths.small}",
             ),
             freedom.driver or NONE,
             _first_names([str(name) for name in motions.twists(freedom)]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -106,7 +107,7 @@ def _sorted(entries: Iterable[Entry]) -> tuple[Entry, ...]:
 def _problem(error: Exception, path: Path) -> Problem:
     if isinstance(error, ResultsError):
         return error.problem
-    remedy = f"kinform joints {path} -o {path}"
+    remedy = shlex.join(["kinform", "joints", str(path), "-o", str(path)])
     return Problem("its joints are not known: the catalog lists what designs do", str(path), None, remedy)
 
 

@@ -38,16 +38,20 @@ class UnknownRuleError(KinformError):
 
     def __init__(self, code: str, near: tuple[str, ...]):
         self.code, self.near = code, near
-        hint = f"did you mean {', '.join(near)}?" if near else "`docs/rules.md` lists all rules"
+        hint = f"did you mean {', '.join(near)}?" if near else "`kinform explain` lists all rules"
         super().__init__(f"no rule has the code or name {code!r}: {hint}")
 
 
 def explain(code: str) -> str:
-    """Documentation of the rule with this code or name (case does not matter); UnknownRuleError otherwise."""
+    """Documentation of the rule with this code or name (case does not matter); of the beginning of codes ("KF4") the
+    list of its rules; UnknownRuleError otherwise."""
     wanted = code.strip().casefold()
     for rule in RULES:
         if wanted in (rule.code.casefold(), rule.name):
             return f"{rule.code} {rule.name} ({rule.severity})\n\n{_text(rule)}\n"
+    family = [rule for rule in RULES if len(wanted) > 1 and rule.code.casefold().startswith(wanted)]
+    if family:
+        return "".join(f"{rule.code} {rule.name} ({rule.severity})\n" for rule in family)
     raise UnknownRuleError(code, _near(wanted))
 
 

@@ -34,7 +34,8 @@ def did_you_mean(name: str, names: Iterable[str], what: str) -> str:
         close = difflib.get_close_matches(name, compared[:CHOICES_COMPARED], n=MEANT_NAMES, cutoff=CLOSE_NAMES)
     folded = [k for k in choices if k.casefold() == name.casefold()]
     tails = [k for k in choices if k.rpartition("/")[2] == name]
-    best = folded or close or tails
+    inside = [k for k in choices if len(name) > 1 and name.casefold() in k.casefold()]
+    best = folded or close or tails or inside
     if best:
         return f"did you mean {' or '.join(in_quotes(b) for b in best[:MEANT_NAMES])}?"
     return f"{what}: {first_names(choices)}" if choices else f"there are no {what.removeprefix('the ')}"

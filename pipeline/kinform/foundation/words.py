@@ -100,6 +100,14 @@ def one_line(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
+def shortened(name: str, room: int) -> str:
+    """The name in so many characters at most, three at least: both ends, and "…" for its middle."""
+    if len(name) <= room:
+        return name
+    kept = max(room - 1, 2)
+    return f"{name[: kept - kept // 2]}…{name[-(kept // 2) :]}"
+
+
 def counted(count: int, noun: str, plural: str | None = None) -> str:
     """ "1 facet", "2 facets"."""
     return f"{count} {noun if count == 1 else plural or noun + 's'}"

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "joint_evidence", "joint_json", "render", "summary", "summary_json"]
 
 FORMATS = {
-    "concise": "concise", "full": "full", "github": "github", "json": "as_json", "junit": "junit", "md": "markdown",
-    "sarif": "sarif",
+    "brief": "brief", "concise": "concise", "full": "full", "github": "github", "json": "as_json", "junit": "junit",
+    "md": "markdown", "sarif": "sarif",
 }  # fmt: skip
 """By format: the module that renders it."""
 
@@ -27,17 +27,25 @@ _VIEWS = ("joint_evidence", "joint_json", "summary", "summary_json")
 
 
 def render(
-    report: CheckReport, design: Design, format: str, *, fail_on: str = "error", run: Mapping[str, Any] | None = None
+    report: CheckReport,
+    design: Design,
+    format: str,
+    *,
+    fail_on: str = "error",
+    run: Mapping[str, Any] | None = None,
+    width: int | None = None,
 ) -> str:
     """The report in that format, ending in a newline; ValueError for an unknown format.
 
     `fail_on` is the least severity that fails the gate, which the verdict goes by, and what JUnit calls a failure.
-    `run` is the account of a run, which the JSON carries.
+    `run` is the account of a run, which the JSON carries. `width` are the columns of `brief`, 80 where it is None.
     """
     if format not in FORMATS:
         raise ValueError(f"unknown format {format!r}: expected one of {', '.join(FORMATS)}")
     renderer = importlib.import_module(f"kinform.reports.{FORMATS[format]}")
-    more = {"run": run} if format == "json" else {}
+    more: dict[str, Any] = {"run": run} if format == "json" else {}
+    if format == "brief" and width is not None:
+        more = {"width": width}
     text: str = renderer.render(report, design, fail_on, **more)
     return text
 

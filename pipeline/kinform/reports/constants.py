@@ -9,6 +9,21 @@ import math
 WIDTH = 80
 """Columns of text at a terminal."""
 
+# brief
+
+MOST_BRIEF = 10
+"""Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
+
+BRIEF_LINES = 21
+"""Lines up to which single findings that do not fit beside their rule take a second one: a screen of 24, without the
+two of the next commands and the prompt."""
+
+COMPARED = ("KF3", "KF4")
+"""Rules, by how their codes begin, that compare with what is stated: what was found says little without it."""
+
+BRIEF_NAME = 28
+"""Characters of the name of the ground: with the rest of its line it fits in 80."""
+
 # colours of the viewer, the drawings and the pictures; none of them carries a meaning alone
 
 GROUND_COLOUR = "#8b929c"

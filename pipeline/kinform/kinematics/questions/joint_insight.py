@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.form.problems import did_you_mean
 from kinform.kinematics.bodies.classification import evidence_between
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES
@@ -85,8 +86,8 @@ def insight(design: Derived, name: str) -> Insight:
     assert kinematics is not None
     joint = next((j for j in kinematics.joints if j.name == name), None)
     if joint is None:
-        names = ", ".join(j.name for j in kinematics.joints) or "none"
-        raise KeyError(f"no joint is named {name!r}; there are: {names}")
+        known = did_you_mean(name, (str(j.name) for j in kinematics.joints), "the joints")
+        raise KeyError(f"no joint is named {name!r}: {known}")
     tolerances = design.assembly.tolerances
     evidence = _evidence(design, joint)
     roles = _roles(design, joint, evidence)

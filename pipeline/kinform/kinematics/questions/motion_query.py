@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from kinform.form.problems import did_you_mean
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.words import counted
@@ -131,8 +132,10 @@ def _body(design: Derived, name: str) -> str:
     try:
         part = design.assembly.parts_of(name)[0]
     except KeyError:
-        names = sorted({*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts)})
-        raise KeyError(f"no part, group or body {name!r}; there are: {', '.join(names)}") from None
+        groups = (group.name for group in design.assembly.groups)
+        names = {*(b.name for b in design.kinematics.bodies), *(p.name for p in design.assembly.parts), *groups}
+        known = did_you_mean(name, map(str, names), "the parts, groups and bodies")
+        raise KeyError(f"no part, group or body {name!r}: {known}") from None
     return design.kinematics.body_of(part).name
 
 
