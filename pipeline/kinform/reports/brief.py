@@ -180,7 +180,7 @@ def _assumed(report: CheckReport, design: Design, width: int) -> list[str]:
 
 def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
     skipped = sum(rule.outcome == "skipped" for rule in report.rules)
-    why = "" if design.assembly.function.stated else " (no [function] is stated)"
+    why = " (-v says why)" if design.assembly.function.stated else " (no [function] is stated)"
     if skipped:
         yield f"skipped: {counted(skipped, 'rule')}{why}"
     if design.assembly.ground is None and design.kinematics is not None:
