@@ -164,6 +164,11 @@ def test_a_page_is_not_written_under_the_name_of_another_kind(name, ran):
     assert not (ran / name).exists()
 
 
+def test_meshes_without_a_unit_are_answered_with_the_option(ran):
+    done = ran_here("init", "block.stl", cwd=ran)
+    assert done.returncode == 2 and done.stdout == "" and "--units mm" in done.stderr
+
+
 def test_a_manifest_that_was_begun_names_its_schema_for_editors(ran):
     done = ran_here("init", "block.stl", "table.stl", "--units", "mm", "-o", "new begun.toml", cwd=ran)
     assert (ran / "new begun.toml").read_text().startswith("#:schema ./kinform.schema.json\nschema = 1\n")

@@ -39,7 +39,7 @@ EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5 --ranges",
     "kinform run robot.urdf -o robot.h5",
     "kinform run arm.toml                # verify only, keep nothing",
-    "kinform .                           # the same, of the manifest in this folder",
+    "kinform run .                       # the manifest in this folder",
     "kinform run arm.toml -v -f sarif=arm.sarif -f junit=arm.xml",
 )
 
