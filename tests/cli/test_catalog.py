@@ -129,7 +129,6 @@ def test_files_of_others_are_left_out_and_said_so(designs, capsys):
     (["find", "--joint", "hinge"], "'hinge' is no joint type"),
     (["find", "--joint", "revolute:many"], "is not a joint type, nor TYPE:COUNT"),
     (["find", "--max-mass", "nan"], "--max-mass"),
-    ([], "Missing command"),
 ], ids=lambda x: " ".join(x) if isinstance(x, list) else "")  # fmt: skip
 def test_bad_input_is_refused_with_a_remedy(designs, capsys, arguments, message):
     (designs.parent / "note.txt").write_text("a note")

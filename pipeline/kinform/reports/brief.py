@@ -95,8 +95,9 @@ def _groups(chosen: Sequence[_Item], width: int, room: int) -> list[str]:
     spare = room - sum(len(group) + (len(group) > 1) for group in groups)
     blocks: list[list[str]] = []
     for group in reversed(groups):
-        beside = f"{group[0].head}: " + _line(group[0], width - len(group[0].head) - 2)
-        if len(group) == 1 and ("…" not in beside or spare < 1):
+        left = width - len(group[0].head) - 2
+        beside = f"{group[0].head}: {_line(group[0], left)}"
+        if len(group) == 1 and left >= constants.LEAST_BESIDE and ("…" not in beside or spare < 1):
             blocks.append([beside])
             continue
         spare -= len(group) == 1
@@ -142,13 +143,14 @@ def _names(subject: Sequence[str], room: int) -> str:
     """The names with commas, each shortened to its share of the room where all do not fit."""
     names = [one_line(name) for name in subject]
     share = (room - 2 * (len(names) - 1)) // len(names)
-    return ", ".join(names) if len(", ".join(names)) <= room else ", ".join(_ends(name, share) for name in names)
+    whole = ", ".join(names)
+    return whole if len(whole) <= room else _cut(", ".join(_ends(name, share) for name in names), room)
 
 
 def _ends(name: str, room: int) -> str:
     """The name shortened in its middle; that of a joint between two bodies in both of theirs."""
     first, between, second = name.partition("~")
-    if not between or len(name) <= room:
+    if not between or len(name) <= room or room < constants.LEAST_JOINT:
         return shortened(name, room)
     half = (room - 1) // 2
     return (
