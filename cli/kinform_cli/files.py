@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 MESHES = (".stl", ".obj")
 DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
+SCENES = (".glb", ".gltf")
+"""Files of several parts that state their own unit of length."""
 
 
 FOREIGN = frozenset(
@@ -124,7 +126,7 @@ def _try_writing(path: Path) -> None:
 
 def read(path: Path) -> Design:
     """The design in a results file; raises ResultsError, or InputError for another kind of file."""
-    if path.suffix.lower() in (".toml", *MESHES, *DESCRIPTIONS):
+    if path.suffix.lower() in (".toml", *MESHES, *DESCRIPTIONS, *SCENES):
         raise refuse(
             "this command reads a results file",
             file=path,
@@ -233,13 +235,11 @@ def _is_manifest_file(path: Path) -> bool:
 
 
 def is_description(sources: Sequence[Path], units: str | None) -> bool:
-    """Whether the sources are one robot description (else meshes); InputError where they are a mixture."""
-    if sources[0].suffix.lower() in DESCRIPTIONS or sources[0].suffix.lower() == ".toml":
-        manifest = is_manifest(sources, units)
-        if sources[0].suffix.lower() == ".toml":
-            raise refuse("is a manifest already", file=sources[0], remedy="name meshes, or a robot description")
-        return manifest
-    return is_manifest(sources, units)
+    """Whether the sources are one robot description or scene (else meshes); InputError where they are a mixture."""
+    manifest = is_manifest(sources, units)
+    if sources[0].suffix.lower() == ".toml":
+        raise refuse("is a manifest already", file=sources[0], remedy="name meshes, a robot description or a scene")
+    return manifest
 
 
 def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
@@ -263,7 +263,8 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
         raise refuse(
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
-            remedy="name one manifest (.toml) or robot description (.urdf, .xacro, .xml), or only meshes (.stl, .obj)",
+            remedy="name one manifest (.toml), robot description (.urdf, .xacro, .xml) or scene (.glb, .gltf), "
+            "or only meshes (.stl, .obj)",
         )
     if units is not None:
         raise refuse(
@@ -273,6 +274,8 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
             + (
                 "descriptions are in metres"
                 if sources[0].suffix.lower() in DESCRIPTIONS
+                else "this format states its own unit"
+                if sources[0].suffix.lower() in SCENES
                 else "the manifest states its own `units`"
             ),
         )

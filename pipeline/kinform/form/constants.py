@@ -186,3 +186,21 @@ XACRO_FILES = 500
 
 AXIS_LENGTH = 1e-9
 """Length of a joint's axis below which it is none: axes are unit vectors, up to digits."""
+
+# ---- scenes
+
+SCENE_TEXT_BYTES = 64 * 1024 * 1024
+"""Largest JSON of a glTF: 10,000 nodes have a tenth of it, and what is parsed takes ten times as much memory."""
+
+SCENE_DEEP = 64
+"""Nodes of a scene in each other: twice what sub-assemblies may have, for each may have a frame of its own."""
+
+SCENE_NODES = 400_000
+"""Nodes that a scene places, counted each time that they are: four for each of the parts that a design may have."""
+
+SHEAR = 1e-5
+"""Cosine between the axes of a placed mesh up to which they are at right angles: ten roundings of single precision,
+times ten for chains of nodes."""
+
+UNSCALED = 1e-5
+"""Relative difference up to which a scale is 1, as rotations in single precision have it."""

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
-from kinform.form.problems import Problems, did_you_mean
-from kinform.form.sources import AS_IT_IS, Reading
+from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.sources import AS_IT_IS, Reading, is_scene
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
@@ -20,8 +20,8 @@ from kinform.model.assembly import Assembly, Mesh, Part
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files that kinform reads itself."""
 
-OTHER_MESHES = (".dae", ".glb", ".ply", ".off")
-"""Suffixes of mesh files that trimesh reads: what descriptions name besides."""
+OTHER_MESHES = (".dae", ".glb", ".gltf", ".ply", ".off")
+"""Suffixes of mesh files that descriptions name besides, and of scenes."""
 
 
 def no_file(path: Path) -> str:
@@ -65,6 +65,11 @@ def _parsed(path: Path, data: bytes) -> RawMesh:
         from kinform.form.meshes.stl import read_stl
 
         return read_stl(data)
+    if is_scene(path):
+        from kinform.form.scenes.registry import scene_once
+        from kinform.form.scenes.scene import whole
+
+        return whole(scene_once(data, path))
     if path.suffix.lower() in OTHER_MESHES:
         from kinform.form.meshes.by_trimesh import read_by_trimesh
 
@@ -130,6 +135,7 @@ class DesignFiles:
         self._data: dict[Path, bytes] = {}
         self._digests: dict[Path, str] = {}
         self._raw: dict[Path, RawMesh | MeshError] = {}
+        self._bodies: dict[Path, dict[str, RawMesh]] = {}
         self._real: dict[Path, str] = {}
         self._meshes: dict[tuple[Path, MeshUse], Mesh | None] = {}
         self._same: dict[tuple[str, str, str | None], Mesh] = {}
@@ -202,7 +208,9 @@ class DesignFiles:
         key = (path, use)
         if key not in self._meshes:
             try:
-                mesh = self._earlier.get((self.shown(path), self._mesh_content(path), use)) or self._build(path, use)
+                content = self._mesh_content(path)
+                known = None if path.suffix.lower() == ".gltf" else self._earlier.get((self.shown(path), content, use))
+                mesh = known or self._build(path, use)
                 self._meshes[key] = self._same.setdefault((mesh.digest, mesh.path, use.body), mesh)
             except MeshError as error:
                 self._complain(error, path, file, line)
@@ -213,11 +221,29 @@ class DesignFiles:
         from kinform.form.meshes.bodies import select_body
         from kinform.form.meshes.health import build_mesh
 
-        raw = self._read(path)
-        chosen = raw if use.body is None else select_body(raw, use.body)
+        if use.body is not None and is_scene(path):
+            chosen = self._scene_body(path, use.body)
+        else:
+            raw = self._read(path)
+            chosen = raw if use.body is None else select_body(raw, use.body)
         if use.scale != (1.0, 1.0, 1.0):
             chosen = scaled(chosen, use.scale)
         return build_mesh(chosen, use.metres, use.weld, path=self.shown(path), body=use.body, solid=use.solid)
+
+    def _scene_body(self, path: Path, name: str) -> RawMesh:
+        """One mesh of a scene, in the frame of its own."""
+        from kinform.form.scenes.registry import scene_once
+        from kinform.form.scenes.scene import body_names
+
+        if path not in self._bodies:
+            scene = scene_once(self._bytes(path), path)
+            for other in scene.files:
+                self.note(other)
+            self._bodies[path] = dict(zip(body_names(scene), (raw for _, raw in scene.meshes), strict=True))
+        bodies = self._bodies[path]
+        if name not in bodies:
+            raise MeshError([Fault(f"has no mesh {in_quotes(name)}", did_you_mean(name, bodies, "its meshes"))])
+        return bodies[name]
 
     def _mesh_content(self, path: Path) -> str:
         """SHA-256 (hex) of the file. Where its mesh may be there already the bytes are not kept."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from kinform.form.files import DesignFiles, earlier_meshes, is_mesh, mesh_use
 from kinform.form.problems import Problems
+from kinform.form.sources import is_scene
 from kinform.model.assembly import Assembly, Part
 
 
@@ -37,6 +38,8 @@ def reload_meshes(
         if is_mesh(file):
             meshes.append(file)
     files.hash_meshes(meshes)
+    if any(is_scene(file) and files.content(file) != contents[files.shown(file)] for file in meshes):
+        return None  # names and poses may be others too
     parts = []
     for part in earlier.parts:
         reloaded = _with_mesh(part, path.parent, files, earlier.tolerances.weld)

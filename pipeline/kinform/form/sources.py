@@ -22,6 +22,8 @@ _FORMATS: Mapping[str, str] = {
     ".xml": "descriptions.tables",
     ".mjcf": "descriptions.tables",
     ".sdf": "descriptions.tables",
+    ".glb": "scenes.tables",
+    ".gltf": "scenes.tables",
 }
 """Module of `form` that reads files of a suffix."""
 
@@ -68,11 +70,18 @@ class SourceTables:
     """Files that were read besides the source, meshes apart."""
     folders: tuple[Path, ...] = field(default=())
     """Folders in which its meshes may lie, besides that of the source."""
+    described: bool = True
+    """Whether this is a robot description: what it says of links and joints is meant to be all."""
 
 
 def is_source(path: Path) -> bool:
     """Whether the suffix is that of a description or an assembly file."""
     return path.suffix.lower() in _FORMATS
+
+
+def is_scene(path: Path) -> bool:
+    """Whether the suffix is that of a CAD or scene file."""
+    return _FORMATS.get(path.suffix.lower()) == "scenes.tables"
 
 
 def source_tables(source: Source) -> SourceTables | None:

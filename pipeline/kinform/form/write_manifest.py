@@ -26,7 +26,8 @@ def init_from_source(path: Path, *, relative_to: str | Path = ".", reading: Read
     problems.raise_if_any()
     assert tables is not None
     notes = [f"# {' '.join(note.split())}" for note in tables.notes]
-    tables.raw.setdefault("check", {"profile": "description"})
+    if tables.described:
+        tables.raw.setdefault("check", {"profile": "description"})
     return "\n".join(["schema = 1", *notes, *_tables(tables.raw, ())]) + "\n"
 
 

@@ -19,6 +19,8 @@ NonNegative = Annotated[float, Field(ge=0, le=LARGEST_NUMBER, allow_inf_nan=Fals
 Vector = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
 Name = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+$")]
+Path = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+(/[^/\x00]+)*$")]
+"""Names with "/" between them, as parts of a scene have."""
 Reference = Annotated[str, StringConstraints(min_length=1, max_length=PATH_LENGTH, pattern=r"^[^\x00]+$")]
 """Of a part, joint, material, file or rule."""
 Pair = Annotated[list[Reference], Field(min_length=2, max_length=2)]

@@ -13,6 +13,7 @@ from kinform.form.manifest.common import (
     Name,
     NonNegative,
     Pair,
+    Path,
     Posed,
     Positive,
     Reference,
@@ -88,16 +89,20 @@ ShapeTable = Annotated[
 class Part(Posed):
     """`[[part]]`."""
 
-    name: Name = Field(description="name of the part, any text but '/', which separates sub-assemblies")
+    name: Path = Field(
+        description="name of the part, any text but '/', which separates sub-assemblies (and groups of a scene file)"
+    )
     mesh: Reference | None = Field(
-        None, description="STL or OBJ file (also DAE, GLB, PLY, OFF), relative to the manifest; absent: a stick body"
+        None,
+        description="STL or OBJ file (also DAE, GLB, glTF, PLY, OFF), relative to the manifest; absent: a stick body",
     )
     shape: ShapeTable | None = Field(None, description="a primitive in place of a mesh: box, cylinder, sphere, …")
     scale: Vector | None = Field(
         None, description="factors along the axes of the mesh, [1, -1, 1] mirrors it; default [1, 1, 1]"
     )
     body: Reference | None = Field(
-        None, description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, or 'shell N'"
+        None,
+        description="one body of a mesh file that holds several: OBJ o or g, ASCII solid, mesh of a GLB, 'shell N'",
     )
     units: Unit | None = Field(None, description="length unit of this mesh, where it differs from the assembly's")
     material: Reference | None = Field(None, description="a [materials.NAME] or a built-in material")

@@ -133,6 +133,7 @@ class _AssemblyReader:
             self._part(scope, table, tolerances, *at) for scope in self.scopes for at, table in scope.tables("part")
         ]
         self._check_names()
+        self._add_groups_of_scenes()
         stated = {scope.prefix + table.name for scope in self.scopes for table in scope.manifest.part}
         groups = self._groups(stated)
         places = stated | {group.name for group in groups}
@@ -210,6 +211,25 @@ class _AssemblyReader:
                         )  # fmt: skip
                     lines.setdefault(table.name, scope.line(*at, "name"))
 
+    def _add_groups_of_scenes(self) -> None:
+        """What the names of parts with "/" begin with are sub-assemblies; none has the name of another thing."""
+        below = {sub.name for sub in self.subassemblies}
+        names = {scope.prefix + table.name for scope in self.scopes for table in scope.manifest.part}
+        groups = {scope.prefix + table.name for scope in self.scopes for table in scope.manifest.group}
+        made: set[str] = set()
+        for scope in self.scopes:
+            for at, table in scope.tables("part"):
+                steps = table.name.split("/")
+                for k in range(1, len(steps)):
+                    name = scope.prefix + "/".join(steps[:k])
+                    if name in made:
+                        continue
+                    if name in below | names | groups:
+                        message = f"{in_quotes(name)} is the beginning of {in_quotes(table.name)}, and a name itself"
+                        scope.complain(message, "rename one of them", *at, "name")
+                    made.add(name)
+                    self.subassemblies.append(Subassembly(name, scope.file, None, scope.source(*at)))
+
     def _groups(self, parts: set[str]) -> list[Group]:
         """`[[group]]` of all manifests, of these parts."""
         groups = []
@@ -242,6 +262,9 @@ class _AssemblyReader:
     def _part(self, scope: Scope, table: PartTable, tolerances: Tolerances, *path: str | int) -> Part:
         """The part of a `[[part]]`, with its mesh read."""
         what = f"part {in_quotes(table.name)}"
+        if "/" in table.name and not scope.of_scene(table):
+            scope.complain(f"{what} has a '/' in its name, which separates sub-assemblies",
+                           "remove it, or place a [[subassembly]]", *path, "name")  # fmt: skip
         units = table.units or scope.manifest.assembly.units
         mesh = None
         scale = _scale(scope, table, what, *path)

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.files import DesignFiles
 from kinform.form.manifest import Manifest
+from kinform.form.manifest.parts import Part
 from kinform.form.problems import Problems, did_you_mean, in_quotes
 from kinform.form.readers import pydantic_errors
 from kinform.form.readers.overrides import Overlay
@@ -21,7 +22,7 @@ from kinform.form.readers.toml_lines import LineTable
 from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
 from kinform.form.sources import Source as SourceFile
-from kinform.form.sources import SourceTables, is_source, source_tables
+from kinform.form.sources import SourceTables, is_scene, is_source, source_tables
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
 from kinform.model.arrays import Array
@@ -52,6 +53,11 @@ class Scope:
     def metres(self) -> float:
         """Metres in one unit of length of this manifest."""
         return metres_per(self.manifest.assembly.units)
+
+    def of_scene(self, table: Part) -> bool:
+        """Whether a part is of a CAD or scene file, whose names tell the groups that it is in."""
+        source = self.manifest.assembly.from_ or ""
+        return any(is_scene(Path(name)) for name in (self.file, source, table.mesh or "") if name)
 
     def line(self, *path: str | int) -> int:
         """Line of a key."""
@@ -121,7 +127,7 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
     if is_source(path):
         tables = _from_source(path, file, path.parent, None, files, problems)
         parsed = None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
-        return None if parsed is None else replace(parsed, described=True)
+        return None if tables is None or parsed is None else replace(parsed, described=tables.described)
     try:
         text = read_text(path, MANIFEST_BYTES, "a manifest")
         raw = read_toml(text)
@@ -176,7 +182,7 @@ def _over_source(
         return None
     if not is_source(below):
         problems.add(f"from = {in_quotes(stated)} is no description or assembly file", file, lines.line(key),
-                     "name a URDF, xacro or MJCF; a manifest goes into a [[subassembly]]")  # fmt: skip
+                     "name a URDF, xacro, MJCF or GLB; a manifest goes into a [[subassembly]]")  # fmt: skip
         return None
     units = raw["assembly"].get("units")
     tables = _from_source(below, files.shown(below), path.parent, units if units in UNITS else None, files, problems)
@@ -193,4 +199,4 @@ def _over_source(
     overlay = Overlay(above, tables.places)
     both = overlay.tables(raw, tables.raw)
     parsed = _validated(both, Places(overlay.places), file, tables.notes, problems)
-    return None if parsed is None else replace(parsed, described=True)
+    return None if parsed is None else replace(parsed, described=tables.described)

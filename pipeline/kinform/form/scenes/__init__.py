@@ -1,0 +1,1 @@
+"""CAD and scene files: meshes with names, poses and hierarchy."""

@@ -1,0 +1,47 @@
+"""The formats of scenes: one line each. The suffix decides; the reader confirms."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from kinform.form.meshes.raw import Fault, MeshError
+from kinform.form.scenes.scene import EXPORT, Scene
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format, its suffixes, and the module and function of its reader: `read(data, path)`."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    module: str
+    function: str
+
+
+FORMATS = (Format("glTF", (".glb", ".gltf"), "gltf", "read_gltf"),)
+
+
+def read_scene(data: bytes, path: Path) -> Scene:
+    """The scene of a file with this content. Raises MeshError, whatever a reader stumbles over."""
+    format = next(f for f in FORMATS if path.suffix.lower() in f.suffixes)
+    if data.startswith(b"version https://git-lfs"):
+        raise MeshError([Fault("is a pointer of Git LFS, not the file", "fetch it: git lfs pull")])
+    module = importlib.import_module(f"kinform.form.scenes.{format.module}")
+    read: Callable[[bytes, Path], Scene] = getattr(module, format.function)
+    try:
+        return read(data, path)
+    except MeshError:
+        raise
+    except Exception as error:  # readers of other people, and files that are wrong in ways that nobody thought of
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise MeshError([Fault(f"cannot be read as {format.name}: {words[:200]}", EXPORT)]) from None
+
+
+@lru_cache(maxsize=1)
+def scene_once(data: bytes, path: Path) -> Scene:
+    """As `read_scene`; the last one is kept: its tables are asked for first, its meshes then."""
+    return read_scene(data, path)

@@ -1,0 +1,241 @@
+"""Scene files in place of a manifest: the joints of the STL versions, with names, hierarchy and instances kept."""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import trimesh
+from tests.support.places import FIXTURES
+
+import kinform
+from kinform import form
+from kinform.errors import InputError
+
+FOUR_BAR = FIXTURES / "mechanisms" / "four_bar" / "four_bar.toml"
+COLLARS = FIXTURES / "pairs" / "revolute_collars" / "revolute_collars.toml"
+
+
+def scene_of(assembly, groups=None, factor=1.0):
+    """A trimesh scene of the parts where they stand; `groups` gives the node that a part hangs below."""
+    scene = trimesh.Scene(base_frame="world")
+    for group in sorted(set((groups or {}).values())):
+        X = trimesh.transformations.translation_matrix([0.1, 0.2, 0.3])
+        scene.graph.update(frame_from="world", frame_to=group, matrix=X)
+    for part in assembly.parts:
+        parent = (groups or {}).get(part.name, "world")
+        X = np.linalg.inv(scene.graph.get(parent)[0]) @ part.X_WP
+        X[:3, 3] *= factor
+        mesh = trimesh.Trimesh(part.mesh.vertices * factor, part.mesh.faces, process=False)
+        scene.add_geometry(mesh, node_name=part.name, geom_name=part.name, parent_node_name=parent, transform=X)
+    return scene
+
+
+def joints(results):
+    return {frozenset(body.rpartition("/")[2] for body in joint.bodies): joint for joint in results.joints.values()}
+
+
+def over(manifest, path):
+    """The manifest without meshes and poses, which the scene beside it gives."""
+    meshes = re.compile(r"^(mesh|position|quaternion|rpy|units) = .*\n", re.MULTILINE)
+    text = meshes.sub("", manifest.read_text()).replace("[assembly]", f'[assembly]\nunits = "mm"\nfrom = "{path.name}"')
+    out = path.with_suffix(".toml")
+    out.write_text(text)
+    return out
+
+
+def assert_same_joints(one, other):
+    a, b = joints(one), joints(other)
+    assert a.keys() == b.keys() and a
+    for pair, joint in a.items():
+        assert (joint.type, joint.status) == (b[pair].type, b[pair].status)
+        if joint.axis is not None:
+            assert abs(joint.axis @ b[pair].axis) == pytest.approx(1.0, abs=1e-6)
+            assert np.linalg.norm(np.cross(joint.axis, joint.point - b[pair].point)) < 2e-6
+    assert one.mobility.effective == other.mobility.effective
+
+
+@pytest.mark.parametrize("manifest", [FOUR_BAR, COLLARS], ids=lambda path: path.stem)
+@pytest.mark.parametrize("suffix", [".glb", ".gltf"])
+def test_a_scene_has_the_joints_of_its_parts(tmp_path, manifest, suffix):
+    path = tmp_path / f"scene{suffix}"
+    scene = scene_of(form.load(manifest))
+    if suffix == ".gltf":
+        for name, data in trimesh.exchange.gltf.export_gltf(scene).items():
+            (tmp_path / ("scene.gltf" if name == "model.gltf" else name)).write_bytes(data)
+    else:
+        scene.export(path)
+    alone = form.load(path)
+    assert {part.name for part in alone.parts} == {part.name for part in form.load(manifest).parts}
+    results = kinform.run(over(manifest, path))
+    assert [part.name for part in results.assembly.parts] == [part.name for part in form.load(manifest).parts]
+    assert_same_joints(results, kinform.run(manifest))
+
+
+def test_groups_are_sub_assemblies_and_a_manifest_says_more_of_their_parts(tmp_path):
+    plain = form.load(FOUR_BAR)
+    scene_of(plain, {"pin_a": "pins", "pin_b": "pins"}).export(tmp_path / "bar.glb")
+    (tmp_path / "bar.toml").write_text(
+        'schema = 1\n[assembly]\nname = "bar"\nunits = "mm"\nfrom = "bar.glb"\nground = "base"\n'
+        '[[part]]\nname = "pins/pin_a"\nmaterial = "steel"\n'
+    )
+    for name in ("bar.glb", "bar.toml"):
+        assembly = form.load(tmp_path / name)
+        assert {part.name for part in assembly.parts} == {
+            "base", "coupler", "crank", "pins/pin_a", "pins/pin_b", "pin_c", "pin_d", "rocker",
+        }  # fmt: skip
+        assert [sub.name for sub in assembly.subassemblies] == ["pins"]
+        for part in plain.parts:
+            there = next(p for p in assembly.parts if p.name.rpartition("/")[2] == part.name)
+            assert np.allclose(there.X_WP, part.X_WP, atol=1e-7)
+    assert form.load(tmp_path / "bar.toml").part("pins/pin_a").material == "steel"
+
+
+def test_a_scene_is_a_subassembly_and_init_says_the_same(tmp_path):
+    scene_of(form.load(FOUR_BAR), {"pin_a": "pins"}).export(tmp_path / "bar.glb")
+    (tmp_path / "top.toml").write_text(
+        'schema = 1\n[assembly]\nname = "top"\nunits = "mm"\n'
+        '[[subassembly]]\nname = "left"\nfile = "bar.glb"\nposition = [500, 0, 0]\n'
+    )
+    from kinform.form.write_manifest import init_from_source
+
+    (tmp_path / "full.toml").write_text(init_from_source(tmp_path / "bar.glb", relative_to=tmp_path))
+    alone = form.load(tmp_path / "bar.glb")
+    full, top = form.load(tmp_path / "full.toml"), form.load(tmp_path / "top.toml")
+    assert [s.name for s in top.subassemblies] == ["left", "left/pins"]
+    for a, b, c in zip(alone.parts, full.parts, top.parts, strict=True):
+        assert a.name == b.name and "left/" + a.name == c.name
+        assert np.array_equal(a.X_WP, b.X_WP) and a.mesh.digest == b.mesh.digest == c.mesh.digest
+        assert np.allclose(c.X_WP[:3, 3], a.X_WP[:3, 3] + [0.5, 0.0, 0.0])
+    assert alone.check.profile == full.check.profile == "design"
+
+
+def glb(tmp_path, change=lambda header: None, cut=0):
+    """A GLB of a box (5 × 4 × 3 m), whose header is changed before it is written."""
+    box = trimesh.creation.box((5.0, 4.0, 3.0))
+    points = box.vertices.astype("<f4").tobytes()
+    corners = box.faces.astype("<u2").tobytes()
+    header = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "box", "mesh": 0}],
+        "meshes": [{"name": "box", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [{"byteLength": len(points + corners)}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": len(points)},
+            {"buffer": 0, "byteOffset": len(points), "byteLength": len(corners)},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
+        ],
+    }  # fmt: skip
+    change(header)
+    text = json.dumps(header).encode()
+    text += b" " * (-len(text) % 4)
+    binary = points + corners
+    body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    path = tmp_path / "box.glb"
+    data = struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
+    path.write_bytes(data[: len(data) - cut])
+    return path
+
+
+def nodes(*tables, roots=None):
+    def change(header):
+        header["nodes"] = list(tables)
+        header["scenes"] = [{"nodes": list(range(len(tables))) if roots is None else roots}]
+
+    return change
+
+
+def test_instances_share_a_mesh_and_repeated_names_are_numbered(tmp_path):
+    one, two = {"name": "a/b", "mesh": 0}, {"name": "a/b", "mesh": 0, "translation": [9, 0, 0]}
+    assembly = form.load(glb(tmp_path, nodes(one, two, {"mesh": 0, "translation": [0, 9, 0]})))
+    assert [part.name for part in assembly.parts] == ["a_b", "a_b#2", "box"]
+    assert len({id(part.mesh) for part in assembly.parts}) == 1
+    assert any('"a/b" is "a_b#2"' in note for note in assembly.notes)
+
+
+def test_scales_mirror_and_enlarge(tmp_path):
+    mirrored = {"name": "m", "mesh": 0, "scale": [-1, 2, 1], "rotation": [0, 0, np.sqrt(0.5), np.sqrt(0.5)]}
+    part = form.load(glb(tmp_path, nodes(mirrored))).part("m")
+    low, high = part.mesh.box
+    assert np.allclose(high - low, [5.0, 8.0, 3.0]) and part.mesh.health.volume == pytest.approx(120.0)
+    assert np.linalg.det(part.X_WP[:3, :3]) == pytest.approx(1.0)
+    corners = part.mesh.vertices @ part.X_WP[:3, :3].T
+    assert np.allclose(np.ptp(corners, axis=0), [8.0, 5.0, 3.0], atol=1e-6)
+
+
+def test_quantised_positions_and_strides_are_read(tmp_path):
+    def quantise(header):
+        header["accessors"][0].update(componentType=5122, normalized=True)
+        header["bufferViews"][0]["byteStride"] = 12
+
+    with pytest.raises(InputError):  # of bytes that are no short integers comes a mesh, but none of a solid
+        form.load(glb(tmp_path, lambda header: header["accessors"][0].update(count=80)))
+    from kinform.form.scenes.registry import read_scene
+
+    path = glb(tmp_path, quantise)
+    vertices = read_scene(path.read_bytes(), path).meshes[0][1].vertices
+    box = trimesh.creation.box((5.0, 4.0, 3.0)).vertices.astype("<f4")
+    assert np.array_equal(vertices, np.maximum(box.view("<i2").reshape(8, 6)[:, :3] / 32767.0, -1.0))
+
+
+CIRCLE = nodes({"name": "a", "children": [1]}, {"name": "b", "children": [0], "mesh": 0}, roots=[0])
+ASKEW = nodes({"children": [1], "scale": [1, 3, 1]}, {"mesh": 0, "rotation": [0, 0, 0.38268343, 0.92387953]}, roots=[0])
+BAD = {
+    "circle": (CIRCLE, "in a circle"),
+    "askew": (ASKEW, "shears"),
+    "no such mesh": (nodes({"mesh": 7}), "7"),
+    "nothing in the scene": (nodes({"name": "empty"}), "has no part"),
+    "negative child": (nodes({"children": [-1]}), "-1"),
+    "buffer missing": (lambda h: h["buffers"][0].update(uri="gone.bin"), '"gone.bin", which is not there'),
+    "buffer outside": (lambda h: h["buffers"][0].update(uri="../x.bin"), "outside"),
+    "buffer short": (lambda h: h["buffers"][0].update(byteLength=10**6), "bytes of the 1,000,000"),
+    "huge count": (lambda h: h["accessors"][0].update(count=10**12), "beyond its view"),
+    "no view": (lambda h: h["accessors"][0].pop("bufferView"), "sparse or empty"),
+    "compressed": (lambda h: h.update(extensionsRequired=["KHR_draco_mesh_compression"]), "KHR_draco_mesh_compression"),
+    "list in place of a table": (lambda h: h.update(meshes=[[]]), "glTF"),
+    "corner beyond": (lambda h: h["accessors"][0].update(count=7), "vertex 7 of 7"),
+    "matrix of text": (nodes({"mesh": 0, "matrix": ["x"] * 16}), "glTF"),
+}
+
+
+@pytest.mark.parametrize(("change", "words"), BAD.values(), ids=BAD)
+def test_what_is_wrong_with_a_scene_is_one_problem(tmp_path, change, words):
+    with pytest.raises(InputError) as caught:
+        form.load(glb(tmp_path, change))
+    (problem,) = caught.value.problems
+    assert problem.file == "box.glb" and words in problem.message and problem.remedy
+
+
+def test_a_scene_that_is_cut_short_or_given_units_is_refused(tmp_path):
+    with pytest.raises(InputError, match="cut short"):
+        form.load(glb(tmp_path, cut=20))
+    with pytest.raises(InputError, match="states its own unit"):
+        kinform.run(glb(tmp_path), units="mm")
+
+
+def test_what_moved_in_a_scene_is_read_again(tmp_path):
+    path, output = glb(tmp_path, nodes({"name": "a", "mesh": 0}, {"name": "b", "mesh": 0})), tmp_path / "r.h5"
+    kinform.run(path, output)
+    glb(tmp_path, nodes({"name": "a", "mesh": 0}, {"name": "b", "mesh": 0, "translation": [5, 0, 0]}))
+    again = kinform.run(path, output)
+    assert again.assembly.part("b").X_WP[0, 3] == 5.0
+    kinform.run(path, tmp_path / "fresh.h5")
+    assert output.read_bytes() == (tmp_path / "fresh.h5").read_bytes()
+
+
+def test_a_manifest_of_meshes_imports_nothing_of_this():
+    code = (
+        "import sys, kinform; from kinform import form; form.load(sys.argv[1]); "
+        "print([m for m in sys.modules if m.split('.')[0] in ('trimesh', 'collada', 'cascadio', 'lxml') "
+        "or m.startswith(('kinform.form.scenes', 'kinform.form.descriptions.'))])"
+    )
+    out = subprocess.run([sys.executable, "-c", code, str(FOUR_BAR)], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"
