@@ -64,7 +64,8 @@ def pair_contacts(
     if not any(patch.kind in ("line", "point") for patch in patches):
         patches += pins_in_slots(pair, patches)
     patches += enclosing_patches(pair, patches)
-    patches = [_of_scattered(pair, patch) for patch in patches]
+    alone = all(_strip(pair, patch) for patch in patches)
+    patches = [_of_scattered(pair, patch, alone) for patch in patches]
     patches.sort(key=_place_in_list)
     interference = find_interference(pair, patches, solids)
     if patches:
@@ -115,10 +116,11 @@ def _with_higher(pair: PairView, patches: list[Patch]) -> list[Patch]:
     return rest + profiles + ([] if rest else higher_pairs(pair, pieces))
 
 
-def _of_scattered(pair: PairView, patch: Patch) -> Patch:
+def _of_scattered(pair: PairView, patch: Patch, alone: bool) -> Patch:
     """The patch, where vertices of a mesh scatter: points and lines of contact are of facets, and of no known curves;
     facets that lie on a curved surface of the other part have no curve of their own, and may lean on it by as much as
-    they scatter."""
+    they scatter; so may planes, of which one facet alone would be exact; and a narrow plane, where narrow planes are
+    all that touches (`alone`), may be a facet of a curve."""
     scatter = [part.surfaces.noise for part in pair.parts]
     if not any(
         noise > pair.tolerances.fit * part.index.mesh.diagonal for noise, part in zip(scatter, pair.parts, strict=True)
@@ -126,10 +128,12 @@ def _of_scattered(pair: PairView, patch: Patch) -> Patch:
         return patch
     if patch.kind in ("point", "line"):
         return replace(patch, one_sided=True)
-    if patch.one_sided and patch.kind in ("cylinder", "cone", "sphere"):
+    if alone and patch.kind == "plane" and _strip(pair, patch):
+        return replace(patch, kind="freeform")
+    if patch.kind == "plane" or (patch.one_sided and patch.kind in ("cylinder", "cone", "sphere")):
         lean = max(scatter) / max(float(np.sqrt(patch.area)), 1e-300)
-        turn, shift = patch.uncertainty
-        return replace(patch, uncertainty=(max(turn, lean), shift))
+        (turn, shift), (tilt, offset) = patch.uncertainty, patch.mismatch
+        return replace(patch, uncertainty=(max(turn, lean), shift), mismatch=(max(tilt, lean), offset))
     return patch
 
 
