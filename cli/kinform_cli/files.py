@@ -205,7 +205,7 @@ def sources_of(named: Sequence[Path]) -> list[Path]:
     """What is named; of a folder the manifest in it. InputError where there is none, or several."""
     if len(named) != 1 or not named[0].is_dir():
         return list(named)
-    from kinform.form.problems import first_names
+    from kinform.foundation.meant import first_names
 
     manifests = [path for path in sorted(named[0].glob("*.toml")) if _is_manifest_file(path)]
     if len(manifests) == 1:

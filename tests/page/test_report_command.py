@@ -44,7 +44,7 @@ def test_a_file_without_findings_gives_a_page_and_a_warning(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("output", "more", "named"),
-    [("a.h5", [], "overwritten"), ("no/a.html", [], "does not exist"), ("a.html", ["--png", "a.h5"], "folder")],
+    [("a.h5", [], "a.html"), ("no/a.html", [], "does not exist"), ("a.html", ["--png", "a.h5"], "folder")],
 )
 def test_what_cannot_be_written_is_refused_before_the_work(design_file, capsys, output, more, named):
     folder = design_file.parent

@@ -30,7 +30,7 @@ def render(design: Design) -> RenderableType:
     more = Rows("part", "is in", "could be in", "by", "how clear", title=title, right=["how clear"])
     for one in unclear:
         more.add(one.part, one.body, one.other or NONE, _HOW[one.how], _clear(one))
-    legend = "how clear: by how much breaking the contacts of the other body would be dearer (a journal 1, a flat 300)"
+    legend = "how clear: by how much breaking the contacts of the other body would be dearer (a journal 40, a flat 300)"
     return stacked(rows, more, Text(legend, style="dim"))
 
 

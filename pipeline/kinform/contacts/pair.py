@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, STRIP_AREA, TOUCH
+from kinform.contacts.constants import ACROSS_SINE, MATING_REACH, NARROW_SHARE, STRIP_AREA, TOUCH
 from kinform.contacts.higher.edges import edge_contacts
 from kinform.contacts.higher.points_and_lines import higher_pairs, pins_in_slots
 from kinform.contacts.higher.profiles import profile_contacts
@@ -68,8 +68,10 @@ def pair_contacts(
     patches = [_of_scattered(pair, patch, alone) for patch in patches]
     patches.sort(key=_place_in_list)
     interference = find_interference(pair, patches, solids)
+    least = NARROW_SHARE * sum(patch.area for patch in patches)
     if patches:
-        patches = sorted([*patches, *(patch for patch in mated if patch.narrow)], key=_place_in_list)
+        narrow = [patch for patch in mated if patch.narrow and patch.area >= least]
+        patches = sorted([*patches, *narrow], key=_place_in_list)
     if interference is not None:
         place = X_WF[:3, :3] @ interference.place + X_WF[:3, 3]
         interference = replace(interference, place=np.asarray(freeze(place)))

@@ -50,18 +50,6 @@ SMALLEST_MESH = 1e-12
 
 # ---- problems
 
-CLOSE_NAMES = 0.6
-"""Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
-
-CHOICES_COMPARED = 500
-"""Known names that a wrong one is compared with: each takes ten microseconds."""
-
-MEANT_NAMES = 2
-"""Names that are proposed, at most."""
-
-LISTED_NAMES = 12
-"""Known names that are listed where none is close."""
-
 # ---- readers
 
 UNIT_QUATERNION = 1e-6

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from kinform.form.constants import HASHED_AT_ONCE
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part

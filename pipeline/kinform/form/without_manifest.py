@@ -15,9 +15,10 @@ from kinform.form.files import read_raw
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
 from kinform.form.sources import is_scene
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function

@@ -98,3 +98,16 @@ RING_DIRECTIONS = 24
 """Directions of ridges that are looked at, the longest first: crumpled meshes have thousands."""
 MOST_RINGS = 64
 """Rings along one direction that are looked at, those of the longest ridges."""
+
+# --- meant ---
+
+NAME_SHOWN = 255
+"""Characters of a name that a message shows."""
+CLOSE_NAMES = 0.6
+"""Likeness (of difflib, its default) from which on a known name is probably the one that was meant."""
+CHOICES_COMPARED = 500
+"""Known names that a wrong one is compared with: each takes ten microseconds."""
+MEANT_NAMES = 2
+"""Names that are proposed, at most."""
+LISTED_NAMES = 12
+"""Known names that are listed where none is close."""

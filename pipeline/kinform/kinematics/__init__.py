@@ -36,5 +36,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 21
+CODE_VERSION = 22
 """Bumped when the results of this stage change for the same input."""

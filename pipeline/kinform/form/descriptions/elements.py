@@ -15,7 +15,8 @@ from lxml import etree
 
 from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH, XML_BYTES
 from kinform.form.descriptions.robot import At
-from kinform.form.problems import Problems, in_quotes
+from kinform.form.problems import Problems
+from kinform.foundation.meant import in_quotes
 
 FILE = "{urn:kinform}file"
 """Attribute of elements that come from another file than the root: that file."""

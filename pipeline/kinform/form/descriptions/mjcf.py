@@ -20,7 +20,8 @@ from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes
 from kinform.form.descriptions.poses import place, pose
 from kinform.form.descriptions.robot import Inertial, Link, Robot, RobotJoint, Shape, Solid
 from kinform.form.descriptions.tree import Count, distinct
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
 WORLD = "world"

@@ -11,7 +11,7 @@ from kinform.form.descriptions.elements import Element, Xml, tag_of
 from kinform.form.descriptions.poses import place
 from kinform.form.descriptions.robot import Link, Ratio, RobotJoint
 from kinform.form.descriptions.tree import Count
-from kinform.form.problems import did_you_mean, in_quotes
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
 _WORLD = "world"

@@ -13,8 +13,8 @@ from kinform.form.constants import INCLUDES
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import about, pose, quaternion, turn
-from kinform.form.problems import in_quotes
 from kinform.foundation.algebra.displacements import inverse
+from kinform.foundation.meant import in_quotes
 from kinform.model.arrays import Array
 
 

@@ -18,10 +18,10 @@ from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.registry import FORMATS, reader_of
 from kinform.form.descriptions.robot import At, Inertial, Link, Robot, RobotJoint, Shape, Solid
 from kinform.form.descriptions.tree import distinct
-from kinform.form.problems import first_names, in_quotes
 from kinform.form.readers.places import Places
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.meant import first_names, in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform.model.arrays import Array

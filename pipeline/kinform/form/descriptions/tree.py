@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.form.descriptions.robot import At
-from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
+from kinform.form.problems import Problems
+from kinform.foundation.meant import did_you_mean, first_names, in_quotes
 from kinform.model.arrays import Array
 
 Edge = tuple[str, str, str, Array, At]

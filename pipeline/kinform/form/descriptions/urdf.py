@@ -18,7 +18,8 @@ from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place, pose, rpy
 from kinform.form.descriptions.robot import Inertial, Link, Ratio, Robot, RobotJoint, Shape, Solid
 from kinform.form.descriptions.tree import Count, Edge, Tree, tree_of
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
 TYPES = {

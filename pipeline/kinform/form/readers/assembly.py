@@ -19,12 +19,13 @@ from kinform.form.manifest.parts import Part as PartTable
 from kinform.form.manifest.parts import TolerancesTable
 from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.meshes.primitives import primitive
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
 from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly

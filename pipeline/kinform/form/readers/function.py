@@ -14,9 +14,9 @@ import numpy as np
 
 from kinform.form.constants import LARGEST_NUMBER, OUTPUTS, PARALLEL_AXES
 from kinform.form.files import DesignFiles
-from kinform.form.problems import did_you_mean, in_quotes
 from kinform.form.readers.csv_tables import law_rows
 from kinform.form.readers.open_manifest import Scope
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.assembly import Assumption
 from kinform.model.checks import CheckSettings, Ignore
 from kinform.model.function import Coupling, Drive, InitialValue, IntendedJoint, Law, Load, SimulationRequest

@@ -14,7 +14,7 @@ from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.files import DesignFiles
 from kinform.form.manifest import Manifest
 from kinform.form.manifest.parts import Part
-from kinform.form.problems import Problems, did_you_mean, in_quotes
+from kinform.form.problems import Problems
 from kinform.form.readers import pydantic_errors
 from kinform.form.readers.overrides import Overlay
 from kinform.form.readers.places import Lines, Places
@@ -23,6 +23,7 @@ from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
 from kinform.form.sources import Source as SourceFile
 from kinform.form.sources import SourceTables, is_scene, is_source, source_tables
+from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
 from kinform.model.arrays import Array

@@ -11,9 +11,10 @@ from pydantic import ValidationError
 
 from kinform.form.constants import LARGEST_NUMBER, PROBLEMS_MOST, VALUE_LENGTH
 from kinform.form.manifest import json_schema
-from kinform.form.problems import Problems, did_you_mean, first_names, in_quotes
+from kinform.form.problems import Problems
 from kinform.form.readers.places import Lines
 from kinform.form.readers.toml_lines import Path
+from kinform.foundation.meant import did_you_mean, first_names, in_quotes
 
 _UNITS = 'lengths have no default unit: write units = "mm" (or m, cm, um, in, ft)'
 

@@ -14,9 +14,9 @@ from pydantic import BaseModel
 
 from kinform.form.manifest import requirements as tables
 from kinform.form.manifest.common import Quantity
-from kinform.form.problems import in_quotes
 from kinform.form.readers.csv_tables import path_rows
 from kinform.form.readers.function import FunctionReader
+from kinform.foundation.meant import in_quotes
 from kinform.model.function import Requirement
 
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from kinform.form.constants import SCENE_TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate
-from kinform.form.problems import in_quotes
 from kinform.form.scenes.scene import EXPORT, Node, Scene
+from kinform.foundation.meant import in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array, Ints

@@ -14,7 +14,7 @@ import numpy as np
 from kinform.form.constants import PARTS_MOST, SCENE_DEEP, SCENE_NODES, SHEAR, UNSCALED
 from kinform.form.descriptions.tree import distinct
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
-from kinform.form.problems import in_quotes
+from kinform.foundation.meant import in_quotes
 from kinform.model.arrays import Array
 
 EXPORT = "export the file again"

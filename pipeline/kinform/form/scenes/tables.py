@@ -10,12 +10,12 @@ import numpy as np
 
 from kinform.form.constants import NAME_LENGTH, PARTS_MOST
 from kinform.form.meshes.raw import MeshError
-from kinform.form.problems import first_names, in_quotes
 from kinform.form.readers.places import Places
 from kinform.form.scenes.registry import scene_once
 from kinform.form.scenes.scene import EXPORT, Scene, ScenePart, body_names, parts_of
 from kinform.form.sources import Source, SourceTables
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.meant import first_names, in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.units import metres_per
 

@@ -2,14 +2,13 @@
 
 Contact that no stated joint moves holds. So each pair of parts that touch is asked, joint by joint, whether it may part
 (`parting`): its patches must leave that joint's motion free, and what it costs to part it says how likely it is meant
-to: nothing for a journal that goes round the axis, much for screw holes that line up. All parts then get the body, one
-of those that the joints name, that makes the sum of what is parted least (`labelling`): one cut where the joints are a
-tree, and a multiway cut where they close loops. By how much the next best body of a part is dearer is its margin
-(`margins`): parts that could go either way are listed, with what holds them.
+to: little for a face or a journal that goes round the axis, much for screw holes that line up. All parts then get the
+body, one of those that the joints name, that makes the sum of what is parted least (`labelling`): one cut where the
+joints are a tree, and a multiway cut where they close loops. By how much the next best body of a part is dearer is its
+margin (`margins`): parts that could go either way are listed, with what holds them.
 
->>> # a hinge of two leaves, a pin in both: the pin is not named, and goes with either leaf
->>> # leaf_a ~ pin: journal about the stated axis, 1; leaf_b ~ pin: the same, 1
->>> # the labels leaf_a and leaf_b cost the pin 1 each: margin 0, so it is listed
+A hinge of two leaves with a pin in both, which no joint names: leaf_a ~ pin is a journal about the stated axis, price
+40, and so is leaf_b ~ pin. In either leaf the pin costs the journal of the other: its margin is 0, so it is listed.
 
 The method is a multiway cut as an integer program (Boykov, Veksler, Zabih 2001 for the energy; solved by HiGHS).
 """

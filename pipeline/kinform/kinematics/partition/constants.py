@@ -11,10 +11,12 @@ SLOW = 1e-4
 """The same as a share of the greatest speed in the contact: near the axis nothing moves."""
 OPPOSED_AREA = 0.05
 """Share of the area between two parts that may oppose a joint that parts them: scraps decide nothing."""
-JOURNAL = 1.0
-"""Price of parting a journal, a collar or a guide: what joints are made of."""
+JOURNAL = 40.0
+"""Price of parting a journal, a collar or a guide."""
 FACE_ROUND = 30.0
-"""Price of parting a face that goes round the axis, without a journal: a flange may turn, and seldom does."""
+"""Price of parting a face that goes round the axis, without a journal. Less than a journal: most models end at a flush
+face, and what is inside of a servo is its own. With 1 for the journal 155 of 204 bodies of 17 robots came out whole,
+with 40 168, on no robot fewer; whichever robot is left out, the others choose 40."""
 SERRATED = 100.0
 """Price of parting serrations about the axis: those of a servo's output turn with what they drive."""
 FLAT_BESIDE = 300.0

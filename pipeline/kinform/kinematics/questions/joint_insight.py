@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.form.problems import did_you_mean
+from kinform.foundation.meant import did_you_mean
 from kinform.kinematics.bodies.classification import evidence_between
 from kinform.kinematics.bodies.extents import Extents
 from kinform.kinematics.constants import MOST_PATCH_SETS, MOST_PATCHES

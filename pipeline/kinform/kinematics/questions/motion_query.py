@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinform.form.problems import did_you_mean
 from kinform.foundation.algebra.screws import Frame, rows, scaled, span
 from kinform.foundation.algebra.vectors import cross
+from kinform.foundation.meant import did_you_mean
 from kinform.foundation.words import counted
 from kinform.kinematics.constants import AT_REST, BLOCKING_SPEED, MOTION_THERE
 from kinform.kinematics.mobility.named_freedoms import Motions
