@@ -277,6 +277,24 @@ def scenes() -> list[bytes]:
     return [ply.encode(), f"OFF\n8 12 0\n{vertices}{triangles}".encode()]
 
 
+def glb() -> list[bytes]:
+    """Two instances of a mesh, one below another node, and a second mesh."""
+    import trimesh
+
+    scene = trimesh.Scene(base_frame="world")
+    scene.add_geometry(trimesh.Trimesh(CUBE, SIDES), node_name="a", geom_name="cube")
+    X = trimesh.transformations.translation_matrix([100.0, 0.0, 0.0])
+    scene.graph.update(frame_from="world", frame_to="sub", matrix=X)
+    scene.graph.update(frame_from="sub", frame_to="b/c", geometry="cube", matrix=X)
+    scene.add_geometry(trimesh.Trimesh(*prism(3)), node_name="p", parent_node_name="sub")
+    return [scene.export(file_type="glb")]
+
+
+def step() -> list[bytes]:
+    """Boxes and pins in a sub-assembly."""
+    return [(ROOT / "tests" / "form" / "step" / "names.step").read_bytes()]
+
+
 def csv() -> list[bytes]:
     """Laws and paths."""
     return [LAW, PATH, b"0,0,0,0\n1,1,1,1\n2,2,2,2\n"]

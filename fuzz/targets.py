@@ -153,8 +153,8 @@ def _results(data: bytes) -> None:
     results.read(_FOLDER / "r.h5")
 
 
-def _description(suffix: str) -> Callable[[bytes], None]:
-    """Reads a description of a robot, whose mesh lies beside it."""
+def _source(suffix: str) -> Callable[[bytes], None]:
+    """Reads a description of a robot, whose mesh lies beside it; or a CAD or scene file."""
 
     def run(data: bytes) -> None:
         from kinform import form
@@ -205,10 +205,15 @@ _JSON_WORDS = (
     b"1e999",
     b",",
 )
+_GLTF_WORDS = (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
 _XML_WORDS = (
     b"<link name='x'/>", b"<body>", b"</", b"/>", b"<!ENTITY a 'b'>", b"&#0;", b"&a;", b"<![CDATA[", b"xmlns:a='b'",
     b"name=", b"rpy=", b"${1/0}", b"${[0]*9}", b"<xacro:include filename='robot.urdf.xacro'/>", b"<freejoint/>",
     b"<!--", b"<?x?>",
+)  # fmt: skip
+_STEP_WORDS = (
+    b"#1", b"$", b"*", b"(", b"()", b";", b"'", b"/*", b"ENDSEC;", b"CARTESIAN_POINT", b"1.E400", b"-0.", b".T.",
+    b"NEXT_ASSEMBLY_USAGE_OCCURRENCE", b"SI_UNIT($,.METRE.)", b"\\X2\\D800\\X0\\",
 )  # fmt: skip
 _STL_WORDS = (b"solid", b"endsolid", b"facet normal", b"outer loop", b"vertex", b"endloop", b"endfacet", b"\n", b" ")
 _OBJ_WORDS = (
@@ -238,10 +243,14 @@ TARGETS = {
         Target("baseline", _text_error(_baseline), seeds.baselines, _JSON_WORDS, 0.5),
         Target("lock", _text_error(_lock), seeds.locks, _JSON_WORDS),
         Target("catalog", _catalog, seeds.catalogs, (b"CREATE TABLE", b"SELECT", b"joints")),
-        Target("urdf", _description(".urdf"), seeds.urdf, _XML_WORDS),
-        Target("mjcf", _description(".xml"), seeds.mjcf, _XML_WORDS),
-        Target("xacro", _description(".urdf.xacro"), seeds.xacro, _XML_WORDS),
+        Target("urdf", _source(".urdf"), seeds.urdf, _XML_WORDS),
+        Target("mjcf", _source(".xml"), seeds.mjcf, _XML_WORDS),
+        Target("xacro", _source(".urdf.xacro"), seeds.xacro, _XML_WORDS),
         Target("scene", _scene, seeds.scenes, (b"element vertex", b"property list", b"OFF", b"\n"), 0.5),
+        Target(
+            "glb", _source(".glb"), seeds.glb, (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
+        ),
+        Target("step", _source(".step"), seeds.step, _STEP_WORDS, 0.5),
         Target("results", _results, seeds.edits, (), 2.0),
     )
 }

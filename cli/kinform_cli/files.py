@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 MESHES = (".stl", ".obj")
 DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
-SCENES = (".glb", ".gltf")
+SCENES = (".glb", ".gltf", ".step", ".stp")
 """Files of several parts that state their own unit of length."""
 
 
 FOREIGN = frozenset(
     {
         *(".h5", ".hdf5", ".html", ".htm", ".pdf", ".png", ".svg", ".jpg", ".jpeg", ".docx", ".md", ".txt", ".csv"),
-        *(".json", ".sarif", ".toml", ".yaml", ".yml", *MESHES, *DESCRIPTIONS),
+        *(".json", ".sarif", ".toml", ".yaml", ".yml", *MESHES, *DESCRIPTIONS, *SCENES),
     }
 )
 """Ends of names that say what a file is: where another kind of file would be written they are a mistake."""
@@ -263,7 +263,7 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
         raise refuse(
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
-            remedy="name one manifest (.toml), robot description (.urdf, .xacro, .xml) or scene (.glb, .gltf), "
+            remedy="name one manifest (.toml), robot description (.urdf, .xacro, .xml) or scene (.step, .glb, .gltf), "
             "or only meshes (.stl, .obj)",
         )
     if units is not None:

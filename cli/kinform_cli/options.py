@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
@@ -83,7 +85,7 @@ def cores(jobs: int | None) -> int:
     return jobs or os.cpu_count() or 1
 
 
-def reading(geometry: GeometryKind, packages: list[str] | None) -> Reading:
+def reading(geometry: GeometryKind, packages: list[str] | None, deviation: str | None = None) -> Reading:
     """How sources are read, by the options of the command line; a usage error where one is none."""
     from kinform.form.sources import Reading
 
@@ -95,7 +97,21 @@ def reading(geometry: GeometryKind, packages: list[str] | None) -> Reading:
         if not Path(folder).is_dir():
             raise typer.BadParameter(f"there is no folder {folder}", param_hint="--package")
         pairs.append((name, folder))
-    return Reading(geometry.value, tuple(pairs))
+    return Reading(geometry.value, tuple(pairs), None if deviation is None else _length(deviation, "--deviation"))
+
+
+def _length(stated: str, hint: str) -> float:
+    """Metres in a positive length with its unit, such as 0.01mm; a usage error where it is none."""
+    from kinform.foundation.units import UNITS, metres_per
+
+    match = re.fullmatch(r"([0-9.eE+-]+) ?([a-z]+)", stated.strip())
+    try:
+        value = float(match[1]) if match else 0.0
+    except ValueError:
+        value = 0.0
+    if match is None or match[2] not in UNITS or not 0.0 < value < math.inf:
+        raise typer.BadParameter(f"{stated!r} is no length with its unit, such as 0.01mm", param_hint=hint)
+    return value * metres_per(match[2])
 
 
 def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
@@ -214,7 +230,11 @@ Ranges = Annotated[
 ]
 Sources = Annotated[
     list[Path],
-    argument("SOURCE", "A manifest or a robot description (URDF, xacro, MJCF); or STL and OBJ files, with --units."),
+    argument(
+        "SOURCE",
+        "A manifest, a robot description (URDF, xacro, MJCF), or a CAD or scene file (STEP, GLB, glTF); or STL and OBJ "
+        "files, with --units.",
+    ),
 ]
 Results = Annotated[Path, argument("F.h5", "Results file to read.")]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
@@ -225,6 +245,12 @@ Geometry = Annotated[
 Packages = Annotated[
     list[str] | None,
     option("--package", "NAME=FOLDER", "Where package://NAME of a robot description is; may be given for each."),
+]
+Deviation = Annotated[
+    str | None,
+    option(
+        "--deviation", "LENGTH", "How far facets of a STEP file may lie from its surfaces, as in 0.01mm; a share else."
+    ),
 ]
 Units = Annotated[
     str | None, option("--units", "UNIT", "Unit of the meshes named in place of a manifest: m, cm, mm, um, in or ft.")

@@ -7,6 +7,7 @@ from kinform_cli import console, files
 from kinform_cli.options import (
     AllowOutside,
     Depfile,
+    Deviation,
     Geometry,
     GeometryKind,
     Output,
@@ -33,6 +34,7 @@ def import_(
     allow_outside: AllowOutside = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
+    deviation: Deviation = None,
     depfile: Depfile = None,
 ) -> None:
     """Read a manifest or a robot description into a results file, meshes included; other stages need nothing else."""
@@ -43,7 +45,7 @@ def import_(
 
     with Working("import"):
         if manifest:
-            how = reading(geometry, packages)
+            how = reading(geometry, packages, deviation)
             design = stages.import_(sources[0], allow_outside=allow_outside, reading=how)
         else:
             assert units is not None

@@ -12,6 +12,7 @@ from kinform_cli.gate import Gate, next_look
 from kinform_cli.options import (
     AllowOutside,
     Depfile,
+    Deviation,
     FailOn,
     FindingsFormat,
     Geometry,
@@ -53,6 +54,7 @@ def run(
     allow_outside: AllowOutside = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
+    deviation: Deviation = None,
     format: PrintedFindings = None,
     verbose: Verbose = False,
     fail_on: FailOn = Severity.error,
@@ -86,7 +88,7 @@ def run(
             units=units,
             say=console.say,
             ranges=ranges,
-            reading=reading(geometry, packages),
+            reading=reading(geometry, packages, deviation),
         )
     if depfile is not None and output is not None:
         files.write_rule(depfile, output, outcome.gist, sources)

@@ -12,6 +12,7 @@ from kinform_cli import console, errors, files
 from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
+    Deviation,
     FailOn,
     FindingsFormat,
     Geometry,
@@ -48,6 +49,7 @@ def watch(
     allow_outside: AllowOutside = False,
     geometry: Geometry = GeometryKind.visual,
     packages: Packages = None,
+    deviation: Deviation = None,
     format: PrintedFindings = None,
     fail_on: FailOn = Severity.error,
     jobs: Jobs = None,
@@ -63,7 +65,7 @@ def watch(
     shown = printed(format, otherwise=FindingsFormat.concise)
     files.check_output(output, inputs=[manifest])
     files.check_findings(shown.files, [manifest, output])
-    how = reading(geometry, packages)
+    how = reading(geometry, packages, deviation)
     gate = Gate(shown, fail_on, manifest.parent)
     code, runs = errors.NOT_VERIFIED, 0
     try:

@@ -192,3 +192,27 @@ times ten for chains of nodes."""
 
 UNSCALED = 1e-5
 """Relative difference up to which a scale is 1, as rotations in single precision have it."""
+
+# ---- scenes.step
+
+STEP_BYTES = 1 << 30
+"""Largest STEP file that is read: the largest public ones have a quarter of it, and OpenCASCADE takes twenty times as
+much memory."""
+
+STEP_END = 4096
+"""Bytes at either end of a STEP file in which its first and last keyword stand: comments and blanks may be around."""
+
+STEP_MEMORY = 12 << 30
+"""Bytes of memory that the tessellation of a STEP file may take: beyond, it fails with a message, not the machine."""
+
+STEP_TURN = 0.1
+"""Largest angle (rad) between neighbouring facets of one surface: 63 facets round a circle, which are 0.12 % of its
+radius from it; fits of such are exact to their vertices."""
+
+STEP_EDGES = 0.005
+"""Largest distance of facets from surfaces, as a share of the size of edges: not a length, for what is fine for a watch
+takes all memory for a ship (a ball of 10 m, at 0.01 mm, more than 20 GB)."""
+
+STEP_STATED_TURN = 0.25
+"""As STEP_TURN, where a deviation is stated: still 25 facets round a circle, for 12 are as few as fits know a cylinder
+by."""

@@ -21,7 +21,7 @@ from kinform.model.assembly import Assembly, Mesh, Part
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files that kinform reads itself."""
 
-OTHER_MESHES = (".dae", ".glb", ".gltf", ".ply", ".off")
+OTHER_MESHES = (".dae", ".glb", ".gltf", ".step", ".stp", ".ply", ".off")
 """Suffixes of mesh files that descriptions name besides, and of scenes."""
 
 
@@ -59,7 +59,7 @@ def _check_file(path: Path) -> None:
         raise MeshError([Fault(fault, "write the mesh to a file")])
 
 
-def _parsed(path: Path, data: bytes) -> RawMesh:
+def _parsed(path: Path, data: bytes, reading: Reading = AS_IT_IS) -> RawMesh:
     if not is_mesh(path):
         raise MeshError([Fault(f"is no mesh that kinform reads ({path.suffix or 'no suffix'})", "export STL or OBJ")])
     if path.suffix.lower() == ".stl":
@@ -70,7 +70,7 @@ def _parsed(path: Path, data: bytes) -> RawMesh:
         from kinform.form.scenes.registry import scene_once
         from kinform.form.scenes.scene import whole
 
-        return whole(scene_once(data, path))
+        return whole(scene_once(data, path, reading))
     if path.suffix.lower() in OTHER_MESHES:
         from kinform.form.meshes.by_trimesh import read_by_trimesh
 
@@ -237,7 +237,7 @@ class DesignFiles:
         from kinform.form.scenes.scene import body_names
 
         if path not in self._bodies:
-            scene = scene_once(self._bytes(path), path)
+            scene = scene_once(self._bytes(path), path, self.reading)
             for other in scene.files:
                 self.note(other)
             self._bodies[path] = dict(zip(body_names(scene), (raw for _, raw in scene.meshes), strict=True))
@@ -271,7 +271,7 @@ class DesignFiles:
     def _read(self, path: Path) -> RawMesh:
         if path not in self._raw:
             try:
-                self._raw[path] = _parsed(path, self._bytes(path))
+                self._raw[path] = _parsed(path, self._bytes(path), self.reading)
             except MeshError as error:
                 self._raw[path] = error
             except OSError as error:

@@ -24,6 +24,8 @@ _FORMATS: Mapping[str, str] = {
     ".sdf": "descriptions.tables",
     ".glb": "scenes.tables",
     ".gltf": "scenes.tables",
+    ".step": "scenes.tables",
+    ".stp": "scenes.tables",
 }
 """Module of `form` that reads files of a suffix."""
 
@@ -38,6 +40,8 @@ class Reading:
     geometry: str = "visual"
     packages: tuple[tuple[str, str], ...] = ()
     """Folders of `package://NAME`, by name."""
+    deviation: float | None = None
+    """Largest distance (m) of the facets of a STEP file from its surfaces; None: a share of its edges."""
 
 
 AS_IT_IS = Reading()

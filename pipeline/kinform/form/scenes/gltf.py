@@ -18,6 +18,7 @@ import numpy as np
 from kinform.form.constants import SCENE_TEXT_BYTES
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate
 from kinform.form.scenes.scene import EXPORT, Node, Scene
+from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.meant import in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.words import counted
@@ -30,7 +31,7 @@ _HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "K
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
-def read_gltf(data: bytes, path: Path) -> Scene:
+def read_gltf(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     """The scene of a file at `path`, beside which its buffers lie. Raises MeshError."""
     return _Reader(*_chunks(data), path).scene()
 

@@ -10,11 +10,12 @@ from pathlib import Path
 
 from kinform.form.meshes.raw import Fault, MeshError
 from kinform.form.scenes.scene import EXPORT, Scene
+from kinform.form.sources import AS_IT_IS, Reading
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format, its suffixes, and the module and function of its reader: `read(data, path)`."""
+    """A format, its suffixes, and the module and function of its reader: `read(data, path, reading)`."""
 
     name: str
     suffixes: tuple[str, ...]
@@ -22,18 +23,21 @@ class Format:
     function: str
 
 
-FORMATS = (Format("glTF", (".glb", ".gltf"), "gltf", "read_gltf"),)
+FORMATS = (
+    Format("glTF", (".glb", ".gltf"), "gltf", "read_gltf"),
+    Format("STEP", (".step", ".stp"), "step", "read_step"),
+)
 
 
-def read_scene(data: bytes, path: Path) -> Scene:
+def read_scene(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     """The scene of a file with this content. Raises MeshError, whatever a reader stumbles over."""
     format = next(f for f in FORMATS if path.suffix.lower() in f.suffixes)
     if data.startswith(b"version https://git-lfs"):
         raise MeshError([Fault("is a pointer of Git LFS, not the file", "fetch it: git lfs pull")])
     module = importlib.import_module(f"kinform.form.scenes.{format.module}")
-    read: Callable[[bytes, Path], Scene] = getattr(module, format.function)
+    read: Callable[[bytes, Path, Reading], Scene] = getattr(module, format.function)
     try:
-        return read(data, path)
+        return read(data, path, reading)
     except MeshError:
         raise
     except Exception as error:  # readers of other people, and files that are wrong in ways that nobody thought of
@@ -42,6 +46,6 @@ def read_scene(data: bytes, path: Path) -> Scene:
 
 
 @lru_cache(maxsize=1)
-def scene_once(data: bytes, path: Path) -> Scene:
+def scene_once(data: bytes, path: Path, reading: Reading = AS_IT_IS) -> Scene:
     """As `read_scene`; the last one is kept: its tables are asked for first, its meshes then."""
-    return read_scene(data, path)
+    return read_scene(data, path, reading)

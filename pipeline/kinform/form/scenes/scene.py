@@ -45,6 +45,8 @@ class Scene:
     notes: tuple[str, ...] = ()
     files: tuple[Path, ...] = ()
     """Other files that were read."""
+    shown: str | None = None
+    """The unit in which people know the lengths of this file, where it is another than `units`."""
 
 
 @dataclass(frozen=True, eq=False)

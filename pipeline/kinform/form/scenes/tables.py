@@ -27,7 +27,7 @@ def tables(source: Source) -> SourceTables | None:
         source.problems.add(fault, source.file, None, "write the scene to a file")
         return None
     try:
-        scene = scene_once(source.path.read_bytes(), source.path)
+        scene = scene_once(source.path.read_bytes(), source.path, source.reading)
         parts = parts_of(scene)
     except OSError as error:
         source.problems.add(f"cannot be read: {error.strerror}", source.file, None, "check its permissions")
@@ -44,10 +44,11 @@ def tables(source: Source) -> SourceTables | None:
         message = f"is {suffix}, which has no unit of length"
         source.problems.add(message, source.file, None, "add --units mm; or name it in a manifest: from, and units")
         return None
+    said = source.units or scene.shown or unit
     raw = {
         "schema": 1,
-        "assembly": {"name": source.path.stem.replace("/", "_"), "units": source.units or unit},
-        "part": _part_tables(parts, scene, source, unit),
+        "assembly": {"name": source.path.stem.replace("/", "_"), "units": said},
+        "part": _part_tables(parts, scene, source, unit, said),
     }
     notes = tuple(f"{source.file}: {note}" for note in (*scene.notes, *_renamed(parts)))
     return SourceTables(raw, Places({(): (source.file, 1)}), notes, scene.files, described=False)
@@ -67,10 +68,10 @@ def _can_be(parts: list[ScenePart], source: Source) -> bool:
     return bool(parts) and len(parts) <= PARTS_MOST and not long
 
 
-def _part_tables(parts: list[ScenePart], scene: Scene, source: Source, unit: str) -> list[dict[str, Any]]:
+def _part_tables(parts: list[ScenePart], scene: Scene, source: Source, unit: str, said: str) -> list[dict[str, Any]]:
+    """Parts whose meshes are in `unit`, in a manifest in `said`."""
     bodies = body_names(scene)
     path = Path(os.path.relpath(os.path.realpath(source.path), os.path.realpath(source.folder))).as_posix()
-    said = source.units or unit
     lengths = metres_per(unit) / metres_per(said)
     out = []
     for part in parts:
