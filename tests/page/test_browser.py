@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from support.places import FIXTURES
 from support.validators import npm
+from support.view import drawn, inside, layer, press
 
 
 @pytest.fixture(scope="module")
@@ -47,46 +48,9 @@ def shown(browser, seeker):
     assert browser.run("document.body.dataset.fault") is None
 
 
-DRAWN = """(() => {
-  const stage = document.getElementById('stage'), flat = document.createElement('canvas');
-  flat.width = 160; flat.height = 100;
-  const paint = flat.getContext('2d', {willReadFrequently: true});
-  paint.drawImage(stage, 0, 0, 160, 100);
-  return Array.from(paint.getImageData(0, 0, 160, 100).data);
-})()"""
-
-
-def drawn(browser):
-    """The canvas as (100, 160, 3) numbers."""
-    browser.settle()
-    return np.array(browser.run(DRAWN)).reshape(100, 160, 4)[..., :3]
-
-
-def inside(browser, selector, across=0.5, down=0.5):
-    """A place within an element, in pixels of the window, after it was scrolled into view."""
-    browser.run(f"document.querySelector({selector!r}).scrollIntoView({{block: 'center', behavior: 'instant'}})")
-    browser.settle()
-    box = browser.run(
-        f"(() => {{ const b = document.querySelector({selector!r}).getBoundingClientRect(); "
-        "return [b.left, b.top, b.width, b.height]; })()"
-    )
-    return box[0] + across * box[2], box[1] + down * box[3]
-
-
-def press(browser, selector):
-    """Click on an element."""
-    browser.click(*inside(browser, selector))
-
-
 def chosen(browser):
     """What the page says is chosen."""
     return browser.run("document.getElementById('chosen').textContent")
-
-
-def layer(browser, name, on):
-    """Switch a layer."""
-    if browser.run(f"document.querySelector('[data-layer={name}]').checked") != on:
-        press(browser, f"[data-layer={name}]")
 
 
 def test_the_viewer_starts_and_draws_parts_in_several_colours(shown):
@@ -100,7 +64,6 @@ def test_the_viewer_starts_and_draws_parts_in_several_colours(shown):
 
 def test_a_click_chooses_the_part_that_is_there(shown):
     layer(shown, "joints", False)
-    press(shown, "#tab-parts")
     names = shown.run("[...document.querySelectorAll('[data-hides]')].map((box) => box.getAttribute('aria-label'))")
     others = [k for k, name in enumerate(names) if name != "Show pitch_motor/stator"]
     for k in others:
@@ -200,8 +163,8 @@ def test_the_graph_and_the_view_are_linked_both_ways(shown):
     press(shown, "#graph .node")
     assert chosen(shown).startswith("Body ")
     assert np.abs(drawn(shown) - focus).mean() > 0.5
-    press(shown, "#tab-joints")
-    press(shown, "#panel-joints [data-joint='1']")
+    press(shown, "#joint-1 > summary")
+    press(shown, "#joint-1 [data-joint='1']")
     assert shown.run("document.querySelector('#graph [data-chosen]') !== null")
     assert shown.run("[...document.querySelectorAll('#graph .link[data-chosen]')].map((g) => g.dataset.joint)") == ["1"]
 
@@ -313,7 +276,9 @@ def test_the_page_prints_dark_on_white_without_its_controls(shown):
     dark = [{"name": "prefers-color-scheme", "value": "dark"}]
     shown.ask("Emulation.setEmulatedMedia", media="print", features=dark)
     shown.settle()
-    hidden = "['.tools', 'nav', '.tabs'].every((s) => getComputedStyle(document.querySelector(s)).display === 'none')"
+    hidden = (
+        "['.tools', '.motion', '#theme'].every((s) => getComputedStyle(document.querySelector(s)).display === 'none')"
+    )
     assert shown.run(hidden)
     assert shown.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     assert drawn(shown)[2, 2].tolist() == [255, 255, 255]
@@ -348,12 +313,15 @@ def test_the_page_is_accessible(browser, request, which, dark):
     for mark in ("#mark-list button", "#graph .link"):
         browser.run(f"document.querySelector({mark!r})?.dispatchEvent(new MouseEvent('click', {{bubbles: true}}))")
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
-    for tab in ("tab-joints", "tab-parts", "tab-graph"):
-        browser.run(f"document.getElementById({tab!r}).click()")
+    for width, height in ((1440, 900), (390, 844)):
+        browser.resize(width, height)
+        browser.run("document.querySelector('button[data-finding]').click()")
         browser.run(program + "; 1")
         found = browser.run(
             "axe.run().then((r) => r.violations.filter((v) => ['serious', 'critical'].includes(v.impact))"
             ".map((v) => [v.id, v.nodes.map((n) => n.html.slice(0, 160))]))"
         )
         assert found == []
+        assert browser.run("document.documentElement.scrollWidth") == width
+    browser.resize(1280, 900)
     browser.dark(False)

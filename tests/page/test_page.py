@@ -12,9 +12,11 @@ from support.markup import NASTY, read
 from support.places import FIXTURES
 
 from kinform import results, stages
+from kinform.consistency.comparisons.answers import answers
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
 from kinform.reports.page import Scene, facts, page_html, page_summary
-from kinform.reports.page.agreement import rows
+from kinform.reports.page.agreement import ORDER, rows
+from kinform.reports.page.intended import answer_rows
 
 SEEKER = FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"
 AXIS_OFF = FIXTURES / "broken" / "seeker_axis_off" / "seeker_axis_off.toml"
@@ -183,3 +185,43 @@ def test_the_overlap_that_is_drawn_is_the_one_that_was_measured(derive_design):
     (shape,), (item,) = Scene(design).overlaps, design.contacts.interferences
     a, b, c = (shape.vertices[shape.faces[:, k]] for k in range(3))
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(item.volume, rel=1e-6)
+
+
+def test_a_range_that_is_too_short_stands_beside_the_one_that_is_stated(colliding):
+    row = next(row for row in rows(colliding) if row.name == "yaw")
+    assert row.mark == "disagrees"
+    assert re.search(r"range -31\.\d+° to ", row.behaviour), row.behaviour
+    assert "range -35° to 35°" in row.function, row.function
+
+
+def test_what_disagrees_comes_first_and_tables_and_notes_are_folded(colliding):
+    text = page_html(colliding)
+    marks = re.findall(r'<tr class="([a-z-]+)">\s*<th scope="row">', text.partition('id="agreement"')[2])
+    table = marks[: len(rows(colliding))]
+    assert table[0] == "disagrees"
+    assert table == sorted(table, key=lambda mark: ORDER.index(mark.replace("-", " ")))
+    folds = re.findall(r'<details class="fold[^"]*" id="([a-z-]+)"( open)?>', text)
+    assert {"agreement", "intended", "bodies", "joints", "rules"} <= {name for name, _ in folds}
+    assert not any(is_open for _, is_open in folds)
+
+
+def test_backticks_are_set_as_code_and_markup_within_stays_text(derive_design):
+    design = derive_design(SEEKER)
+    finding = Finding("KF301", "mobility-differs", "error", ("seeker",), "see `kinform show <b>` and a lone ` here")
+    text = page_html(replace(design, report=CheckReport((finding,), design.report.rules)))
+    assert "see <code>kinform show &lt;b&gt;</code> and a lone ` here" in text
+
+
+def test_bodies_stand_with_their_colour_and_intended_joints_with_their_answer(derive_design):
+    design = derive_design(AXIS_OFF)
+    text = page_html(design)
+    bodies = text.partition('id="panel-parts"')[2].partition("</details>")[0]
+    scene = Scene(design)
+    for body, colour in zip(scene.bodies, scene.colours, strict=True):
+        assert re.search(
+            f'style="background:{colour}"></span><button type="button" data-body="\\d+">{body.name}<', bodies
+        )
+    told = {answer.name: answer.answer for answer in answers(design)}
+    assert {row.name: row.answer for row in answer_rows(design)} == told
+    assert answer_rows(design)[0].answer == "contradicts"
+    assert "its axis is elsewhere" in text.partition('id="intended"')[2].partition("</details>")[0]

@@ -167,6 +167,12 @@ class Browser:
         self.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": value}])
         self.settle()
 
+    def resize(self, width: int, height: int) -> None:
+        """Another size of the window."""
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.size = (width, height)
+        self.settle()
+
     def picture(self, path: Path, whole: bool = False) -> None:
         """The window, or the whole page, as PNG."""
         got = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)

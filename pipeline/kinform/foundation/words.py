@@ -17,7 +17,7 @@ def number(value: float, digits: int = 4) -> str:
     return "0" if text == "-0" else text
 
 
-def _unit(size: float, units: str) -> str:
+def length_unit(size: float, units: str) -> str:
     """The unit that shows a length of this size (m) in an assembly of these units."""
     if units in ("in", "ft"):
         return "ft" if units == "ft" and size >= 3.0 else "in"
@@ -28,27 +28,27 @@ def _unit(size: float, units: str) -> str:
 
 def length(value: float, units: str, digits: int = 4) -> str:
     """A length (m) with a unit that suits the assembly: "0.25 mm"."""
-    unit = _unit(abs(value), units)
+    unit = length_unit(abs(value), units)
     return f"{number(value / METRES_PER_UNIT[unit], digits)} {unit}"
 
 
 def place(point: Iterable[float], units: str) -> str:
     """A point (m) as "(12.3, 0, -4) mm"."""
     values = [float(v) for v in point]
-    unit = _unit(max(abs(v) for v in values), units)
+    unit = length_unit(max(abs(v) for v in values), units)
     rounded = (number(round(v / METRES_PER_UNIT[unit], 4), 6) for v in values)
     return f"({', '.join(rounded)}) {unit}"
 
 
 def area(value: float, units: str) -> str:
     """An area (m²): "12.5 mm²"."""
-    unit = _unit(math.sqrt(abs(value)), units)
+    unit = length_unit(math.sqrt(abs(value)), units)
     return f"{number(value / METRES_PER_UNIT[unit] ** 2)} {unit}²"
 
 
 def volume(value: float, units: str) -> str:
     """A volume (m³): "3.2 mm³"."""
-    unit = _unit(abs(value) ** (1.0 / 3.0), units)
+    unit = length_unit(abs(value) ** (1.0 / 3.0), units)
     return f"{number(value / METRES_PER_UNIT[unit] ** 3)} {unit}³"
 
 

@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from kinform.consistency import Comparison, compare_joint
 from kinform.design import Design
 from kinform.foundation import words
+from kinform.function import resolve_joint
+from kinform.model.collisions import RangeEnd
 from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
@@ -22,6 +24,8 @@ MARKS = {
     "agrees": "✓", "disagrees": "✕", "doubtful": "▲", "not decided": "?", "not stated": "–", "not checked": "?",
 }  # fmt: skip
 """What a row says, and its sign."""
+ORDER = ("disagrees", "doubtful", "not decided", "not checked", "agrees", "not stated")
+"""What the page shows first."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,7 @@ class _Table:
         elif found.state == "absent":
             behaviour = "no contact, no joint"
         elif derived is not None:
-            behaviour = self._derived(derived)
+            behaviour = self._derived(derived) + self._range_found(joint)
         else:
             behaviour = found.type + (f", through {', '.join(found.through)}" if found.through else "")
         right = None if found.state in ("stated", "undecided") else found.right_type
@@ -121,6 +125,23 @@ class _Table:
         row = self._judged_by_name(row, names, right)
         ambiguous = row.mark == "agrees" and derived is not None and derived.status == "ambiguous"
         return replace(row, mark="not decided") if ambiguous else row
+
+    def _range_found(self, intended: IntendedJoint) -> str:
+        """ ", range -31° to 90°": how far an intended joint goes, in the designer's sign, where its range is stated."""
+        assembly, kinematics = self.design.assembly, self.design.kinematics
+        if intended.range is None or kinematics is None:
+            return ""
+        resolution = resolve_joint(assembly, kinematics, intended.name)
+        run = self.design.simulation
+        ranges = () if run is None else run.ranges or ()
+        name = None if resolution.joint is None else resolution.joint.name
+        item = next((item for item in ranges if item.joint == name), None)
+        if item is None:
+            return ", range not looked for"
+        if item.status == "unbounded":
+            return ", range free"
+        ends = [_end(intended, resolution.sign, end, self.units) for end in (item.lower, item.upper)]
+        return ", range " + " to ".join(ends if resolution.sign > 0 else ends[::-1])
 
     def _other(self, joint: Joint) -> Row:
         row = self._judged_by_name(Row(joint.name, self._form(joint), self._derived(joint)), {joint.name}, None)
@@ -199,11 +220,17 @@ class _Table:
 
 def _limits(joint: IntendedJoint, units: str) -> str:
     assert joint.range is not None
-    slides = joint.type == "prismatic"
+    return " to ".join(_limit(joint, value, units) for value in joint.range)
 
-    def shown(value: float) -> str:
-        if math.isinf(value):
-            return "free"
-        return words.length(value, units) if slides else words.angle(value, 4)
 
-    return " to ".join(map(shown, joint.range))
+def _limit(joint: IntendedJoint, value: float, units: str) -> str:
+    if math.isinf(value):
+        return "free"
+    return words.length(value, units) if joint.type == "prismatic" else words.angle(value, 4)
+
+
+def _end(joint: IntendedJoint, sign: int, end: RangeEnd, units: str) -> str:
+    """One end of the range that was found, in the designer's sign."""
+    if end.status == "unknown":
+        return "not known"
+    return "free" if end.value is None else _limit(joint, sign * end.value, units)

@@ -9,16 +9,20 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 
 from jinja2 import Environment, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from kinform.design import Design
 from kinform.exports.graph.drawing import graph_legend, graph_panel
+from kinform.model.kinematics import Body
 from kinform.reports.constants import FIT_COLOURS, MOST_PICTURES
-from kinform.reports.page import agreement, facts
+from kinform.reports.page import agreement, facts, intended
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import plot_groups
 from kinform.reports.page.scene import Scene
@@ -26,8 +30,9 @@ from kinform.reports.page.scene_data import embedded_scene
 from kinform.version import __version__
 
 
-def page_html(design: Design, scene: Scene | None = None) -> str:
-    """The report of a design as HTML; `scene` where it was made already."""
+def page_html(design: Design, scene: Scene | None = None, live: str = "") -> str:
+    """The report of a design as HTML; `scene` where it was made already. A page with a `live` number asks the server
+    that it came from whether there is a newer one."""
     scene = scene or Scene(design)
     embedded, blob = embedded_scene(scene)
     program = _asset_program()
@@ -35,22 +40,27 @@ def page_html(design: Design, scene: Scene | None = None) -> str:
     findings = facts.findings(design)
     artist = Artist(scene)
     pictures = {f.index: _data(artist.finding(f.index)) for f in findings[:MOST_PICTURES]}
+    table = sorted(agreement.rows(design), key=lambda row: agreement.ORDER.index(row.mark))
+    answered = intended.answer_rows(design)
+    rules = facts.rules(design)
     template = _environment().from_string(_asset("page.html.j2"))
     return template.render(
         version=__version__,
         design=design,
         name=design.assembly.name,
         verdict=facts.verdict_of(design),
-        agreement=agreement.rows(design),
+        live=live,
+        agreement=table,
+        agreement_counts=_counts((row.mark for row in table), agreement.ORDER),
+        answers=answered,
+        answer_counts=_counts((row.answer for row in answered), intended.ORDER),
         findings=findings,
         pictures={k: Markup(url) for k, url in pictures.items()},
         joints=facts.joints(design),
         assumed=facts.assumptions(design),
-        rules=facts.rules(design),
-        bodies=[
-            (k, body, colour, [(n, p.name) for n, p in enumerate(design.assembly.parts) if p.name in body.parts])
-            for k, (body, colour) in enumerate(zip(scene.bodies, scene.colours, strict=True))
-        ],
+        rules=rules,
+        undecided=[rule for rule in rules if rule.outcome == "inconclusive"],
+        bodies=_bodies(design, scene),
         facets=sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None),
         fits=FIT_COLOURS,
         has_overlaps=bool(embedded["overlaps"]),
@@ -67,9 +77,33 @@ def page_html(design: Design, scene: Scene | None = None) -> str:
     )
 
 
+def _bodies(design: Design, scene: Scene) -> list[tuple[int, Body, str, list[tuple[int, str, str]]]]:
+    """Number, body, colour and parts of each body; a part with its number, its name, and where else it could be."""
+    members = () if design.kinematics is None else design.kinematics.membership
+    doubts = {m.part: f"or of {m.other}" if m.other else "or elsewhere" for m in members if m.either}
+    numbers = {part.name: n for n, part in enumerate(design.assembly.parts)}
+    return [
+        (k, body, colour, [(n, str(p), doubts.get(p, "")) for n, p in sorted((numbers[p], p) for p in body.parts)])
+        for k, (body, colour) in enumerate(zip(scene.bodies, scene.colours, strict=True))
+    ]
+
+
+def _counts(kinds: Iterable[str], order: Sequence[str]) -> str:
+    """ "1 disagrees, 12 agrees", in this order."""
+    found = Counter(kinds)
+    return ", ".join(f"{found[kind]} {kind}" for kind in order if found[kind])
+
+
 @cache
 def _environment() -> Environment:
-    return Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["ticks"] = _ticks
+    return environment
+
+
+def _ticks(text: str) -> Markup:
+    """The text, escaped, with what stands between backticks set as code."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def _asset(name: str) -> str:

@@ -13,6 +13,7 @@ from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.findings import Finding
 from kinform.model.kinematics import Joint
+from kinform.reports import constants
 from kinform.reports.constants import BOX_MARGIN, FIT_COLOURS, MOST_SAMPLES, OVERLAP_COLOUR
 from kinform.reports.page.focus import Focus
 from kinform.reports.page.meshes import Shape
@@ -65,6 +66,13 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
             for item, shape in zip(overlaps, scene.overlaps, strict=True)
         ],
         "findings": [_finding(finding, focus) for finding, focus in zip(found, scene.focuses, strict=True)],
+        "look": {
+            "turn": constants.EYE_TURN,
+            "rise": constants.EYE_RISE,
+            "margin": constants.FINDING_MARGIN,
+            "zoom": constants.FINDING_ZOOM,
+            "shift": constants.FINDING_SHIFT,
+        },
         "motions": [_movement(scene, blob, movement) for movement in scene.movements],
     }
     return plain(drawn), blob.text()
@@ -143,6 +151,7 @@ def _movement(scene: Scene, blob: Blob, movement: Movement) -> dict[str, Any]:
         "time": movement.time,
         "ends": [scale * end for end in movement.ends],
         "unit": unit,
+        "moved": _moved(movement),
         "bodies": [number[name] for name in movement.bodies],
         **_frames(blob, movement.places, movement.turns),
     }
@@ -154,8 +163,17 @@ def _shown(scene: Scene, movement: Movement) -> tuple[float, str]:
         return 1.0, ""
     if movement.angular:
         return 180.0 / math.pi, "°"
-    units = scene.design.assembly.units
-    return 1.0 / metres_per(units), f" {units}"
+    unit = words.length_unit(max(map(abs, movement.ends)), scene.design.assembly.units)
+    return 1.0 / metres_per(unit), f" {unit}"
+
+
+def _moved(movement: Movement) -> str:
+    """What the slider of a movement changes."""
+    if movement.kind == "simulation":
+        return "time"
+    if movement.joint is None:
+        return "share of the way"
+    return "angle" if movement.angular else "travel"
 
 
 def _mesh(blob: Blob, shape: Shape) -> dict[str, Any]:

@@ -8,20 +8,24 @@ const GLSL = {
       layout(location = 1) in vec4 normal;
       uniform mat4 model, view, projection;
       uniform vec3 low, size;
-      out vec3 seen, facing;
+      out vec3 seen, facing, where;
       void main() {
-        vec4 eye = view * model * vec4(low + place * size, 1.0);
+        vec4 world = model * vec4(low + place * size, 1.0);
+        vec4 eye = view * world;
+        where = world.xyz;
         seen = eye.xyz;
         facing = mat3(view) * mat3(model) * normal.xyz;
         gl_Position = projection * eye;
       }`,
     fragment: `#version 300 es
       precision highp float;
-      in vec3 seen, facing;
+      in vec3 seen, facing, where;
       uniform vec3 colour;
+      uniform vec4 cut;
       uniform float ghost, glow, veil;
       out vec4 shown;
       void main() {
+        if (dot(cut.xyz, where) > cut.w) discard;
         vec3 n = normalize(facing);
         vec3 eye = normalize(-seen);
         if (dot(n, eye) < 0.0) n = -n;
@@ -33,24 +37,33 @@ const GLSL = {
         lit += vec3(0.055) * pow(max(dot(reflect(-eye, n), normalize(vec3(-0.35, 0.75, 0.60))), 0.0), 18.0);
         lit = mix(lit, vec3(1.0), glow * (0.10 + 0.35 * rim));
         float dense = mix(1.0, 0.05 + 0.42 * rim * rim, ghost) * veil;
+        // what a cut lays open: the inside of facets, of one tone as a cut face has
+        if (cut.xyz != vec3(0.0) && ghost == 0.0 && !gl_FrontFacing) lit = mix(colour, vec3(0.5), 0.25) * 0.72;
         shown = vec4(lit * dense, dense);
       }`,
   },
-  // Lines where surfaces meet.
+  // Lines where surfaces meet, in the depth that they have: facets are drawn a little further away (polygon offset).
   edge: {
     vertex: `#version 300 es
       layout(location = 0) in vec3 place;
       uniform mat4 model, view, projection;
       uniform vec3 low, size;
+      out vec3 where;
       void main() {
-        gl_Position = projection * view * model * vec4(low + place * size, 1.0);
-        gl_Position.z -= 0.0004 * gl_Position.w;
+        vec4 world = model * vec4(low + place * size, 1.0);
+        vec4 eye = view * world;
+        where = world.xyz;
+        gl_Position = projection * eye;
       }`,
     fragment: `#version 300 es
-      precision mediump float;
-      uniform vec4 colour;
+      precision highp float;
+      in vec3 where;
+      uniform vec4 colour, cut;
       out vec4 shown;
-      void main() { shown = vec4(colour.rgb * colour.a, colour.a); }`,
+      void main() {
+        if (dot(cut.xyz, where) > cut.w) discard;
+        shown = vec4(colour.rgb * colour.a, colour.a);
+      }`,
   },
   // Samples of contact patches: discs that lie in the surface.
   disc: {
@@ -70,7 +83,6 @@ const GLSL = {
         across = corner;
         vec3 world = low + place * size + 1.15 * radius * largest * (corner.x * u + corner.y * v);
         gl_Position = projection * view * model * vec4(world, 1.0);
-        gl_Position.z -= 0.0008 * gl_Position.w;
       }`,
     fragment: `#version 300 es
       precision mediump float;
@@ -103,7 +115,6 @@ const GLSL = {
         vec4 end = corner.x < 0.5 ? a : b;
         along = corner.x;
         gl_Position = end + vec4(side * width / screen * end.w, 0.0, 0.0);
-        gl_Position.z -= 0.0010 * gl_Position.w;
       }`,
     fragment: `#version 300 es
       precision mediump float;

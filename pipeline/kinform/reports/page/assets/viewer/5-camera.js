@@ -1,8 +1,10 @@
 // An eye that goes around what it looks at; z stays up.
 
 class Camera {
-  constructor(low, high) {
-    this.home = { low, high };
+  constructor(low, high, look) {
+    this.home = { low, high, look };
+    // whether the user has come nearer or gone aside since all was last brought into view
+    this.own = false;
     this.whole = Math.max(V.length(V.sub(high, low)), 1e-9);
     this.angle = (28 * Math.PI) / 180;
     this.aspect = 1.4;
@@ -12,14 +14,15 @@ class Camera {
   }
 
   first() {
-    this.turn = -0.95;
-    this.rise = 0.42;
+    this.turn = this.home.look.turn;
+    this.rise = this.home.look.rise;
   }
 
   get wide() { return this.aspect < 1 ? 2 * Math.atan(Math.tan(this.angle / 2) / this.aspect) : this.angle; }
 
   // Come as near as lets all points be seen.
-  fit(points) {
+  fit(points, margin = 1.12) {
+    this.own = false;
     const view = this.view();
     const axes = [[view[0], view[4], view[8]], [view[1], view[5], view[9]], [view[2], view[6], view[10]]];
     const seen = points.map((p) => axes.map((axis) => V.dot(axis, p)));
@@ -28,8 +31,17 @@ class Camera {
     const middle = [0, 1, 2].map((k) => (low[k] + high[k]) / 2);
     this.target = axes.reduce((sum, axis, k) => V.add(sum, V.scale(axis, middle[k])), [0, 0, 0]);
     const up = Math.tan(this.wide / 2), across = up * this.aspect;
-    const needed = seen.map((p) => Math.max(Math.abs(p[0] - middle[0]) / across, Math.abs(p[1] - middle[1]) / up) * 1.12 + p[2] - middle[2]);
+    const needed = seen.map((p) => Math.max(Math.abs(p[0] - middle[0]) / across, Math.abs(p[1] - middle[1]) / up) * margin + p[2] - middle[2]);
     this.distance = Math.max(...needed, this.whole * 0.01);
+  }
+
+  // Whether all points are in the picture.
+  sees(points) {
+    const see = M.multiply(this.projection(), this.view());
+    return points.every((p) => {
+      const [x, y, w] = [0, 1, 3].map((r) => see[r] * p[0] + see[4 + r] * p[1] + see[8 + r] * p[2] + see[12 + r]);
+      return w > 0 && Math.abs(x) <= w && Math.abs(y) <= w;
+    });
   }
 
   get eye() {
@@ -53,6 +65,7 @@ class Camera {
 
   // Shares of the height of the picture.
   pan(dx, dy) {
+    this.own = true;
     const view = this.view();
     const reach = 2 * this.distance * Math.tan(this.angle / 2);
     const right = [view[0], view[4], view[8]], up = [view[1], view[5], view[9]];
@@ -60,6 +73,7 @@ class Camera {
   }
 
   zoom(factor) {
+    this.own = true;
     this.distance = Math.max(this.whole * 0.01, this.distance * factor);
   }
 

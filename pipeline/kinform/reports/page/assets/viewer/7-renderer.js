@@ -41,6 +41,7 @@ class Renderer {
     gl.useProgram(program);
     gl.uniformMatrix4fv(at.view, false, this.view);
     gl.uniformMatrix4fv(at.projection, false, this.projection);
+    if (at.cut) gl.uniform4fv(at.cut, this.cut);
     return at;
   }
 
@@ -67,13 +68,18 @@ class Renderer {
   draw(state) {
     const { gl, scene } = this;
     state.camera.aspect = this.resize();
+    this.cut = state.plane;
     this.begin(state.camera, state.theme.back);
     const opaque = [], ghosts = [];
     scene.parts.forEach((part, k) => {
       const look = state.look(k);
       if (part.mesh >= 0 && look !== "hidden") (look === "ghost" ? ghosts : opaque).push(k);
     });
+    // facets a little further away than they are, by their slope: edges lie on them, and on nothing before them
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 2);
     this.parts(state, opaque, 0);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
     if (state.layers.edges) this.edges(state, opaque, 0.55);
     if (state.layers.overlaps) this.red(state);
     if (state.layers.contacts) this.patches(state);
@@ -167,12 +173,15 @@ class Renderer {
     gl.uniform3fv(at.low, low.slice(0, 3));
     gl.uniform3fv(at.size, size.slice(0, 3));
     gl.uniform1f(at.largest, size[6]);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(-1, -4);
     scene.patches.items.forEach((item, k) => {
       if (state.patchHidden(item)) return;
       gl.uniformMatrix4fv(at.model, false, state.shown[item.body]);
       gl.uniform4f(at.colour, ...(numbered ? colourOfNumber(this.firstPatch + k) : [...state.theme.fits[item.fit], 1]));
       this.discs.draw(item.start, item.count);
     });
+    gl.disable(gl.POLYGON_OFFSET_FILL);
   }
 
   strokes(state, strength = 1, numbered = false) {
@@ -181,10 +190,10 @@ class Renderer {
     gl.uniform2f(at.screen, this.canvas.width / 2, this.canvas.height / 2);
     scene.joints.forEach((joint, k) => {
       if (state.jointHidden(k)) return;
-      const chosen = state.joint === k;
+      const chosen = state.joint === k || state.finding >= 0;
       gl.uniform1f(at.width, (numbered ? 5 : chosen ? 1.9 : 1.1) * this.ratio);
       gl.uniformMatrix4fv(at.model, false, state.shown[joint.bodies[0]]);
-      const colour = numbered ? colourOfNumber(this.firstJoint + k) : [...(chosen ? state.theme.chosen : state.theme.sign), strength];
+      const colour = numbered ? colourOfNumber(this.firstJoint + k) : [...(state.finding >= 0 ? state.theme.overlap : chosen ? state.theme.chosen : state.theme.sign), strength];
       gl.uniform4f(at.colour, ...colour);
       this.signs.draw(...this.ranges[k]);
     });

@@ -3,7 +3,9 @@
 class State {
   constructor(scene, motions) {
     Object.assign(this, { scene, motions });
-    this.camera = new Camera(scene.low, scene.high);
+    this.camera = new Camera(scene.low, scene.high, scene.look);
+    this.cut = { axis: -1, share: 0.5, flipped: false };
+    this.aimed = [];
     this.layers = { edges: true, joints: true, contacts: false, overlaps: true, xray: false };
     this.hidden = new Set();
     this.explosion = 0;
@@ -57,12 +59,35 @@ class State {
     const poses = this.motion ? this.motion.at(this.time) : scene.bodies.map(M.identity);
     const away = this.bodyMiddles.map((c) => V.scale(V.sub(c, this.middle), 1.1 * explosion));
     this.shown = poses.map((pose, b) => M.multiply(M.translation(away[b]), pose));
-    this.spots = this.struck.filter((mark) => mark.local).map((mark) => ({ mark, place: M.point(this.shown[mark.body], mark.local) }));
-    this.colliding = new Set(this.struck.flatMap((mark) => [...mark.numbers]));
-    this.models = scene.parts.map((part, k) => {
+    const finding = this.finding >= 0 ? scene.findings[this.finding] : null;
+    // of a finding its own marks alone
+    const struck = this.struck.filter((mark) => !finding || (finding.meeting.length && finding.meeting.every((name) => mark.parts.includes(name))));
+    this.spots = struck.filter((mark) => mark.local).map((mark) => ({ text: mark.text, place: M.point(this.shown[mark.body], mark.local) }));
+    if (finding?.place && !finding.meeting.length) {
+      const carrier = scene.parts.find((part) => finding.parts.includes(part.name));
+      this.spots.push({ text: "", place: carrier ? M.point(this.shown[carrier.body], finding.place) : finding.place });
+    }
+    this.colliding = new Set(struck.flatMap((mark) => [...mark.numbers]));
+    this.models = this.modelsAt(poses);
+  }
+
+  // Poses of parts with bodies at these poses, and the explosion.
+  modelsAt(poses) {
+    const { scene, explosion } = this;
+    return scene.parts.map((part, k) => {
+      const away = V.scale(V.sub(this.bodyMiddles[part.body], this.middle), 1.1 * explosion);
       const own = V.scale(V.sub(this.middles[k], this.bodyMiddles[part.body]), 0.9 * explosion);
-      return M.multiply(M.translation(own), M.multiply(this.shown[part.body], part.pose));
+      return M.multiply(M.translation(V.add(own, away)), M.multiply(poses[part.body], part.pose));
     });
+  }
+
+  // The plane that cuts: normal and distance; facets beyond it are not drawn.
+  get plane() {
+    const { axis, share, flipped } = this.cut;
+    if (axis < 0) return [0, 0, 0, 1];
+    const normal = [0, 0, 0], way = flipped ? -1 : 1;
+    normal[axis] = way;
+    return [...normal, way * (this.scene.low[axis] + share * (this.scene.high[axis] - this.scene.low[axis]))];
   }
 
   look(k) {
@@ -95,6 +120,10 @@ class State {
   }
 
   overlapHidden(item) {
+    if (this.finding >= 0) {
+      const finding = this.scene.findings[this.finding];
+      if (finding.motion >= 0 || !item.parts.every((name) => finding.parts.includes(name))) return true;
+    }
     return item.parts.some((name) => this.hidden.has(this.scene.parts.findIndex((part) => part.name === name)));
   }
 
@@ -117,25 +146,59 @@ class State {
     const meeting = finding.meeting.map((name) => this.scene.parts.findIndex((part) => part.name === name)).sort((a, b) => size(b) - size(a));
     if (meeting.length > 1) this.focus.delete(meeting[0]);
     for (const n of parts) this.hidden.delete(n);
-    this.fit(parts);
+    this.place();
+    this.camera.first();
+    this.aim(parts);
+  }
+
+  // Look at these parts, as the picture of the chosen finding does where one is chosen.
+  aim(parts = this.aimed) {
+    this.aimed = parts;
+    const finding = this.finding >= 0 ? this.scene.findings[this.finding] : null;
+    if (!finding) {
+      this.fit(parts);
+      return;
+    }
+    const { margin, zoom, shift } = this.scene.look;
+    this.camera.fit(this.extent(parts), margin);
     if (finding.place && parts.length) {
-      this.camera.target = V.scale(V.add(this.camera.target, finding.place), 0.5);
-      this.camera.distance *= 0.9;
+      this.camera.target = V.add(V.scale(this.camera.target, 1 - shift), V.scale(finding.place, shift));
+      this.camera.distance /= zoom;
     }
   }
 
   // Look at parts at their present pose; at all that are shown where the list is empty.
   fit(parts) {
+    this.aimed = parts;
+    this.camera.fit(this.extent(parts));
+  }
+
+  // Look at all that is shown, wherever the motion takes it.
+  fitMotion() {
+    this.aimed = [];
+    this.camera.fit(this.sweep());
+  }
+
+  // Corners of the boxes of all that is shown, over the whole motion.
+  sweep() {
+    const { motion } = this;
+    if (!motion) return this.extent([]);
+    const steps = Array.from({ length: 13 }, (_, k) => motion.start + (k / 12) * (motion.end - motion.start));
+    return steps.flatMap((time) => this.extent([], this.modelsAt(motion.at(time))));
+  }
+
+  // Corners of the boxes of parts, or of all that are shown.
+  extent(parts, models = this.models) {
     const list = parts.length ? parts : this.scene.parts.map((_, k) => k).filter((k) => !this.hidden.has(k));
     const points = [];
     for (const k of list) {
       const part = this.scene.parts[k];
       if (part.mesh < 0) continue;
       const mesh = this.scene.meshes[part.mesh];
-      for (let c = 0; c < 8; c++) points.push(M.point(this.models[k], [0, 1, 2].map((i) => mesh.low[i] + ((c >> i) & 1) * mesh.size[i])));
+      for (let c = 0; c < 8; c++) points.push(M.point(models[k], [0, 1, 2].map((i) => mesh.low[i] + ((c >> i) & 1) * mesh.size[i])));
     }
     const { low, high } = this.scene;
     if (!points.length) for (let c = 0; c < 8; c++) points.push([0, 1, 2].map((i) => (((c >> i) & 1) ? high : low)[i]));
-    this.camera.fit(points);
+    return points;
   }
 }

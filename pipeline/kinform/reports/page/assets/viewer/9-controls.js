@@ -11,7 +11,13 @@ class Controls {
     this.tools();
     this.motion();
     this.graph();
-    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+    new ResizeObserver(() => {
+      if (!this.state.camera.own) {
+        this.state.camera.aspect = this.renderer.resize();
+        this.reframe();
+      }
+      this.redraw();
+    }).observe(this.canvas);
     for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", () => { this.theme(); this.paint(); });
   }
 
@@ -25,10 +31,42 @@ class Controls {
     this.state.place();
     this.renderer.draw(this.state);
     this.label();
+    this.axes();
     const { gl } = this.renderer;
     const fault = gl.getError();
     if (fault && !gl.isContextLost()) document.body.dataset.fault = String(fault);
     document.body.dataset.frames = String(Number(document.body.dataset.frames || 0) + 1);
+  }
+
+  // The directions of x, y and z, in the corner.
+  axes() {
+    const view = this.state.camera.view();
+    const box = this.id("triad");
+    for (let k = 0; k < 3; k++) {
+      const x = view[4 * k], y = -view[4 * k + 1], behind = view[4 * k + 2] < -1e-6;
+      const line = box.children[2 * k], text = box.children[2 * k + 1];
+      line.setAttribute("x2", (21 * x).toFixed(2));
+      line.setAttribute("y2", (21 * y).toFixed(2));
+      text.setAttribute("x", (29 * x).toFixed(2));
+      text.setAttribute("y", (29 * y).toFixed(2));
+      line.classList.toggle("behind", behind);
+      text.classList.toggle("behind", behind);
+    }
+  }
+
+  // What was brought into view, again: the picture has another shape.
+  reframe() {
+    const { state } = this;
+    state.place();
+    if (state.aimed.length || state.finding >= 0) state.aim();
+    else state.fitMotion();
+  }
+
+  // Everything stays in the picture, wherever the explosion and the motion take it.
+  keep() {
+    const { state } = this;
+    state.place();
+    if (!state.camera.own || !state.camera.sees(state.sweep())) state.fitMotion();
   }
 
   theme() {
@@ -78,7 +116,7 @@ class Controls {
       mark(`[data-finding="${index}"]`);
     }
     this.id("chosen").textContent = text || "Nothing is chosen";
-    const chosen = document.querySelector("#lists [data-chosen]");
+    const chosen = document.querySelector(".panel [data-chosen]");
     if (chosen) this.reveal(chosen);
     this.redraw();
   }
@@ -97,7 +135,7 @@ class Controls {
   // Scrolls the list, never the page.
   reveal(element) {
     const box = element.closest(".panel");
-    if (!box || box.hidden) return;
+    if (!box || !box.clientHeight) return;
     const top = element.getBoundingClientRect().top - box.getBoundingClientRect().top;
     if (top < 0 || top > box.clientHeight - 24) box.scrollTop += top - box.clientHeight / 2;
   }
@@ -197,9 +235,10 @@ class Controls {
       ArrowDown: (e) => (e.shiftKey ? camera.pan(0, -0.06) : camera.orbit(0, -0.12)),
       "+": () => camera.zoom(0.85), "=": () => camera.zoom(0.85), "-": () => camera.zoom(1.18),
       "1": () => camera.from("front"), "2": () => camera.from("right"), "3": () => camera.from("top"),
-      "0": () => { camera.first(); state.fit([]); },
+      "0": () => { camera.first(); state.fitMotion(); },
       f: () => this.fit(), x: () => this.flip("xray"), c: () => this.flip("contacts"), a: () => this.flip("joints"),
       e: () => this.explode(state.explosion > 0 ? 0 : 0.6),
+      k: () => this.cutAway((state.cut.axis + 2) % 4 - 1),
       h: () => this.hide(), s: () => this.showAll(),
       p: (e) => this.choose("part", step(state.scene.parts.length, state.part, e.shiftKey ? -1 : 1)),
       j: (e) => state.scene.joints.length && this.choose("joint", step(state.scene.joints.length, state.joint, e.shiftKey ? -1 : 1)),
@@ -218,45 +257,40 @@ class Controls {
   // ---- lists and layers
 
   lists() {
-    const go = (event) => {
-      const element = event.target.closest("[data-part],[data-joint],[data-body]");
-      if (!element || event.target.tagName === "INPUT") return;
-      const kind = ["part", "joint", "body"].find((name) => name in element.dataset);
+    const main = this.id("main");
+    main.addEventListener("click", (event) => {
+      const element = event.target.closest("button[data-part],button[data-joint],button[data-body],button[data-finding]");
+      if (!element) return;
+      const kind = ["part", "joint", "body", "finding"].find((name) => name in element.dataset);
       this.choose(kind, Number(element.dataset[kind]));
-    };
-    this.id("lists").addEventListener("click", go);
-    this.id("lists").addEventListener("change", (event) => {
+      this.show();
+    });
+    main.addEventListener("change", (event) => {
       const { hides } = event.target.dataset;
       if (hides === undefined) return;
       if (event.target.checked) this.state.hidden.delete(Number(hides));
       else this.state.hidden.add(Number(hides));
       this.redraw();
     });
-    document.querySelectorAll("button[data-finding]").forEach((button) => button.addEventListener("click", () => {
-      this.choose("finding", Number(button.dataset.finding));
-      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
-    }));
-    document.querySelectorAll("button[data-show-joint]").forEach((button) => button.addEventListener("click", () => {
-      this.choose("joint", Number(button.dataset.showJoint));
-      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
-    }));
-    const tabs = [...document.querySelectorAll("[role=tab]")];
-    const open = (tab) => tabs.forEach((other) => {
-      const on = other === tab;
-      other.setAttribute("aria-selected", String(on));
-      other.tabIndex = on ? 0 : -1;
-      this.id(other.getAttribute("aria-controls")).hidden = !on;
+    // a link to a finding opens what it is folded in, and goes there in the view
+    const follow = () => {
+      const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+      for (let box = target; box; box = box.parentElement) if (box.tagName === "DETAILS") box.open = true;
+      target?.scrollIntoView({ block: "start" });
+      const button = target?.querySelector("button[data-finding]");
+      if (button) this.choose("finding", Number(button.dataset.finding));
+    };
+    addEventListener("hashchange", follow);
+    main.addEventListener("click", (event) => {
+      const link = event.target.closest("a[href^='#']");
+      if (link && link.hash === location.hash) follow();
     });
-    tabs.forEach((tab, k) => {
-      tab.addEventListener("click", () => open(tab));
-      tab.addEventListener("keydown", (event) => {
-        const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-        if (!way) return;
-        const next = tabs[(k + way + tabs.length) % tabs.length];
-        open(next);
-        next.focus();
-      });
-    });
+  }
+
+  // Brings the view into the window where it stands above the lists.
+  show() {
+    const box = this.id("view").getBoundingClientRect();
+    if (box.top < -40 || box.bottom > innerHeight + 200) this.id("view").scrollIntoView({ block: "start", behavior: "smooth" });
   }
 
   hide() {
@@ -286,6 +320,15 @@ class Controls {
       });
     }
     this.id("explode").addEventListener("input", (event) => this.explode(Number(event.target.value) / 100));
+    this.id("cut").addEventListener("change", (event) => this.cutAway(Number(event.target.value)));
+    this.id("cut-at").addEventListener("input", (event) => {
+      this.state.cut.share = Number(event.target.value) / 1000;
+      this.redraw();
+    });
+    this.id("cut-flip").addEventListener("click", () => {
+      this.state.cut.flipped = !this.state.cut.flipped;
+      this.section(this.state.cut.axis);
+    });
     this.id("fit").addEventListener("click", () => this.fit());
     this.id("hide").addEventListener("click", () => this.hide());
     this.id("show-all").addEventListener("click", () => this.showAll());
@@ -297,6 +340,24 @@ class Controls {
     });
   }
 
+  // Cuts across an axis, and takes away the side that is nearer to the eye.
+  cutAway(axis) {
+    const { camera, cut } = this.state;
+    cut.flipped = axis >= 0 && camera.eye[axis] < camera.target[axis];
+    this.section(axis);
+  }
+
+  // Cuts across an axis, x is 0; nowhere for −1.
+  section(axis) {
+    const { cut } = this.state;
+    cut.axis = axis;
+    this.id("cut").value = String(axis);
+    this.id("cut-at").value = String(Math.round(1000 * cut.share));
+    this.id("cut-flip").setAttribute("aria-pressed", String(cut.flipped));
+    this.id("cut-at").disabled = this.id("cut-flip").disabled = axis < 0;
+    this.redraw();
+  }
+
   flip(layer) {
     const box = document.querySelector(`[data-layer="${layer}"]`);
     box.checked = !box.checked;
@@ -306,12 +367,14 @@ class Controls {
   explode(share) {
     this.state.explosion = share;
     this.id("explode").value = String(Math.round(100 * share));
+    this.keep();
     this.redraw();
   }
 
   fit() {
     const { state } = this;
-    state.fit(state.part >= 0 ? [state.part] : []);
+    if (state.part >= 0) state.fit([state.part]);
+    else state.fitMotion();
     this.redraw();
   }
 
@@ -329,11 +392,6 @@ class Controls {
       this.go(motion.start + (Number(event.target.value) / 1000) * (motion.end - motion.start));
     });
     if (select.options.length > 1) this.pickMotion(Number(select.options[1].value), false);
-    document.querySelectorAll("button[data-motion]").forEach((button) => button.addEventListener("click", () => {
-      select.value = button.dataset.motion;
-      this.pickMotion(Number(button.dataset.motion), true);
-      this.id("stage-box").scrollIntoView({ block: "center", behavior: "smooth" });
-    }));
   }
 
   pickMotion(index, play) {
@@ -343,6 +401,7 @@ class Controls {
     const { motion } = state;
     this.id("play").disabled = this.id("time").disabled = !motion;
     this.id("motion-note").textContent = motion?.note ?? "";
+    this.id("moved").textContent = motion?.moved ?? "time";
     this.listMarks(motion);
     if (!motion) {
       this.play(false);
@@ -350,6 +409,7 @@ class Controls {
       return;
     }
     this.direction = 1;
+    this.keep();
     this.go(motion.kind === "simulation" ? motion.start : 0);
     this.play(play);
   }
@@ -395,7 +455,7 @@ class Controls {
     const { state, canvas } = this;
     const box = this.id("spots");
     const see = M.multiply(state.camera.projection(), state.camera.view());
-    const texts = new Map(state.spots.map(({ mark, place }) => [mark.text, place]));
+    const texts = new Map(state.spots.filter(({ text }) => text).map(({ text, place }) => [text, place]));
     const old = new Map([...box.children].map((child) => [child.textContent, child]));
     for (const [text, child] of old) if (!texts.has(text)) child.remove();
     for (const [text, place] of [...texts].slice(0, 12)) {

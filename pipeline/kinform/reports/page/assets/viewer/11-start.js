@@ -8,9 +8,10 @@ async function start() {
   const controls = new Controls(new State(scene, motions), renderer);
   canvas.addEventListener("webglcontextlost", () => { document.body.dataset.viewer = "lost"; });
   controls.state.camera.aspect = renderer.resize();
-  controls.state.fit([]);
+  controls.reframe();
   controls.paint();
   performance.mark("viewer ready");
+  follow(controls);
   document.body.dataset.viewer = "ready";
   return controls;
 }
