@@ -264,7 +264,13 @@ def test_a_rule_fires_on_a_wrong_design_and_not_on_one_like_it(derive_design, co
 
 
 ELSEWHERE = {
+    "KF123": "tests/descriptions/test_described.py",
+    "KF124": "tests/descriptions/test_described.py",
+    "KF130": "tests/descriptions/test_described.py",
+    "KF131": "tests/descriptions/test_described.py",
+    "KF132": "tests/descriptions/test_described.py",
     "KF411": "tests/consistency/test_couplings.py",
+    "KF415": "tests/descriptions/test_described.py",
     "KF412": "tests/collisions/test_ranges.py",
     "KF450": "tests/cli/test_change.py",
     "KF505": "tests/collisions/test_ranges.py",

@@ -114,3 +114,67 @@ ENERGY_SOLVED = 1e-6
 exchanged."""
 NO_ENERGY = 1e-15
 """Energy exchanged (J) below which there is nothing to compare."""
+
+# --- comparisons/masses: KF110, KF123, KF124 --------------------------------------------------------------------------
+
+DENSEST = 23000.0
+"""kg/m³: osmium has 22 600. Nothing has more mass over the volume of its convex hull, in which all of it is."""
+HEAVY = 12000.0
+"""kg/m³ above which what closed meshes enclose is doubted: lead has 11 340; a screw or a motor that is not drawn makes
+a small part heavy."""
+LIGHT = 5.0
+"""kg/m³ below which what closed meshes enclose is doubted: the lightest foams have 10; hollow links of public robots
+have 100 and more."""
+WRONG_SCALE = 1e9
+"""By so much a density is off where a mesh is in metres and is in millimetres, or the other way round."""
+SCALE_SPREAD = 50.0
+"""Factor about `WRONG_SCALE` within which a density says a wrong unit: hulls of 10 to 25 000 kg/m³ are right ones."""
+HULL_DENSITY = 500.0
+"""kg/m³: mass over the volume of the convex hull, as parts of robots have it; in the middle of what there is."""
+SCALE_OUTLIER = 20.0
+"""Factor by which a shape with such a density must also be larger or smaller than the middle one of the others: what a
+placeholder of a nanogram is stated for is not."""
+INERTIA_LARGE = 1.001
+"""Share of m·r² (r from the centre of mass to the farthest point of the hull) above which half the trace of an inertia
+is impossible: rounding of stated numbers."""
+INERTIA_FAR = 30.0
+"""Factor by which an inertia may be below or above that of the same mass, spread evenly over the shape, before it is
+doubted: hollow shells have up to 3, dense motors in light shells down to a tenth."""
+CENTRE_OUTSIDE = 0.03
+"""Share of the size by which a centre of mass may lie outside of the hull: pieces that are not drawn, rounding."""
+
+# --- comparisons/gathering --------------------------------------------------------------------------------------------
+
+ALIKE_MOST = 3
+"""Findings of one kind in one description that are told one by one; more are one finding, of the worst."""
+
+# --- rules/kf130_collision_geometry_differs ---------------------------------------------------------------------------
+
+BARE_SHARE = 0.15
+"""Share of the visual's area that may lie outside of the collision geometry: rounded covers by boxes stay below."""
+BARE_DEPTH = 0.10
+"""Share of the link's size by which it may reach out there."""
+FAR_BEYOND = 0.30
+"""Share of the link's size by which collision geometry may reach beyond the visual: boxes and cylinders around slender
+links."""
+THOUSAND = 1000.0
+"""Metres over millimetres."""
+THOUSAND_SPREAD = 5.0
+"""Factor about it within which two sizes of one link say so."""
+
+# --- comparisons/sides, rules/kf132_sides_not_mirrored ----------------------------------------------------------------
+
+MIRRORED = 2e-3
+"""Share of the span of all pairs by which a frame may be off its mirror image: rounded numbers."""
+PLANE_NEAR = math.cos(math.radians(15.0))
+"""Cosine of the angle within which the plane of symmetry is across an axis of the first link: robots are drawn so."""
+MIRRORED_ANGLE = math.radians(0.5)
+"""rad by which an axis may be off its mirror image."""
+SAME_LOOK = 0.02
+"""Share of a link's size by which its geometry may be off the image of the other side: screws, labels, connectors."""
+SAME_MASS = 0.02
+"""Relative difference of masses of two sides."""
+SAME_CENTRE = 0.02
+"""Share of the size by which a centre of mass may be off the image of the other side's."""
+SAME_INERTIA = 0.10
+"""Relative difference of inertias of two sides, products included."""

@@ -15,6 +15,7 @@ import numpy as np
 
 from kinform.consistency.comparisons.couplings import coupled_through
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of, compare_joint
+from kinform.consistency.comparisons.links import Weighed, weighed
 from kinform.consistency.comparisons.plausibility import Doubt, doubts
 from kinform.consistency.outcome import Answer, Outcome, inconclusive, skipped, triple
 from kinform.design import Design
@@ -31,7 +32,8 @@ Need = Literal[
     "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",
     "simulation", "motion", "comparisons", "stated mobility", "stated joints", "stated ranges", "stated couplings",
     "stated drives", "stated loads", "stated assumptions", "stated initial values", "inferred fasteners",
-    "several parts", "stated mobility of sub-assemblies",
+    "several parts", "stated mobility of sub-assemblies", "descriptions", "weighed shapes", "collision geometry",
+    "described limits",
 ]  # fmt: skip
 """What a rule may need of a design: meshes, results of stages, something that the manifest states."""
 APPLIES: dict[Need, tuple[Callable[[Context], object], str]] = {
@@ -58,6 +60,16 @@ APPLIES: dict[Need, tuple[Callable[[Context], object], str]] = {
     "stated initial values": (
         lambda c: c.assembly.simulation is not None and c.assembly.simulation.initial,
         "no initial value is stated",
+    ),
+    "descriptions": (lambda c: c.assembly.descriptions, "no source is a robot description"),
+    "weighed shapes": (lambda c: c.weighed, "nothing with a mesh has a stated mass"),
+    "collision geometry": (
+        lambda c: any(link.collisions for d in c.assembly.descriptions for link in d.links),
+        "no description has collision geometry",
+    ),
+    "described limits": (
+        lambda c: any(j.needs_limits or j.limits for d in c.assembly.descriptions for j in d.joints),
+        "no description states limits of joints",
     ),
     "inferred fasteners": (lambda c: c.assembly.infer_fasteners, "the manifest does not ask to infer fasteners"),
 }
@@ -148,6 +160,11 @@ class Context:
     def overridden(self) -> tuple[tuple[Part, MassOverride], ...]:
         """Parts with a mesh whose mass is stated, with what is stated."""
         return tuple((p, p.override) for p in self.assembly.parts if p.mesh is not None and p.override is not None)
+
+    @cached_property
+    def weighed(self) -> tuple[Weighed, ...]:
+        """Parts and groups with meshes whose mass is stated."""
+        return tuple(weighed(self.assembly))
 
     @cached_property
     def shaped(self) -> frozenset[str]:

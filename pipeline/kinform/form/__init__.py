@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 9
+CODE_VERSION: int = 10
 """Bumped when results change."""
 
 _LAZY = {

@@ -216,3 +216,18 @@ takes all memory for a ship (a ball of 10 m, at 0.01 mm, more than 20 GB)."""
 STEP_STATED_TURN = 0.25
 """As STEP_TURN, where a deviation is stated: still 25 facets round a circle, for 12 are as few as fits know a cylinder
 by."""
+
+# ---- descriptions.coverage, readers.described
+
+UNCOVERED_DEPTH = 0.01
+"""Share of a link's size by which its visual may reach out of the collision geometry and counts as covered: facets of
+primitives and of simplified meshes."""
+
+SIBLINGS_MOST = 300
+"""Files of a package that are looked through for the names of meshes, at most."""
+
+SIBLING_BYTES = 4 * 1024 * 1024
+"""Of each of these files, at most."""
+
+COVERED_FACETS = 2000
+"""Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second, third, …"""

@@ -14,7 +14,7 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
 from kinform.foundation.meant import did_you_mean, in_quotes
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular import listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
 
@@ -130,6 +130,10 @@ class DesignFiles:
         self.problems = problems
         self.reading = reading
         self.names: set[str] = set()
+        self.listed: set[Path] = set()
+        """Folders whose list of files was read."""
+        self.unsettled = False
+        """Something counts that is no file that was read: nothing may be taken for unchanged."""
         self._allowed: set[Path] = set()
         self._outside = allow_outside
         self._earlier = earlier or {}
@@ -198,11 +202,24 @@ class DesignFiles:
         return self._digests.get(path)
 
     def contents(self) -> dict[str, str]:
-        """SHA-256 (hex) of every file that was read; {} where one changed meanwhile, or was not read."""
+        """SHA-256 (hex) of every file that was read, and of the list of each folder that was, with "/" at the end of
+        its name; {} where one changed meanwhile, or was not read."""
+        if self.unsettled:
+            return {}
         if any(not is_mesh(path) and _digest(path) != digest for path, digest in self._digests.items()):
             return {}
         contents = {self.shown(path): digest for path, digest in self._digests.items()}
-        return contents if set(contents) == self.names else {}
+        if set(contents) != self.names:
+            return {}
+        return contents | {self.shown(folder) + "/": listing(folder) for folder in sorted(self.listed)}
+
+    def loose(self, path: Path) -> RawMesh | None:
+        """The facets of a mesh file that no part is; None where it may not be read. Raises MeshError and OSError."""
+        if not self._outside and not any(self._inside(path, root) for root in {self.top, *self._allowed}):
+            return None
+        self.note(path)
+        self._mesh_content(path)
+        return self._read(path)
 
     def mesh(self, path: Path, use: MeshUse, file: str, line: int) -> Mesh | None:
         """The mesh of a file that `find` gave; None after noting its faults at the manifest's line."""

@@ -26,8 +26,8 @@ def reload_meshes(
 
     `earlier` is what the present code read of the manifest when its files had these `contents`.
     """
-    if path.name not in contents or set(contents) != set(earlier.files):
-        return None
+    if earlier.descriptions or path.name not in contents or set(contents) != set(earlier.files):
+        return None  # of a description, meshes count that are no parts
     problems = Problems()
     files = DesignFiles(path.parent, problems, allow_outside, earlier_meshes(earlier, contents))
     meshes = []

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from kinform.form.descriptions.facts import Facts
     from kinform.form.problems import Problems
     from kinform.form.readers.places import Places
 
@@ -76,6 +77,8 @@ class SourceTables:
     """Folders in which its meshes may lie, besides that of the source."""
     described: bool = True
     """Whether this is a robot description: what it says of links and joints is meant to be all."""
+    facts: Facts | None = None
+    """What a robot description says word for word."""
 
 
 def is_source(path: Path) -> bool:

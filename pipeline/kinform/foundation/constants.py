@@ -111,3 +111,11 @@ MEANT_NAMES = 2
 """Names that are proposed, at most."""
 LISTED_NAMES = 12
 """Known names that are listed where none is close."""
+
+# --- meshes/hulls -----------------------------------------------------------------------------------------------------
+
+HULL_POINTS = 4096
+"""Points that are held against the planes of a hull at once: memory, no result depends on it."""
+HULL_THICKNESS = 1e-7
+"""Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below what any
+mesh is exact to."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import stat
 from pathlib import Path
@@ -20,3 +21,8 @@ def not_a_file(path: str | Path) -> str | None:
     if stat.S_ISFIFO(mode):
         return "is a pipe, not a file"
     return f"is a {'socket' if stat.S_ISSOCK(mode) else 'device'}, not a file"
+
+
+def listing(folder: str | os.PathLike[str]) -> str:
+    """SHA-256 (hex) of the names in a folder. Raises OSError where it cannot be listed."""
+    return hashlib.sha256("\0".join(sorted(os.listdir(folder))).encode("utf-8", "surrogateescape")).hexdigest()

@@ -13,6 +13,7 @@ import numpy as np
 
 from kinform.model.arrays import Array, Ints
 from kinform.model.checks import CheckSettings
+from kinform.model.descriptions import Description
 from kinform.model.function import Function, SimulationRequest
 from kinform.model.names import PartName
 from kinform.model.quantities import XYZ, Direction, Inertia, Metres, Place, columns
@@ -250,6 +251,8 @@ class Assembly:
     """What the reader did on its own account, in sentences."""
     check: CheckSettings = field(default=CheckSettings())
     """How the rules are applied."""
+    descriptions: tuple[Description, ...] = field(default=())
+    """What robot descriptions among the sources say word for word."""
 
     @cached_property
     def lost(self) -> frozenset[PartName]:

@@ -79,7 +79,7 @@ SIMULATION = Stage(
 )
 FINDINGS = Stage(
     "findings",
-    code={"findings": ("consistency", "statics", *MOTION)},
+    code={"findings": ("consistency", "statics", "mass", *MOTION)},
     fills=("report",),
     needs=("surfaces", "contacts", "joints", "mass", "the simulated motion"),
 )

@@ -12,7 +12,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from kinform.foundation.regular import not_a_file
+from kinform.foundation.regular import listing, not_a_file
 from kinform.reuse import fingerprints
 from kinform.reuse.dependence import STAGES, Stage
 from kinform.reuse.digest import digest
@@ -48,6 +48,10 @@ def _same(top: Path, files: Mapping[str, str], *, allow_outside: bool) -> bool:
         times = {name: os.stat(os.path.join(top, name)).st_mtime_ns for name in files}
         for name in sorted(files, key=lambda name: -times[name]):
             path = os.path.join(top, name)
+            if name.endswith("/"):
+                if listing(path) != files[name]:
+                    return False
+                continue
             if not allow_outside:
                 folder, base = os.path.split(path)
                 if folder not in folders:

@@ -88,6 +88,7 @@ def _bare(assembly: Assembly) -> Assembly:
         files=(),
         notes=(),
         check=CheckSettings(),
+        descriptions=(),
     )
 
 

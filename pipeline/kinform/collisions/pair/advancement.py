@@ -240,7 +240,7 @@ class _Search:
         since = {pair: self.since[pair] for pair in crossing.shared}
         began = sorted({step for step in since.values() if step is not None}, reverse=True)
         near = constants.TOGETHER * crossing.slack + 2.0 * resolution
-        for earliest, before in zip(began, [*began[1:], None], strict=True):
+        for earliest, before in zip(began, [*began[1:], None][: len(began)], strict=True):
             if before is not None and self.course.travel(earliest[0]) - self.course.travel(before[1]) <= near:
                 continue
             newest = frozenset(pair for pair, step in since.items() if step is not None and step >= earliest)

@@ -7,6 +7,7 @@ any size, and no size proves a mistake; nothing but these doubts depends on it:
   largest land machines): a warning. A device of 50 mm read in metres is about 50 m across, with some 10 000 m³;
 - below 3 mm across, unless the unit is um (then 3 um): a warning;
 - one part a hundred times larger than all others together: a warning;
+- a part or link whose stated mass would be right if its mesh were a thousand times smaller or larger: an error;
 - parts of two sizes, a thousand times apart, with a hundred times between the two sorts: an error. Some are in metres,
   the others in millimetres.
 """
@@ -18,8 +19,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.consistency.constants import LARGE, MASSIVE, MIXED, OUTLIER, TINY, TINY_ELSE
-from kinform.foundation.words import length, quoted, volume
+from kinform.consistency.comparisons.links import weighed
+from kinform.consistency.constants import (
+    HULL_DENSITY,
+    LARGE,
+    MASSIVE,
+    MIXED,
+    OUTLIER,
+    SCALE_OUTLIER,
+    SCALE_SPREAD,
+    TINY,
+    TINY_ELSE,
+    WRONG_SCALE,
+)
+from kinform.foundation.words import length, mass, number, quoted, volume
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
 
@@ -38,12 +51,39 @@ class Doubt:
 def doubts(assembly: Assembly) -> tuple[Doubt, ...]:
     """What is implausible about the sizes of the assembly and of its parts; stick models by the points
     of their intended joints."""
+    scaled = tuple(_scaled(assembly))
+    if scaled:
+        return scaled
     size = extent(assembly)
     whole = _of_the_whole(assembly, size) if size is not None else None
     mixed = _mixed(assembly)
     if mixed is not None:
         return (mixed,)
     return (whole,) if whole is not None else tuple(_outliers(assembly))
+
+
+def _scaled(assembly: Assembly) -> Iterator[Doubt]:
+    """Shapes whose stated mass says that they are off by a thousand: their hull would weigh so much times too little
+    or too much."""
+    bodies = [body for body in weighed(assembly) if body.size > 0.0]
+    for body in bodies:
+        if not body.possible or body.hull is None or body.hull.volume <= 0.0:
+            continue
+        others = sorted(other.size for other in bodies if other is not body)
+        middle = others[len(others) // 2] if others else 0.0
+        if middle > 0.0 and 1.0 / SCALE_OUTLIER < body.size / middle < SCALE_OUTLIER:
+            continue
+        density = body.mass / body.hull.volume
+        for factor, other in ((WRONG_SCALE, "smaller"), (1.0 / WRONG_SCALE, "larger")):
+            if not 1.0 / SCALE_SPREAD < density * factor / HULL_DENSITY < SCALE_SPREAD:
+                continue
+            text = length(body.size, assembly.units)
+            message = (
+                f"the geometry of {body.what} is {text} across, and with its stated {mass(body.mass)} that is "
+                f"{number(density, 2)} kg/m³; 1000 times {other} it would be {number(density * factor, 2)} kg/m³"
+            )
+            first = max(body.parts, key=lambda part: 0.0 if part.mesh is None else part.mesh.diagonal)
+            yield Doubt("error", (body.name, str(first.name)), message, f"{text} across", first.source)
 
 
 def extent(assembly: Assembly) -> float | None:

@@ -3,7 +3,8 @@
 A warning above 20 m across, above 1000 m³ of solid material, below 3 mm (3 um with `units = "um"`), or when one
 part is 100 times larger than all others together. An error where sizes of parts differ by more than 1000, and are of
 two sorts with a factor of 100 between: rules about contacts, joints and motion are then inconclusive, unless the
-manifest states `tolerances.contact`. Stick models are measured by the points of their joints.
+manifest states `tolerances.contact`. Likewise where the stated mass of a part or link fits its geometry only if that
+were 1000 times smaller or larger. Stick models are measured by the points of their joints.
 
 Why it matters: mesh files carry no unit. Contacts and joints are the same at any size, but masses are wrong by 10⁹ at a
 wrong one, and so are forces and times. Parts in different units do not meet at all.
@@ -28,7 +29,9 @@ def check(context: Context) -> Findings:
             found=doubt.found,
             intended=f"a plausible size in {context.units}",
             declared=doubt.source,
-            remedy="Correct `units`: millimetres declared as metres are the usual cause.",
+            remedy="Correct the `scale` of the mesh: millimetres taken for metres are the usual cause."
+            if context.assembly.descriptions
+            else "Correct `units`: millimetres declared as metres are the usual cause.",
         )
 
 

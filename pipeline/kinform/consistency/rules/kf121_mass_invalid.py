@@ -2,7 +2,7 @@
 
 A mass must be positive; the principal moments of inertia positive, and none larger than the sum of the
 other two. Parts whose mass is unknown because of their mesh (KF101 to KF103) or density (KF120) are
-not repeated here.
+not repeated here. Of links of robot descriptions the numbers are those of the file.
 
 Why it matters: a simulation with such a body gains energy from nothing, or ends at once.
 
@@ -14,32 +14,40 @@ Example: an inertia of diag(1, 1, 3) kg·m²: 3 is more than 1 + 1.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from kinform.consistency.comparisons.links import described_links
 from kinform.consistency.constants import TRIANGLE_ROUNDING
 from kinform.consistency.context import Context
-from kinform.consistency.outcome import Outcome, decided, skipped
+from kinform.consistency.outcome import Outcome, decided, inconclusive, skipped
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import mass, number, quoted
-from kinform.model.assembly import Part
+from kinform.mass.principal import impossible
+from kinform.model.assembly import Part, Source
+from kinform.model.findings import Finding
 from kinform.model.mass import MassProperties
 
 
 def check(context: Context) -> Outcome:
     """Known masses that are impossible, and problems of the mass stage that no other rule explains."""
+    groups = [*_groups(context), *_negative(context)]
     lacking = context.lacks("mass")
+    if lacking is not None and groups:
+        return inconclusive(lacking.reason, groups)
     if lacking is not None:
         stated = any(part.density is not None or part.override is not None for part in context.assembly.parts)
         return lacking if stated else skipped("no part has a density or a stated mass")
     report = context.mass
     weighed = [properties for properties in report.parts if properties.mass is not None]
-    if not weighed and not report.problems:
+    if not weighed and not report.problems and not any(group.override for group in context.assembly.groups):
         return skipped("no part has a mass")
     wrong = {p.name: text for p in weighed if (text := _impossible(p))}
     for name, text in report.problems:
         if name not in wrong and not _explained(context.assembly.part(name)):
             wrong[name] = text
-    return decided(
+    of_parts = (
         RULE.finding(
             [part.name],
             f"the mass properties of {quoted([part.name])} are impossible: {wrong[part.name]}",
@@ -53,6 +61,49 @@ def check(context: Context) -> Outcome:
         )
         for part in (context.assembly.part(name) for name in sorted(wrong))
     )
+    return decided((*of_parts, *groups))
+
+
+def _groups(context: Context) -> Iterator[Finding]:
+    """Groups and links whose stated mass no body can have."""
+    links = {link.name: link for link in described_links(context.assembly)}
+    for group in context.assembly.groups:
+        stated = group.override
+        wrong = "" if stated is None else impossible(stated.mass, stated.inertia)
+        if stated is None or not wrong:
+            continue
+        link = links.get(group.name)
+        moments, written = sorted(np.linalg.eigvalsh(stated.inertia)), ""
+        if link is not None and link.stated is not None and link.stated.inertia is not None:
+            names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+            six = (f"{name} {number(v, 6)}" for name, v in zip(names, link.stated.inertia, strict=True) if v)
+            written = f" ({', '.join(six)})"
+        declared = group.source if link is None or link.stated is None else Source(link.file, link.stated.line)
+        yield RULE.finding(
+            [group.name],
+            f"no body can have the inertia of {'group' if link is None else 'link'} '{group.name}'{written}: {wrong}",
+            found="principal moments " + ", ".join(number(float(m), 3) for m in moments) + " kg·m²",
+            intended="positive moments, none larger than the sum of the other two",
+            place=stated.centre_of_mass,
+            declared=declared,
+            remedy="Correct the inertia (kg·m² about the centre of mass); signs of ixy, ixz, iyz are those of the "
+            "matrix. `kinform export --to urdf --fix inertia` writes that of the geometry.",
+        )
+
+
+def _negative(context: Context) -> Iterator[Finding]:
+    """Links whose stated mass is negative: it was taken as not stated."""
+    for link in described_links(context.assembly):
+        if link.stated is not None and link.stated.value < 0.0:
+            yield RULE.finding(
+                [link.name],
+                f"link '{link.name}' states the mass {number(link.stated.value)} kg",
+                found=f"{number(link.stated.value)} kg",
+                intended="a positive mass",
+                place=link.position,
+                declared=Source(link.file, link.stated.line),
+                remedy="Correct the mass.",
+            )
 
 
 def _impossible(properties: MassProperties) -> str:

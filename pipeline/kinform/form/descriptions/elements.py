@@ -62,6 +62,15 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     return root
 
 
+def xml_text(data: bytes) -> str:
+    """An XML text as people read it, by the encoding that it declares."""
+    declared = re.match(rb"""\s*<\?xml[^>]*encoding\s*=\s*["']([A-Za-z0-9._-]+)""", data)
+    try:
+        return data.decode(declared[1].decode() if declared else "utf-8-sig").replace("\0", "")
+    except (LookupError, UnicodeDecodeError):
+        return data.decode("utf-8", "replace").replace("\0", "")
+
+
 def tag_of(element: Element) -> str:
     """The local name of an element."""
     return re.split("[}:]", element.tag)[-1] if isinstance(element.tag, str) else ""

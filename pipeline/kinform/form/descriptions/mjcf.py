@@ -6,19 +6,21 @@ go through stick bodies. Pairs of `<connect>` make a hinge. What is not carried 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from lxml import etree
 
 from kinform.form.constants import AXIS_LENGTH
-from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
+from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.mjcf_closures import closures, ratios
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes, from_z, mesh_assets
 from kinform.form.descriptions.poses import place, pose
-from kinform.form.descriptions.robot import Inertial, Link, Robot, RobotJoint, Shape, Solid
+from kinform.form.descriptions.robot import Inertial, Limits, Link, Robot, RobotJoint, Shape, Solid, Stated
 from kinform.form.descriptions.tree import Count, distinct
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -42,7 +44,17 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
         return None
     includes = Includes(path, xml, meshes)
     includes.expand(root)
-    return _Reader(xml, meshes, root).robot(root, path.stem, tuple(includes.files))
+    robot = _Reader(xml, meshes, root).robot(root, path.stem, tuple(includes.files))
+    return None if robot is None else replace(robot, format="mjcf", text=_whole(root, data, includes.files))
+
+
+def _whole(root: Element, data: bytes, included: Sequence[Path]) -> str:
+    """The text, with everything that it includes."""
+    if not included:
+        return xml_text(data)
+    for element in root.iter():
+        element.attrib.pop(FILE, None)
+    return str(etree.tostring(root, encoding="unicode"))
 
 
 class _Reader:
@@ -117,9 +129,9 @@ class _Reader:
         old = self.links[link]
         seen = (*old.visual, *visual)
         both = (*old.collision, *collision)
-        self.links[link] = Link(link, old.X_FL, old.at, seen, both, old.inertial)
+        self.links[link] = Link(link, old.X_FL, old.at, seen, both, old.inertial, old.stated)
         if tag_of(element) != "frame" and not seen:
-            self.links[link] = Link(link, old.X_FL, old.at, both, both, old.inertial)
+            self.links[link] = Link(link, old.X_FL, old.at, both, both, old.inertial, old.stated)
 
     def _body(self, element: Element, above: str, X: Array, named: str | None) -> None:
         X = X @ self.compiler.pose(self.xml, element, element.attrib)
@@ -134,7 +146,8 @@ class _Reader:
         stated_mass = None if inertial is None or self.compiler.from_geometry else self._inertial(inertial, name, X)
         joints = [j for j in self._joints(element) if self._type(j, named) is not None]
         free = self.xml.child(element, "freejoint") is not None or any(self._type(j, named) == "" for j in joints)
-        self.links[name] = Link(name, X, at, inertial=stated_mass)
+        written = None if inertial is None or self.compiler.from_geometry else self._stated(inertial)
+        self.links[name] = Link(name, X, at, inertial=stated_mass, stated=written)
         if not free:
             between = above
             for k, joint in enumerate(joints):
@@ -192,7 +205,17 @@ class _Reader:
             damping=self._first(element, said, "damping") if moves_one else None,
             stiffness=self._first(element, said, "stiffness") if moves_one else None,
             rest=self._angle(element, said, "springref", kind) - self._angle(element, said, "ref", kind),
+            limits=self._limits(element, said, kind) if moves_one else None,
         )  # fmt: skip
+
+    def _limits(self, element: Element, said: Mapping[str, str], kind: str) -> Limits:
+        """The limits of a joint, word for word; MJCF needs none."""
+        values = self.xml.numbers(element, said["range"], "range", 2) if "range" in said else None
+        turn = self.compiler.radians if kind == "revolute" else float
+        limited = said.get("limited", "auto")
+        off = values is None or limited == "false" or (limited == "auto" and not self.compiler.autolimits)
+        bounds = None if off or values is None else (turn(values[0]), turn(values[1]))
+        return Limits(said.get("type", "hinge"), limited == "true", bounds)
 
     def _first(self, element: Element, said: Mapping[str, str], key: str) -> float | None:
         """The first number of an attribute, where it is positive: later ones are of a polynomial."""
@@ -246,6 +269,14 @@ class _Reader:
             return None
         six = full if "fullinertia" in said else (*diagonal, 0.0, 0.0, 0.0)
         return placed(mass, X @ self.compiler.pose(xml, element, said), symmetric(*six), xml.at(element))
+
+    def _stated(self, element: Element) -> Stated | None:
+        """What an inertial says, word for word; None without a mass."""
+        mass = self.xml.number(element, "mass")
+        full = self.xml.vector(element, "fullinertia", (0.0,) * 6)
+        diagonal = self.xml.vector(element, "diaginertia", (0.0,) * 3)
+        six = full if "fullinertia" in element.attrib else (*diagonal, 0.0, 0.0, 0.0)
+        return None if mass is None else Stated(mass, six, self.xml.at(element))
 
     def _geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
         """The shape of a geom, and whether it is seen only: it collides with nothing."""

@@ -57,6 +57,29 @@ class Inertial:
     at: At
 
 
+@dataclass(frozen=True)
+class Stated:
+    """An inertial in the numbers of the file, whether a body can have them or not."""
+
+    mass: float
+    six: tuple[float, ...] | None
+    """xx, yy, zz, xy, xz, yz in the axes of its own frame; None: not stated."""
+    at: At
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Of a joint, in the numbers of the file turned into SI, whether they are ascending or not."""
+
+    kind: str
+    """Of the joint, as the format calls it."""
+    needed: bool = False
+    """Whether the format wants limits of this type of joint."""
+    bounds: tuple[float, float] | None = None
+    effort: float | None = None
+    speed: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class Link:
     """A rigid body. `X_FL` is the pose of its frame."""
@@ -67,6 +90,7 @@ class Link:
     visual: tuple[Shape, ...] = ()
     collision: tuple[Shape, ...] = ()
     inertial: Inertial | None = None
+    stated: Stated | None = None
 
     def shapes(self, geometry: str) -> tuple[Shape, ...]:
         """The shapes of "visual" or "collision"."""
@@ -99,6 +123,8 @@ class RobotJoint:
     """Of the spring, rad or m."""
     closure: bool = False
     """It closes a loop: two points are one, whatever joint does that."""
+    limits: Limits | None = None
+    """As they are written; None where the format has none for such a joint."""
 
 
 @dataclass(frozen=True)
@@ -125,5 +151,9 @@ class Robot:
     """What the reader did on its own account, and what cannot be carried, in sentences."""
     files: tuple[Path, ...] = ()
     """Files that were read besides the description: includes."""
+    format: str = ""
+    """"urdf" or "mjcf": what `text` is."""
+    text: str = ""
+    """All of it as XML, macros expanded and includes put in; "" where it cannot be written back."""
     folders: tuple[Path, ...] = field(default=())
     """Folders, besides that of the description, in which its meshes may lie."""

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinform.form.constants import LARGEST_NUMBER
+from kinform.form.descriptions.facts import facts_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.registry import FORMATS, reader_of
 from kinform.form.descriptions.robot import At, Inertial, Link, Robot, RobotJoint, Shape, Solid
@@ -56,7 +57,9 @@ def tables(source: Source) -> SourceTables | None:
     writer = _Writer(source)
     writer.write(robot)
     folders = (*robot.folders, meshes.home)
-    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, folders)
+    facts = facts_of(robot, source.file, source.reading.geometry, writer.parts)
+    return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, folders,
+                        facts=facts)  # fmt: skip
 
 
 class _Writer:
@@ -68,6 +71,7 @@ class _Writer:
         self.raw: dict[str, Any] = {"schema": 1, "assembly": {}, "part": [], "group": [], "function": {}}
         self.places: dict[tuple[str | int, ...], tuple[str | None, int]] = {}
         self.notes: list[str] = []
+        self.parts: dict[str, list[str]] = {}
 
     def write(self, robot: Robot) -> None:
         """All of a robot."""
@@ -116,13 +120,14 @@ class _Writer:
         shapes = link.shapes(geometry)
         if not shapes:
             part = self._add("part", link.at, {"name": link.name, **self._posed(link.X_FL)})
+            self.parts[link.name] = [link.name]
             if link.inertial is not None and not link.inertial.inertia.any():
                 self.notes.append(f"link {in_quotes(link.name)}, a frame, states no inertia: it has no mass")
             elif link.inertial is not None:
                 part |= self._mass(link.inertial, link.X_FL)
                 self._put(link.inertial.at, ("part", len(self.raw["part"]) - 1, "mass"))
             return
-        names = [self._part(link, shape, free) for shape in shapes]
+        names = self.parts[link.name] = [self._part(link, shape, free) for shape in shapes]
         group = self._add("group", link.at, {"name": link.name, "parts": names})
         if link.inertial is not None:
             group |= self._mass(link.inertial, np.eye(4))
@@ -133,7 +138,7 @@ class _Writer:
         name = free(_label(link, shape))
         table: dict[str, Any] = {"name": name}
         if isinstance(shape.geometry, Solid):
-            table["shape"] = _shape_table(shape.geometry, self.metres)
+            table["shape"] = shape_table(shape.geometry, self.metres)
         else:
             path = os.path.relpath(shape.geometry, self.source.folder.resolve())
             table["mesh"] = Path(path).as_posix()
@@ -212,7 +217,8 @@ def _label(link: Link, shape: Shape) -> str:
     return stem if stem != link.name else shape.geometry.name
 
 
-def _shape_table(solid: Solid, metres: float) -> dict[str, Any]:
+def shape_table(solid: Solid, metres: float) -> dict[str, Any]:
+    """A primitive as `[[part]] shape` says it, in units of `metres`."""
     sizes = [float(size) / metres for size in solid.sizes]
     if solid.type == "box":
         return {"type": "box", "size": sizes}

@@ -7,16 +7,17 @@ Numbers are SI and radians. The frame F is that of the root link; joints stand a
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from kinform.form.constants import AXIS_LENGTH
-from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
+from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place, pose, rpy
-from kinform.form.descriptions.robot import Inertial, Link, Ratio, Robot, RobotJoint, Shape, Solid
+from kinform.form.descriptions.robot import Inertial, Limits, Link, Ratio, Robot, RobotJoint, Shape, Solid, Stated
 from kinform.form.descriptions.tree import Count, Edge, Tree, tree_of
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -45,7 +46,8 @@ def read_text(
     root = parse_xml(data, file, problems)
     if root is None:
         return None
-    return _Reader(Xml(file, problems, written), meshes).robot(root, path.stem)
+    robot = _Reader(Xml(file, problems, written), meshes).robot(root, path.stem)
+    return None if robot is None else replace(robot, format="urdf", text=xml_text(data))
 
 
 class _Reader:
@@ -122,7 +124,16 @@ class _Reader:
         )
         inertial = self.xml.child(element, "inertial")
         return Link(name, X_FL, self.xml.at(element), visual, collision,
-                    None if inertial is None else self._inertial(inertial, name, X_FL))  # fmt: skip
+                    None if inertial is None else self._inertial(inertial, name, X_FL),
+                    None if inertial is None else self._stated(inertial))  # fmt: skip
+
+    def _stated(self, element: Element) -> Stated | None:
+        """What an inertial says, word for word; None without a mass."""
+        mass = self.xml.number(self.xml.child(element, "mass"), "value")
+        numbers = self.xml.child(element, "inertia")
+        keys = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+        six = None if numbers is None else tuple(self.xml.number(numbers, key, 0.0) or 0.0 for key in keys)
+        return None if mass is None else Stated(mass, six, self.xml.at(element))
 
     def _shape(self, element: Element, link: str, X_FL: Array) -> Shape | None:
         what = f"link {in_quotes(link)}"
@@ -223,7 +234,19 @@ class _Reader:
             effort=self._positive(limit, "effort") if moves_one else None,
             speed=self._positive(limit, "velocity") if moves_one else None,
             damping=self._positive(dynamics, "damping") if moves_one else None,
+            limits=self._limits(limit, stated) if moves_one else None,
         )  # fmt: skip
+
+    def _limits(self, limit: Element | None, stated: str) -> Limits:
+        """The limits of a joint, word for word."""
+        needed = stated in ("revolute", "prismatic")
+        if limit is None:
+            return Limits(stated, needed)
+        bounds = None
+        if needed:
+            bounds = (self.xml.number(limit, "lower", 0.0) or 0.0, self.xml.number(limit, "upper", 0.0) or 0.0)
+        effort, speed = (self.xml.number(limit, key) for key in ("effort", "velocity"))
+        return Limits(stated, needed, bounds, effort, speed)
 
     def _axes(self, element: Element, what: str, kind: str) -> list[Array] | None:
         """Unit axes in the joint's frame, of which a universal joint has two: x and y, as Drake has it."""

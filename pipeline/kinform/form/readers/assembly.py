@@ -29,6 +29,7 @@ from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
+from kinform.model.descriptions import Description
 from kinform.model.function import Function
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
@@ -89,7 +90,7 @@ class _AssemblyReader:
             return
         scope = Scope(
             parsed.manifest, parsed.lines, file, path.parent, prefix, X_WF, self.problems, parsed.refused, parsed.notes,
-            parsed.described,
+            parsed.described, parsed.facts,
         )  # fmt: skip
         self.scopes.append(scope)
         here = (*above, Path(os.path.realpath(path)))
@@ -176,7 +177,17 @@ class _AssemblyReader:
             files=tuple(sorted(self.files.names)),
             notes=tuple(self._notes()),
             check=readers[0].check(),
+            descriptions=self._descriptions(parts),
         )
+
+    def _descriptions(self, parts: list[Part]) -> tuple[Description, ...]:
+        """What robot descriptions among the sources say; of other sources nothing is imported for that."""
+        described = [scope for scope in self.scopes if scope.facts is not None]
+        if not described or len(self.problems):
+            return ()
+        from kinform.form.readers.described import describe
+
+        return tuple(describe(scope, parts, self.files) for scope in described)
 
     def _notes(self) -> list[str]:
         top, below = self.scopes[0].file, self.scopes[1:]

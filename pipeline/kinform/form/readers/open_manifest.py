@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -29,6 +29,9 @@ from kinform.foundation.units import UNITS, metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Source
 
+if TYPE_CHECKING:
+    from kinform.form.descriptions.facts import Facts
+
 
 @dataclass(frozen=True, eq=False)
 class Scope:
@@ -49,6 +52,8 @@ class Scope:
     """What the reader of a description did on its own account, in sentences."""
     described: bool = False
     """Whether a robot description says it, alone or as `from`."""
+    facts: Facts | None = None
+    """What that description says word for word."""
 
     @property
     def metres(self) -> float:
@@ -120,6 +125,7 @@ class Parsed:
     refused: frozenset[str]
     notes: tuple[str, ...] = ()
     described: bool = False
+    facts: Facts | None = None
 
 
 def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Parsed | None:
@@ -128,7 +134,7 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
     if is_source(path):
         tables = _from_source(path, file, path.parent, None, files, problems)
         parsed = None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
-        return None if tables is None or parsed is None else replace(parsed, described=tables.described)
+        return None if tables is None or parsed is None else _of_source(parsed, tables)
     try:
         text = read_text(path, MANIFEST_BYTES, "a manifest")
         raw = read_toml(text)
@@ -143,6 +149,10 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
     if isinstance(stated, str) and stated:
         return _over_source(path, file, raw, lines, files, problems)
     return _validated(raw, lines, file, (), problems)
+
+
+def _of_source(parsed: Parsed, tables: SourceTables) -> Parsed:
+    return replace(parsed, described=tables.described, facts=tables.facts)
 
 
 def _validated(
@@ -200,4 +210,4 @@ def _over_source(
     overlay = Overlay(above, tables.places)
     both = overlay.tables(raw, tables.raw)
     parsed = _validated(both, Places(overlay.places), file, tables.notes, problems)
-    return None if parsed is None else replace(parsed, described=tables.described)
+    return None if parsed is None else _of_source(parsed, tables)

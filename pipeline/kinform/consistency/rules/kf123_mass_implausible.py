@@ -1,0 +1,138 @@
+"""A stated mass or inertia is far from what the geometry gives at any plausible density.
+
+The density that a stated mass takes is told: mass over the volume that closed meshes enclose (parts that share space
+count twice), and over the volume of the convex hull, which nothing can exceed. An error where the hull would have to be
+denser than any material (23 000 kg/m³), or the inertia is larger than if all of the mass were at the farthest point of
+the shape. A warning above 12 000 kg/m³ or below 5 kg/m³ of the enclosed volume, and where the inertia is 30 times more
+or less than that of the same mass spread evenly over the shape. Impossible masses and inertias are KF121.
+
+Why it matters: torques, natural frequencies and controllers tuned in simulation are wrong by the same factor, and a
+simulator with tiny inertias needs tiny steps or explodes.
+
+What to do: correct the number: inertias are in kg·m², not kg·mm² (a factor of 10⁶) or g·mm² (10⁹). `kinform export
+F.h5 --to urdf --fix inertia` writes those of the geometry.
+
+Example: a link of 147 g and 12 cm across with an inertia of 9.4e4 kg·m²: the number is in g·mm².
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinform.consistency.comparisons.gathering import Ranked, gathered
+from kinform.consistency.comparisons.links import Weighed
+from kinform.consistency.constants import DENSEST, HEAVY, INERTIA_FAR, INERTIA_LARGE, LIGHT
+from kinform.consistency.context import Context
+from kinform.consistency.outcome import Outcome, decided
+from kinform.consistency.rule import Rule
+from kinform.foundation.words import counted, mass, number, volume
+
+_UNITS = {1e9: "g·mm²", 1e6: "kg·mm²", 1e4: "kg·cm²", 1e3: "g·m²", 1e7: "g·cm²"}
+
+
+def check(context: Context) -> Outcome:
+    """Every stated mass beside its geometry."""
+    ranked: list[Ranked] = []
+    doubted = {name for doubt in context.doubts for name in doubt.subject}
+    for body in context.weighed:
+        if not body.possible or body.hull is None or doubted & {body.name, *(part.name for part in body.parts)}:
+            continue
+        found = _of_mass(context, body) or _of_inertia(body)
+        if found is not None:
+            ranked.append(found)
+    findings = gathered(ranked, "link" if context.assembly.descriptions else "part")
+    return decided(findings, f"{counted(len(context.weighed), 'stated mass', 'stated masses')} compared")
+
+
+def _of_mass(context: Context, body: Weighed) -> Ranked | None:
+    assert body.hull is not None
+    units, solid = context.units, body.solid
+    if body.hull.volume > 0.0 and body.mass / body.hull.volume > DENSEST:
+        density = body.mass / body.hull.volume
+        text = (
+            f"{body.what} states {mass(body.mass)}, and its geometry fits into {volume(body.hull.volume, units)}: "
+            f"that would take more than {number(density, 3)} kg/m³, denser than any material"
+        )
+        return _finding("error", body, text, density)
+    if solid is None:
+        return None
+    density = body.mass / solid.volume
+    if density > HEAVY and not solid.open_parts:
+        why = "denser than lead"
+    elif density < LIGHT:
+        why = "lighter than any foam"
+    else:
+        return None
+    text = (
+        f"{body.what} states {mass(body.mass)}, and its geometry encloses {volume(solid.volume, units)}: that would "
+        f"take {number(density, 3)} kg/m³, {why}"
+    )
+    return _finding("warning", body, text, density)
+
+
+def _finding(severity: str, body: Weighed, text: str, density: float) -> Ranked:
+    finding = RULE.at(severity).finding(
+        [body.name], text,
+        found=f"{number(density, 3)} kg/m³",
+        intended=f"a density between {number(LIGHT)} and {number(HEAVY)} kg/m³",
+        place=body.centre,
+        declared=body.source,
+        remedy="Correct the mass (kg), or the scale of the mesh; or draw what is heavy.",
+    )  # fmt: skip
+    return Ranked("heavy" if density > HEAVY else "light", max(density / HEAVY, LIGHT / density), finding)
+
+
+def _of_inertia(body: Weighed) -> Ranked | None:
+    assert body.hull is not None
+    reach = float(np.linalg.norm(body.hull.corners - body.centre, axis=1).max())
+    half_trace = 0.5 * float(np.trace(body.inertia))
+    most = body.mass * reach * reach
+    even = _even(body)
+    ratio = half_trace / even if even > 0.0 else 1.0
+    if half_trace > INERTIA_LARGE * most:
+        severity, why = "error", "more than if all of the mass were at the farthest point of its geometry"
+    elif half_trace <= 0.0 or not 1.0 / INERTIA_FAR < ratio < INERTIA_FAR:
+        severity, why = "warning", "for the same mass spread evenly over its geometry"
+    else:
+        return None
+    solid = body.solid
+    needed = half_trace / (0.5 * float(np.trace(solid.inertia))) if solid is not None else math.nan
+    takes = f"; that would take {number(needed, 3)} kg/m³" if math.isfinite(needed) and needed > 0.0 else ""
+    shown, usual = number(2.0 * half_trace, 3), number(2.0 * even, 3)
+    factor = f"{number(ratio, 2)} times" if ratio >= 1.0 else f"1/{number(1.0 / ratio, 2) if ratio > 0.0 else '∞'} of"
+    text = (
+        f"{body.what} of {mass(body.mass)} states moments of inertia of {shown} kg·m² in all, {factor} the {usual} "
+        + (f"{why}{takes}" if severity == "warning" else f"of the mass spread evenly, and {why}{takes}")
+    )
+    finding = RULE.at(severity).finding(
+        [body.name], text,
+        found=f"{shown} kg·m²",
+        intended=f"about {usual} kg·m²",
+        place=body.centre,
+        declared=body.source,
+        remedy=f"Correct the inertia (kg·m²){_unit(ratio)}; `kinform export --to urdf --fix inertia` writes "
+        "that of the geometry.",
+    )  # fmt: skip
+    return Ranked("inertia", max(ratio, 1.0 / ratio) if ratio > 0.0 else math.inf, finding)
+
+
+def _even(body: Weighed) -> float:
+    """Half the trace (kg·m²) of the inertia about the stated centre that the mass has, spread evenly."""
+    solid = body.solid
+    if solid is not None:
+        offset = solid.centroid - body.centre
+        return body.mass * (0.5 * float(np.trace(solid.inertia)) / solid.volume + float(offset @ offset))
+    assert body.hull is not None
+    away = body.hull.corners - body.centre
+    return 0.6 * body.mass * float((away * away).sum(axis=1).mean())  # a full ball has 3/5 of its radius squared
+
+
+def _unit(ratio: float) -> str:
+    """The unit in which the number would be right, where a factor of ten says one."""
+    fits = [unit for factor, unit in _UNITS.items() if 1.0 / 3.0 < ratio / factor < 3.0]
+    return f": the number fits {fits[0]}" if fits else ""
+
+
+RULE = Rule("KF123", "mass-implausible", "warning", __doc__, check, needs=("weighed shapes",))

@@ -1,0 +1,156 @@
+"""What a robot description says word for word, placed in the design, and looked at beside the files that it names.
+
+Geometry of the other kind (collision, where the parts are the visual one) is read here, measured and not kept.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from kinform.form.constants import SIBLING_BYTES, SIBLINGS_MOST
+from kinform.form.descriptions.coverage import coverage_of
+from kinform.form.descriptions.facts import Facts
+from kinform.form.descriptions.robot import At, Shape, Solid
+from kinform.form.descriptions.tables import shape_table
+from kinform.form.files import DesignFiles, is_mesh
+from kinform.form.manifest.parts import ShapeTable
+from kinform.form.meshes.primitives import primitive
+from kinform.form.meshes.raw import MeshError
+from kinform.form.readers.open_manifest import Scope
+from kinform.model.arrays import Array
+from kinform.model.assembly import Part
+from kinform.model.descriptions import Coverage, DescribedJoint, DescribedLink, Description, LooseMesh
+
+_TEXTS = (".urdf", ".xacro", ".xml", ".sdf", ".mjcf", ".toml", ".launch", ".py", ".gazebo", ".world")
+"""Suffixes of files that may name the meshes of a package."""
+
+_SHAPES: TypeAdapter[ShapeTable] = TypeAdapter(ShapeTable)
+
+
+def describe(scope: Scope, parts: Sequence[Part], files: DesignFiles) -> Description:
+    """The description of a scope that has facts, with its names and poses in the design."""
+    assert scope.facts is not None
+    return _Describer(scope, scope.facts, parts, files).description()
+
+
+class _Describer:
+    def __init__(self, scope: Scope, facts: Facts, parts: Sequence[Part], files: DesignFiles):
+        self.scope, self.facts, self.files = scope, facts, files
+        self.parts = {str(part.name): part for part in parts}
+        self.missing: dict[tuple[str, int], LooseMesh] = {}
+
+    def description(self) -> Description:
+        """All of it."""
+        given, prefix = self.facts.description, self.scope.prefix
+        links = tuple(self._link(link) for link in given.links)
+        joints = tuple(self._joint(joint) for joint in given.joints)
+        loose = (*sorted(self.missing.values(), key=lambda mesh: (mesh.line, mesh.path)), *self._unreferenced())
+        if loose:
+            self.files.unsettled = True
+        return replace(given, prefix=prefix, links=links, joints=joints, meshes=loose)
+
+    def _link(self, link: DescribedLink) -> DescribedLink:
+        X, prefix = self.scope.X_WF, self.scope.prefix
+        return replace(
+            link,
+            name=prefix + link.name,
+            rotation=X[:3, :3] @ link.rotation,
+            position=X[:3, :3] @ link.position + X[:3, 3],
+            parts=tuple(prefix + name for name in link.parts),
+            coverage=self._coverage(link),
+        )
+
+    def _joint(self, joint: DescribedJoint) -> DescribedJoint:
+        X, prefix = self.scope.X_WF, self.scope.prefix
+        return replace(
+            joint,
+            name=prefix + joint.name,
+            between=(prefix + joint.between[0], prefix + joint.between[1]),
+            axis=None if joint.axis is None else X[:3, :3] @ joint.axis,
+            point=None if joint.point is None else X[:3, :3] @ joint.point + X[:3, 3],
+        )
+
+    def _coverage(self, link: DescribedLink) -> Coverage | None:
+        """Of the link's visual by its collision geometry; None where there is nothing to compare."""
+        others = self.facts.others.get(link.name, ())
+        if link.name in self.facts.alike:
+            return None
+        placed = [(shape, points) for shape in others if (points := self._points(shape)) is not None]
+        if self.files.reading.geometry != "visual" or len(placed) < len(others):
+            return None
+        visual = []
+        for name in link.parts:
+            part = self.parts.get(self.scope.prefix + name)
+            if part is not None and part.mesh is not None and len(part.mesh.vertices):
+                local = np.linalg.inv(self.scope.X_WF) @ part.X_WP
+                visual.append((part.mesh.vertices @ local[:3, :3].T + local[:3, 3], part.mesh.faces))
+        return coverage_of(visual, [points for _, points in placed]) if placed else None
+
+    def _points(self, shape: Shape) -> Array | None:
+        """Vertices (n, 3) m of a shape in the frame of the description; None where they cannot be had."""
+        X = shape.X_FG
+        if isinstance(shape.geometry, Solid):
+            points = primitive(_SHAPES.validate_python(shape_table(shape.geometry, 1.0)), 1.0).vertices
+            return points @ X[:3, :3].T + X[:3, 3]
+        if not shape.geometry.is_file():
+            self._note_missing(shape.geometry, shape.at)
+            return None
+        try:
+            raw = self.files.loose(shape.geometry)
+        except (MeshError, OSError):
+            return None
+        if raw is None or not len(raw.vertices):
+            return None
+        points = raw.vertices * (shape.metres * np.array(shape.scale))
+        return points @ X[:3, :3].T + X[:3, 3]
+
+    def _note_missing(self, path: Path, at: At) -> None:
+        key = (self.files.shown(path), at.line)
+        self.missing.setdefault(key, LooseMesh(key[0], at.file, at.line, True))
+
+    def _unreferenced(self) -> Iterable[LooseMesh]:
+        """Mesh files in the folders of the description's own meshes that neither it nor a file beside it names."""
+        used = {os.path.realpath(self.files.top / part.mesh.path) for part in self.parts.values() if part.mesh}
+        other = [shape.geometry for shapes in self.facts.others.values() for shape in shapes]
+        used |= {os.path.realpath(path) for path in other if isinstance(path, Path)}
+        mine = [os.path.realpath(path) for path in self._own_meshes()]
+        folders = sorted({folder for path in mine if os.path.isdir(folder := os.path.dirname(path))})
+        there = [os.path.join(folder, name) for folder in folders for name in sorted(os.listdir(folder))]
+        self.files.listed.update(map(Path, folders))
+        strange = [path for path in there if is_mesh(Path(path)) and path not in used]
+        self.files.unsettled |= bool(strange)
+        texts = list(self._texts()) if strange else []
+        given = self.facts.description
+        for path in strange:
+            stem = os.path.splitext(os.path.basename(path))[0].encode()
+            if not any(stem in text for text in texts):
+                yield LooseMesh(self.files.shown(Path(path)), given.file, 1, False)
+
+    def _own_meshes(self) -> Iterable[Path]:
+        for link in self.facts.description.links:
+            for name in link.parts:
+                part = self.parts.get(self.scope.prefix + name)
+                if part is not None and part.mesh is not None and part.mesh.path:
+                    yield self.files.top / part.mesh.path
+        for shapes in self.facts.others.values():
+            yield from (shape.geometry for shape in shapes if isinstance(shape.geometry, Path))
+
+    def _texts(self) -> Iterable[bytes]:
+        """What may name the meshes: the description, and the texts of its package."""
+        yield self.facts.description.text.encode()
+        path = self.files.top / self.facts.description.file
+        beside = [other for other in self._beside(path) if other.suffix.lower() in _TEXTS and other.is_file()]
+        for other in beside[:SIBLINGS_MOST]:
+            if other.stat().st_size <= SIBLING_BYTES:
+                yield other.read_bytes()
+
+    def _beside(self, path: Path) -> list[Path]:
+        from kinform.form.descriptions.meshes import MeshFiles
+
+        return sorted(MeshFiles(path, {}).home.rglob("*"))

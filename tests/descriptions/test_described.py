@@ -1,0 +1,189 @@
+"""Rules that hold a description against its own geometry: each fires on a broken number, and on nothing else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.support.walkers import Box, Walker
+
+from kinform import form
+from kinform.consistency import RULES
+from kinform.consistency.context import Context
+from kinform.design import Design
+from kinform.foundation.meshes.hulls import hull_of
+
+CODES = ("KF110", "KF121", "KF123", "KF124", "KF130", "KF131", "KF132", "KF415")
+
+
+def findings(folder, walker):
+    path = folder / "walker.urdf"
+    path.write_text(walker.text())
+    context = Context(Design(form.load(path)))
+    return [f for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
+
+
+def only(folder, walker):
+    (finding,) = findings(folder, walker)
+    return finding
+
+
+def test_a_robot_whose_numbers_are_right_gives_nothing(tmp_path):
+    assert findings(tmp_path, Walker()) == []
+
+
+@pytest.mark.parametrize(
+    ("products", "words"),
+    [({"ixx": -1e-4}, "negative principal moment"), ({"izz": 0.1}, "triangle inequality")],
+)
+def test_an_inertia_that_no_body_can_have_is_told_in_the_numbers_of_the_file(tmp_path, products, words):
+    walker = Walker()
+    walker.links["left_shin"].products |= products
+    found = only(tmp_path, walker)
+    (key, value), *_ = products.items()
+    assert (found.code, found.severity, found.subject, found.line) == ("KF121", "error", ("left_shin",), 5)
+    assert words in found.message and f"{key} {value:.6g}" in found.message.replace("-0.0001", "-0.0001")
+
+
+def test_an_inertia_in_gram_square_millimetres_is_an_error_that_names_the_unit(tmp_path):
+    walker = Walker()
+    walker.links["torso"].inertia_factor = 1e9
+    found = only(tmp_path, walker)
+    assert (found.code, found.severity, found.line) == ("KF123", "error", 2)
+    assert "g·mm²" in found.remedy and "1000000000000 kg/m³" in found.message.replace("1e+12", "1000000000000")
+
+
+def test_an_inertia_a_hundred_times_too_small_is_doubted(tmp_path):
+    walker = Walker()
+    walker.links["torso"].inertia_factor = 0.01
+    assert (only(tmp_path, walker).code, only(tmp_path, walker).severity) == ("KF123", "warning")
+
+
+@pytest.mark.parametrize(("factor", "severity"), [(40.0, "error"), (15.0, "warning"), (0.004, "warning")])
+def test_a_mass_that_takes_an_impossible_density_says_which(tmp_path, factor, severity):
+    walker = Walker()
+    walker.links["torso"].mass_factor = walker.links["torso"].inertia_factor = factor
+    found = only(tmp_path, walker)
+    assert (found.code, found.severity, found.subject) == ("KF123", severity, ("torso",))
+    assert f"{1000.0 * factor:.3g}" in found.found.replace("40000", "4e+04").replace("15000", "1.5e+04")
+
+
+def test_a_centre_of_mass_outside_of_the_geometry_is_told_with_its_distance(tmp_path):
+    walker = Walker()
+    walker.links["torso"].centre_shift = (0.0, 0.0, 0.15)  # the box ends 0.1 m above its centre
+    found = only(tmp_path, walker)
+    assert (found.code, found.severity) == ("KF124", "warning") and "50 mm outside" in found.message
+
+
+def test_one_within_its_geometry_is_not(tmp_path):
+    walker = Walker()
+    walker.links["torso"].centre_shift = (0.0, 0.0, 0.09)
+    assert [f.code for f in findings(tmp_path, walker)] == []
+
+
+def test_a_link_a_thousand_times_too_large_is_in_another_unit(tmp_path):
+    walker = Walker()
+    torso = walker.links["torso"]
+    inertial = torso.text("torso").split("<visual>")[0]
+    big = [Box(tuple(1000.0 * v for v in box.size), tuple(1000.0 * v for v in box.at)) for box in torso.boxes]
+    line = inertial + "".join(box.geometry("visual") for box in big) + "</link>"
+    text = walker.text().replace(torso.text("torso"), line)
+    (tmp_path / "walker.urdf").write_text(text)
+    context = Context(Design(form.load(tmp_path / "walker.urdf")))
+    found = [f for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
+    assert ("KF110", "error") in {(f.code, f.severity) for f in found}
+    (scale,) = (f for f in found if f.code == "KF110")
+    assert "1000 times smaller it would be 1000 kg/m³" in scale.message and scale.line == 2
+
+
+def test_collision_geometry_that_leaves_a_part_bare_is_told(tmp_path):
+    walker = Walker()
+    walker.links["left_shin"].collision = walker.links["left_shin"].boxes[:1]  # without the foot
+    found = only(tmp_path, walker)
+    assert (found.code, found.subject) == ("KF130", ("left_shin",)) and "bare" in found.message
+
+
+def test_collision_geometry_far_beyond_the_visual_is_told(tmp_path):
+    walker = Walker()
+    walker.links["torso"].collision = [Box((0.1, 0.2, 0.4), (0.0, 0.0, 0.2))]
+    found = only(tmp_path, walker)
+    assert found.code == "KF130" and "200 mm beyond" in found.message
+
+
+def test_a_box_somewhat_larger_than_the_link_is_not(tmp_path):
+    walker = Walker()
+    walker.links["torso"].collision = [Box((0.12, 0.22, 0.22), (0.0, 0.0, 0.1))]
+    assert findings(tmp_path, walker) == []
+
+
+def test_collision_geometry_in_another_unit_is_an_error(tmp_path):
+    walker = Walker()
+    walker.links["torso"].collision = [Box((1e-4, 2e-4, 2e-4), (0.0, 0.0, 0.1))]
+    found = only(tmp_path, walker)
+    assert (found.code, found.severity) == ("KF130", "error") and "millimetres" in found.message
+
+
+def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_without_a_name_a_note(tmp_path):
+    walker = Walker()
+    mesh = '<collision><geometry><mesh filename="meshes/{}"/></geometry></collision>'
+    walker.links["torso"].more = mesh.format("gone.stl")
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "stray.stl").write_text("solid s\nendsolid s\n")
+    missing, stray = findings(tmp_path, walker)
+    assert (missing.code, missing.severity, missing.line) == ("KF131", "error", 2)
+    assert "meshes/gone.stl" in missing.message
+    assert (stray.code, stray.severity) == ("KF131", "note") and "meshes/stray.stl" in stray.message
+    (tmp_path / "other.urdf").write_text('<mesh filename="meshes/stray.stl"/>')  # another of the package names it
+    assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "severity", "words"),
+    [
+        ('lower="1" upper="-1" effort="1" velocity="1"', "error", "lower limit 1 is above the upper -1"),
+        ('lower="0" upper="0" effort="1" velocity="1"', "warning", "both 0"),
+        ("", "error", "states no limits"),
+        ('lower="-1" upper="1" effort="0" velocity="1"', "note", "effort or speed"),
+    ],
+)
+def test_limits_that_cannot_be_used_are_told(tmp_path, limit, severity, words):
+    found = only(tmp_path, Walker(limits={"left_knee": limit}))
+    assert (found.code, found.severity, found.subject, found.line) == ("KF415", severity, ("left_knee",), 8)
+    assert words in found.message
+
+
+def test_many_of_a_kind_are_one_finding(tmp_path):
+    nothing = 'lower="0" upper="0" effort="1" velocity="1"'
+    joints = ("left_hip", "left_knee", "right_hip", "right_knee")
+    found = only(tmp_path, Walker(limits=dict.fromkeys(joints, nothing)))
+    assert sorted(found.subject) == sorted(joints) and "likewise 3 joints more" in found.message
+
+
+def test_a_side_that_is_not_mirrored_is_told_by_geometry_by_mass_and_by_frame(tmp_path):
+    walker = Walker()
+    walker.links["right_thigh"].boxes = list(walker.links["left_thigh"].boxes)  # copied, not mirrored
+    shape = only(tmp_path, walker)
+    assert (shape.code, shape.subject[0]) == ("KF132", "right_thigh") and "geometry" in shape.message
+    walker = Walker()
+    walker.links["right_thigh"].inertia_factor = 1.3
+    mass = only(tmp_path, walker)
+    assert mass.code == "KF132" and "inertias differ" in mass.message and mass.line == 4
+    walker = Walker()
+    walker.hips["right"] = (0.02, -0.13, 0.05)
+    frame = next(f for f in findings(tmp_path, walker) if "frame" in f.message)
+    assert frame.subject == ("right_thigh", "left_thigh") and "20 mm" in frame.message
+
+
+def test_equal_parts_that_are_turned_instead_of_mirrored_pass(tmp_path):
+    walker = Walker()
+    for name in ("thigh", "shin"):
+        turned = [Box(box.size, (-box.at[0], -box.at[1], box.at[2])) for box in walker.links[f"left_{name}"].boxes]
+        walker.links[f"right_{name}"].boxes = turned
+    assert findings(tmp_path, walker) == []
+
+
+def test_a_hull_tells_how_far_outside_a_point_is():
+    corners = [[x, y, z] for x in (0, 2) for y in (0, 1) for z in (0, 1)]
+    hull = hull_of(np.array(corners, dtype=float))
+    assert hull.volume == pytest.approx(2.0, rel=1e-12)
+    away = hull.outside(np.array([[3.0, 0.5, 0.5], [1.0, 0.5, 0.5]]))
+    assert away == pytest.approx([1.0, -0.5], abs=1e-12)
