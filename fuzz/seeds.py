@@ -258,6 +258,29 @@ def urdf() -> list[bytes]:
     return [URDF.encode()]
 
 
+SDF = """<?xml version="1.0"?>
+<sdf version="1.9"><model name="r" placement_frame="f"><pose degrees="true">1 2 3 10 20 30</pose>
+  <link name="a"><inertial><pose>0 0 1 0 0 0</pose><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>
+    </inertial><visual name="v"><geometry><mesh><uri>a.stl</uri><scale>0.001 0.001 -0.001</scale></mesh></geometry>
+    </visual><collision name="c"><geometry><capsule><radius>1</radius><length>2</length></capsule></geometry>
+    </collision></link>
+  <frame name="f" attached_to="a"><pose rotation_format="quat_xyzw">0 0 1 0 0 0 1</pose></frame>
+  <model name="n"><pose relative_to="f">0 0 1 0 0 0</pose><link name="b"><visual name="v"><geometry>
+    <box><size>1 2 3</size></box></geometry></visual></link><link name="c"/>
+    <joint name="s" type="screw"><parent>b</parent><child>c</child><axis><xyz>0 0 1</xyz></axis>
+      <screw_thread_pitch>0.01</screw_thread_pitch></joint></model>
+  <joint name="j" type="revolute"><parent>a</parent><child>n::b</child><pose relative_to="n">0 0 0 0 0 0</pose>
+    <axis><xyz expressed_in="f">0 1 0</xyz><limit><lower>-1e16</lower><upper>1</upper><effort>5</effort></limit>
+    <dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis></joint>
+</model></sdf>
+"""
+
+
+def sdf() -> list[bytes]:
+    """Two models, one in the other."""
+    return [SDF.encode()]
+
+
 def mjcf() -> list[bytes]:
     """A model of three bodies."""
     return [MJCF.encode()]

@@ -205,6 +205,10 @@ _JSON_WORDS = (
     b"1e999",
     b",",
 )
+_SDF_WORDS = (
+    b"relative_to='a'", b"<include><uri>robot.sdf</uri></include>", b"<include><uri>model://r</uri></include>", b"::",
+    b"placement_frame='b'", b"expressed_in='f'", b"<frame name='f'/>", b"<model name='m'/>", b"world", b"inf",
+)  # fmt: skip
 _GLTF_WORDS = (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
 _XML_WORDS = (
     b"<link name='x'/>", b"<body>", b"</", b"/>", b"<!ENTITY a 'b'>", b"&#0;", b"&a;", b"<![CDATA[", b"xmlns:a='b'",
@@ -244,6 +248,7 @@ TARGETS = {
         Target("lock", _text_error(_lock), seeds.locks, _JSON_WORDS),
         Target("catalog", _catalog, seeds.catalogs, (b"CREATE TABLE", b"SELECT", b"joints")),
         Target("urdf", _source(".urdf"), seeds.urdf, _XML_WORDS),
+        Target("sdf", _source(".sdf"), seeds.sdf, (*_XML_WORDS, *_SDF_WORDS)),
         Target("mjcf", _source(".xml"), seeds.mjcf, _XML_WORDS),
         Target("xacro", _source(".urdf.xacro"), seeds.xacro, _XML_WORDS),
         Target("scene", _scene, seeds.scenes, (b"element vertex", b"property list", b"OFF", b"\n"), 0.5),

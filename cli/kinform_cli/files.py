@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 MESHES = (".stl", ".obj")
-DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf")
+DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf", ".world")
 SCENES = (".glb", ".gltf", ".step", ".stp")
 """Files of several parts that state their own unit of length."""
 
@@ -263,7 +263,7 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
         raise refuse(
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
-            remedy="name one manifest (.toml), robot description (.urdf, .xacro, .xml) or scene (.step, .glb, .gltf), "
+            remedy="name one manifest (.toml), robot description (.urdf, .sdf, .xml) or scene (.step, .glb, .gltf), "
             "or only meshes (.stl, .obj)",
         )
     if units is not None:

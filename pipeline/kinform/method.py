@@ -38,9 +38,9 @@ def run(
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
-    `manifest` is a TOML file, a robot description or a CAD or scene file (URDF, xacro, MJCF, STEP, GLB,
-    glTF; `reading` says how it is read), or one or several mesh files, which need `units`. With `output` the results
-    are written there in one step, and what is still valid in an earlier file is reused; the result is the
+    `manifest` is a TOML file, a robot description or a CAD or scene file (URDF, xacro, SDF, MJCF, STEP,
+    GLB, glTF; `reading` says how it is read), or one or several mesh files, which need `units`. With `output` the
+    results are written there in one step, and what is still valid in an earlier file is reused; the result is the
     same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
     longer whole. `ranges`: whether it is found how far each joint goes; None: where the function states ranges or

@@ -23,6 +23,7 @@ _FORMATS: Mapping[str, str] = {
     ".xml": "descriptions.tables",
     ".mjcf": "descriptions.tables",
     ".sdf": "descriptions.tables",
+    ".world": "descriptions.tables",
     ".glb": "scenes.tables",
     ".gltf": "scenes.tables",
     ".step": "scenes.tables",

@@ -72,6 +72,9 @@ class MeshFiles:
 
     def _roots(self, name: str) -> Iterator[Path]:
         """Folders that may be the package: beside the description, as stated, then as the environment says."""
+        if name in ("", ".", ".."):
+            yield from (self.folder, self.home)[: 0 if name else 2]
+            return
         for above in _above(self.folder, None):
             if above.name == name:
                 yield above

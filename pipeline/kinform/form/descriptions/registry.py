@@ -29,6 +29,7 @@ FORMATS = (
     Format("URDF", (".urdf", ".xml"), "robot", "urdf"),
     Format("xacro", (".xacro",), "robot", "xacro"),
     Format("MJCF", (".mjcf", ".xml"), "mujoco", "mjcf"),
+    Format("SDF", (".sdf", ".world", ".xml"), "sdf", "sdf"),
 )
 
 _ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")

@@ -40,9 +40,6 @@ def tables(source: Source) -> SourceTables | None:
         source.problems.add(f"cannot be read: {error.strerror}", source.file, None, "name a robot description")
         return None
     read = reader_of(source.path, data)
-    if read is None and source.path.suffix.lower() == ".sdf":
-        source.problems.add("is SDF, which kinform does not read", source.file, 1, "convert it to URDF or MJCF")
-        return None
     if read is None:
         roots = first_names(f"<{f.root}> ({f.name})" for f in FORMATS if source.path.suffix.lower() in f.suffixes)
         source.problems.add(f"is no robot description: its root is none of {roots}", source.file, 1,

@@ -31,7 +31,8 @@ class AssemblyTable(Table):
     from_: Reference | None = Field(
         None,
         alias="from",
-        description="a robot description (URDF, xacro, MJCF) that says the rest; tables of the same name override it",
+        description="a robot description (URDF, xacro, SDF, MJCF), or a CAD or scene file (STEP, GLB), that says the "
+        "rest; tables of the same name override it",
     )
     ground: Reference | None = Field(
         None, description="the part or group at rest; default the heaviest body (largest without densities)"

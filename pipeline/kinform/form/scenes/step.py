@@ -118,11 +118,13 @@ def _converted(data: bytes, reading: Reading) -> tuple[bytes, str]:
 
 
 def _in_the_fork(data: bytes, reading: Reading) -> tuple[bytes, str]:
+    import faulthandler
     import os
     import tempfile
 
     import cascadio
 
+    faulthandler.disable()  # an end by a signal is told as a problem of the file
     _bound_memory()
     stated = reading.deviation
     with tempfile.TemporaryFile() as said:
