@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,12 +14,22 @@ from kinform_cli import console, files
 from kinform_cli.errors import refuse
 from kinform_cli.options import Results, examples, option
 
+if TYPE_CHECKING:
+    from kinform.design import Design
+
 EXAMPLES = examples(
     "kinform export arm.h5 --to urdf -o arm_urdf",
     "kinform export arm.h5 --to mjcf -o arm_mjcf --strict",
     "kinform export arm.h5 --to modelica -o arm_modelica",
     "kinform export arm.h5 --to csv -o .",
+    "kinform export robot.h5 --to urdf --fix inertia -o fixed",
 )
+
+
+class Fix(StrEnum):
+    """What can be put right in a description."""
+
+    inertia = "inertia"
 
 
 class Target(StrEnum):
@@ -43,10 +54,15 @@ def export(
     strict: Annotated[
         bool, typer.Option("--strict", help="Write nothing, and exit 2, if the format cannot carry all of the model.")
     ] = False,
+    fix: Annotated[
+        list[Fix] | None,
+        typer.Option("--fix", help="Put this right in the description that was read: inertia, from the geometry."),
+    ] = None,
 ) -> None:
     """Write the model, or its motion, in the format of another tool.
 
-    What the format cannot carry is named on stderr, and in the file itself.
+    A robot that was read from a URDF or MJCF is written back as that, with everything that was not touched. What the
+    format cannot carry is named on stderr, and in the file itself.
     """
     if output.exists() and not output.is_dir():
         raise refuse("this is a file, not a folder", file=output, remedy="name a folder with -o")
@@ -56,7 +72,9 @@ def export(
 
     with files.needing(source):
         try:
-            model = exports.export(design, to.value, strict=strict)
+            chosen = [item.value for item in fix or ()]
+            folder = source_folder(design, source, output)
+            model = exports.export(design, to.value, strict=strict, fix=chosen, folder=folder)
         except exports.LostError as error:
             remedy = "without --strict it is written, and named in the file"
             problems = [Problem(f"{to.value} cannot carry {text}", str(source), None, remedy) for text in error.lost]
@@ -65,5 +83,18 @@ def export(
             raise refuse(str(error), file=source) from None
     written = exports.write(model, output)
     console.say(f"{output}: {counted(len(written), 'file')} of {to.value}")
+    for text in model.remarks if design.assembly.descriptions else ():
+        console.say(text)
     for text in model.lost:
         console.warn(f"{to.value} does not carry {text}")
+
+
+def source_folder(design: Design, source: Path, output: Path) -> str | None:
+    """The folder of the description that a design was read from, as seen from the output; None where it is not found
+    below the output, the results file or the working folder."""
+    for description in design.assembly.descriptions:
+        for top in (output, source.parent, Path()):
+            path = top / description.file
+            if not description.prefix and path.is_file():
+                return Path(os.path.relpath(path.parent.resolve(), output.resolve())).as_posix()
+    return None

@@ -8,6 +8,6 @@ on clock, host or path.
 from __future__ import annotations
 
 from kinform.exports.exported import Exported, ExportError, LostError, write
-from kinform.exports.registry import FORMATS, Format, export
+from kinform.exports.registry import FIXES, FORMATS, Format, export
 
-__all__ = ["FORMATS", "ExportError", "Exported", "Format", "LostError", "export", "write"]
+__all__ = ["FIXES", "FORMATS", "ExportError", "Exported", "Format", "LostError", "export", "write"]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from importlib import import_module
 
 from kinform.design import Design
-from kinform.exports.exported import Exported, LostError
+from kinform.exports.exported import Exported, ExportError, LostError
 from kinform.exports.model import ExportModel, export_model
 
 
@@ -46,13 +46,33 @@ FORMATS: dict[str, Format] = {
 }
 
 
-def export(design: Design, format: str, *, strict: bool = False) -> Exported:
-    """The design in a format of FORMATS.
+FIXES = ("inertia",)
+"""What can be put right in a description."""
+
+
+def export(
+    design: Design, format: str, *, strict: bool = False, fix: Collection[str] = (), folder: str | None = None
+) -> Exported:
+    """The design in a format of FORMATS. One that was read from a description of that format is given as that
+    description, with what was touched; `fix` and `folder` as of `described.export`.
 
     Raises StageError before joints are derived, ExportError when there is nothing to write, KeyError for
-    an unknown format, and with `strict` LostError when the format cannot carry all of the model.
+    an unknown format, and with `strict` LostError when the format cannot carry all of the model. ExportError too where
+    there is no description to fix.
     """
-    exported = FORMATS[format].write(export_model(design))
+    exported = _exported(design, format, fix, folder)
     if strict and exported.lost:
         raise LostError(format, exported.lost)
     return exported
+
+
+def _exported(design: Design, format: str, fix: Collection[str], folder: str | None) -> Exported:
+    written = FORMATS[format].write
+    if any(not d.prefix and d.format == format and d.text for d in design.assembly.descriptions):
+        from kinform.exports import described
+
+        if described.description_of(design, format) is not None:
+            return described.export(design, format, inertia="inertia" in fix, folder=folder)
+    if fix:
+        raise ExportError(f"there is no description of the format {format} to fix: the design was not read from one")
+    return written(export_model(design))

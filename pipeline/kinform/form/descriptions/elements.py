@@ -62,13 +62,25 @@ def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     return root
 
 
+_ENCODING = re.compile(r"""\s*<\?xml[^>]*encoding\s*=\s*["']([A-Za-z0-9._-]+)""")
+
+
 def xml_text(data: bytes) -> str:
     """An XML text as people read it, by the encoding that it declares."""
-    declared = re.match(rb"""\s*<\?xml[^>]*encoding\s*=\s*["']([A-Za-z0-9._-]+)""", data)
+    declared = _ENCODING.match(data[:256].decode("latin-1"))
     try:
-        return data.decode(declared[1].decode() if declared else "utf-8-sig").replace("\0", "")
+        return data.decode(declared[1] if declared else "utf-8").replace("\0", "")
     except (LookupError, UnicodeDecodeError):
         return data.decode("utf-8", "replace").replace("\0", "")
+
+
+def xml_bytes(text: str) -> bytes:
+    """The bytes of a text that `xml_text` gave."""
+    declared = _ENCODING.match(text)
+    try:
+        return text.encode(declared[1] if declared else "utf-8")
+    except (LookupError, UnicodeEncodeError):
+        return text.encode("utf-8")
 
 
 def tag_of(element: Element) -> str:

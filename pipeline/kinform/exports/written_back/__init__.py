@@ -1,0 +1,1 @@
+"""Numbers written into the XML of a description, a module for each format."""
