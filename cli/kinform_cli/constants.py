@@ -61,6 +61,11 @@ BALANCED = 1e-8
 MOST_WAYS = 3
 """Ways to leave that are listed for each joint; `--joint` lists all. A choice."""
 
+# serving
+
+KEEP_ALIVE = 15.0
+"""s after which a browser that follows a page is told again what it knows: so connections that are gone are noticed."""
+
 # views/mobility
 
 MOST_NAMES = 8

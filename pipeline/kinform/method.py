@@ -74,6 +74,31 @@ def run(
     return Outcome(design, tuple(ledger.reused), tuple(ledger.recomputed), account=account)
 
 
+def completed(
+    design: Design, *, jobs: int = 1, progress: Progress | None = None, say: Callable[[str], None] | None = None
+) -> tuple[Design, tuple[str, ...]]:
+    """The design with every stage that it lacks, and the names of those; nothing that it has is computed again."""
+    from kinform import stages
+
+    ran = []
+    if design.contacts is None:
+        design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"))
+        ran.append("contacts")
+    if design.kinematics is None:
+        design = stages.joints(design)
+        ran.append("joints")
+    if design.mass is None:
+        design = stages.mass(design)
+        ran.append("mass")
+    if design.simulation is None:
+        design = stages.simulate(design, progress=_steps(progress, "simulation"), say=say)
+        ran.append("simulate")
+    if design.report is None:
+        design = stages.check(design)
+        ran.append("check")
+    return design, tuple(ran)
+
+
 def _import(
     manifest: str | Path | Sequence[str | Path],
     units: str | None,

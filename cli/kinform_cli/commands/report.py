@@ -5,49 +5,123 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
+import typer
+
 from kinform.foundation.words import counted
 from kinform_cli import console, files
+from kinform_cli.designs import whole_design
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, examples, option
+from kinform_cli.options import (
+    AllowOutside,
+    Deviation,
+    Geometry,
+    GeometryKind,
+    Jobs,
+    Packages,
+    Units,
+    argument,
+    cores,
+    examples,
+    option,
+    reading,
+)
 from kinform_cli.progress import Working
 
 EXAMPLES = examples(
-    "kinform report arm.h5 -o arm.html", "kinform report arm.h5 -o arm.html --png out   # also PNG and summary.md"
+    "kinform report arm.h5",
+    "kinform report arm.toml --open                       # runs it, and opens the page in the browser",
+    "kinform report robot.urdf -o robot.html",
+    "kinform report arm.h5 -o arm.html --png out          # also PNG and summary.md",
+    "kinform report arm.h5 -o arm.html --png out --notes  # notes pictured too",
 )
 
 
 def report(
-    source: Results,
-    output: Annotated[Path, option("--output -o", "FILE.html", "Page to write.")],
+    sources: Annotated[
+        list[Path],
+        argument("SOURCE", "A results file; or a manifest, robot description, scene, or meshes with --units."),
+    ],
+    output: Annotated[
+        Path | None, option("--output -o", "FILE.html", "Page to write; else that of the source's name beside it.")
+    ] = None,
+    open_: Annotated[bool, option("--open", None, "Open the page in the browser.")] = False,
     png: Annotated[
         Path | None,
         option(
             "--png",
             "DIR",
-            "Also write pictures and a Markdown summary into this folder, which is made where it is missing.",
+            "Also write pictures of errors and warnings and a Markdown summary into this folder, which is made where "
+            "it is missing.",
         ),
     ] = None,
+    notes: Annotated[bool, option("--notes", None, "With --png: pictures of notes too.")] = False,
+    as_it_is: Annotated[
+        bool, option("--as-it-is", None, "Show a results file of some stages as it is; else the others are computed.")
+    ] = False,
+    units: Units = None,
+    allow_outside: AllowOutside = False,
+    geometry: Geometry = GeometryKind.visual,
+    packages: Packages = None,
+    deviation: Deviation = None,
+    jobs: Jobs = None,
 ) -> None:
-    """Write one self-contained page: verdict, findings, the assembly in 3D, joints, motion, curves."""
-    files.check_page(output, inputs=[source])
+    """Write one self-contained page: verdict, findings, the assembly in 3D, joints, motion, curves.
+
+    What has not been computed yet is computed, and not kept.
+    """
+    sources = files.sources_of(sources)
+    if notes and png is None:
+        raise typer.BadParameter("goes with --png DIR", param_hint="--notes")
+    page = output or _beside(sources[0])
+    files.check_page(page, inputs=sources)
     if png is not None:
         _make_folder(png)
-    design = files.read(source)
-    from kinform.reports.page import Scene, page_html, page_pictures, page_summary
+    design = whole_design(
+        sources,
+        units=units,
+        reading=reading(geometry, packages, deviation),
+        allow_outside=allow_outside,
+        jobs=cores(jobs),
+        as_it_is=as_it_is,
+    )
+    from kinform.reports.page import Artist, Scene, page_html, page_pictures, page_summary
 
-    with Working("report"):
-        scene = Scene(design)
-        text = page_html(design, scene)
-        images = {} if png is None else page_pictures(scene)
-    files.write_text(output, text)
-    console.say(f"{output}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
+    with Working("report") as working:
+        artist = Artist(Scene(design))
+        text = page_html(design, artist)
+        step = lambda done, total: working.step("pictures", done, total)
+        images = {} if png is None else page_pictures(artist, notes=notes, progress=step)
+    files.write_text(page, text)
+    console.say(f"{page}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
     if png is not None:
         for name, data in images.items():
             files.write_bytes(png / name, data)
-        files.write_text(png / "summary.md", page_summary(design))
+        files.write_text(png / "summary.md", page_summary(design, notes=notes))
         console.say(f"{png}: {counted(len(images), 'picture')} and summary.md")
     if design.report is None:
-        console.warn("the rules have not been run, and the page says so: kinform check F.h5 -o F.h5")
+        console.warn("the rules have not been run, and the page says so")
+    if open_:
+        show_page(page.resolve().as_uri())
+
+
+def show_page(address: str) -> None:
+    """Open an address in the browser of the user; a warning where there is none."""
+    import webbrowser
+
+    try:
+        shown = webbrowser.open(address)
+    except webbrowser.Error:
+        shown = False
+    if not shown:
+        console.warn(f"no browser could be started: open {address} yourself")
+
+
+def _beside(source: Path) -> Path:
+    """The page's name where none is given; an error where another file has it."""
+    page = source.with_suffix(".html")
+    if page.is_file() and b'name="generator" content="kinform' not in page.read_bytes()[:4096]:
+        raise refuse("exists, and is no page of kinform", file=page, remedy="name the page: -o FILE.html")
+    return page
 
 
 def _make_folder(path: Path) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinform_cli import console, errors, files
+from kinform_cli.commands.report import show_page
 from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
@@ -29,6 +32,7 @@ from kinform_cli.options import (
     reading,
 )
 from kinform_cli.progress import Working
+from kinform_cli.serving import PageServer
 
 if TYPE_CHECKING:
     from kinform.form.sources import Reading
@@ -37,6 +41,7 @@ if TYPE_CHECKING:
 EXAMPLES = examples(
     "kinform watch arm.toml -o arm.h5",
     "kinform watch arm.toml -o arm.h5 --fail-on warning",
+    "kinform watch arm.toml -o arm.h5 --report --open    # the page, which follows every save",
     "kinform watch arm.toml -o arm.h5 --max-runs 1    # once",
 )
 
@@ -56,22 +61,45 @@ def watch(
     period: Annotated[
         float, typer.Option("--period", min=0.01, metavar="SECONDS", help="How often the files are looked at.")
     ] = 0.5,
+    report: Annotated[
+        bool, option("--report", None, "Serve the page to browsers on this machine; it loads itself again on save.")
+    ] = False,
+    port: Annotated[
+        int | None, option("--port", "N", "With --report: the port; default: a free one.", min=1, max=65535)
+    ] = None,
+    open_: Annotated[bool, option("--open", None, "With --report: open the page in the browser.")] = False,
     max_runs: Annotated[int | None, option("--max-runs", "N", "Leave after so many runs.", min=1)] = None,
 ) -> None:
     """Run on every save of the manifest or of a file that it names, until Ctrl-C.
 
     Bad input is reported, and the next save tried. The exit code is that of the last run; as for `run`.
     """
+    if not report and (port is not None or open_):
+        raise typer.BadParameter("goes with --report", param_hint="--open" if open_ else "--port")
+    (manifest,) = files.sources_of([manifest])
     shown = printed(format, otherwise=FindingsFormat.concise)
     files.check_output(output, inputs=[manifest])
     files.check_findings(shown.files, [manifest, output])
     how = reading(geometry, packages, deviation)
     gate = Gate(shown, fail_on, manifest.parent)
+    with contextlib.ExitStack() as stack:
+        server = stack.enter_context(PageServer(port or 0)) if report else None
+        if server is not None:
+            console.say(f"the page: {server.address}   (for this machine only)")
+        if server is not None and open_:
+            show_page(server.address)
+        once = lambda: _run(manifest, output, allow_outside, how, cores(jobs), gate, server)
+        code = _watch(manifest, output, once, period, max_runs)
+    raise typer.Exit(code)
+
+
+def _watch(manifest: Path, output: Path, once: Callable[[], int | None], period: float, max_runs: int | None) -> int:
+    """Runs `once` now and on every save; the exit code of the last run."""
     code, runs = errors.NOT_VERIFIED, 0
     try:
         while True:
             before = _stamps(_files(manifest, output))
-            verdict = _run(manifest, output, allow_outside, how, cores(jobs), gate)
+            verdict = once()
             code = errors.NOT_VERIFIED if verdict is None else verdict
             runs += 1
             if runs == max_runs or console.settings.cut is not None:
@@ -85,11 +113,14 @@ def watch(
             _wait(seen, period)
     except KeyboardInterrupt:
         console.say("watching ended")
-    raise typer.Exit(code)
+    return code
 
 
-def _run(manifest: Path, output: Path, allow_outside: bool, how: Reading, jobs: int, gate: Gate) -> int | None:
-    """One run: prints its findings or its errors; the exit code that it is due, None where the input is bad."""
+def _run(
+    manifest: Path, output: Path, allow_outside: bool, how: Reading, jobs: int, gate: Gate, server: PageServer | None
+) -> int | None:
+    """One run: prints its findings or its errors, and serves its page; the exit code that it is due, None where the
+    input is bad."""
     import kinform
 
     try:
@@ -105,8 +136,16 @@ def _run(manifest: Path, output: Path, allow_outside: bool, how: Reading, jobs: 
             )
     except (kinform.KinformError, OSError) as error:
         errors.report(error)
+        if server is not None:
+            server.say(f"The last save could not be read, the page is of the one before: {error}")
         return None
-    return gate.judge(outcome.gist, outcome)
+    code = gate.judge(outcome.gist, outcome)
+    if server is not None:
+        from kinform.reports.page import page_html
+
+        with Working("page"):
+            server.show(page_html(outcome.design, live=server.next_version))
+    return code
 
 
 def _files(manifest: Path, output: Path) -> list[Path]:

@@ -48,9 +48,13 @@ SIGNAL_COLOUR = "#e8590c"
 # page: how much of it there is
 
 MOST_PICTURES = 24
-"""Findings with a picture on the page; the others can be shown in the interactive view."""
+"""Errors and warnings with a picture on the page; the others can be shown in the interactive view."""
 MOST_PICTURE_FILES = 40
-"""Findings that get a picture beside the summary, the worst first."""
+"""Findings that the summary tells, the worst first; errors and warnings among them get a picture."""
+OVERVIEW_WIDTH, OVERVIEW_HEIGHT = 960, 600
+"""px, of the picture of the whole."""
+PICTURE_WIDTH, PICTURE_HEIGHT = 480, 320
+"""px, of the picture of a finding."""
 MOST_LISTED_PATCHES = 14
 """Patches that a joint lists; the rest are counted."""
 LEAST_GAP = 1e-7
@@ -95,10 +99,9 @@ CLOSED_WELL = 1e-8
 """At this gap no further step is taken: a thousandth of what may be missed."""
 MOST_CLOSING_STEPS = 8
 """Gauss–Newton steps; from a neighbouring pose three or four are usual."""
-NUDGE = 1e-6
-"""rad, and share of the size: step of the differences that give the slopes of the gaps."""
 SLOPE_RANK = 1e-7
-"""Singular values of the slopes below this share of the greatest count as zero, as differences are no finer."""
+"""Singular values of the slopes below this share of the greatest count as zero: the slopes of loops that are nearly
+closed are known to about the square root of what they miss."""
 FREEDOM_RANK = 1e-7
 """Pivots of joint rates below this share of the greatest count as zero."""
 LEAST_MOVE = 1e-6
@@ -143,6 +146,8 @@ FLAT = 1e-9
 
 # raster and pictures (px are those of the finer drawing unless it is said)
 
+PNG_EFFORT = 6
+"""Of zlib: 9 takes three times as long for 3 % less."""
 PORTION = 1 << 16
 """Pixels that are worked on at once: some megabytes."""
 EYE_TURN, EYE_RISE = -0.95, 0.42

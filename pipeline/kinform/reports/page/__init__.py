@@ -7,7 +7,8 @@ is written here, and nothing depends on clock, host or paths.
 from __future__ import annotations
 
 from kinform.reports.page.html import page_html
+from kinform.reports.page.pictures import Artist
 from kinform.reports.page.pull_request import page_pictures, page_summary
 from kinform.reports.page.scene import Scene
 
-__all__ = ["Scene", "page_html", "page_pictures", "page_summary"]
+__all__ = ["Artist", "Scene", "page_html", "page_pictures", "page_summary"]

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from scipy.linalg import qr
 
-from kinform.foundation.algebra.displacements import displacement
+from kinform.foundation.algebra.displacements import carry, displacement, exponentials, inverse
 from kinform.foundation.graphs.graph import forest
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Freedom, Joint, Kinematics
@@ -118,6 +119,8 @@ class _Linkage:
         twists = [j.twists for j in self.joints]
         self.screws = np.concatenate([np.zeros((0, 6)), *twists])
         self.turning = np.linalg.norm(self.screws[:, :3], axis=1) > 1e-12
+        self.speed = np.where(self.turning, np.linalg.norm(self.screws[:, :3], axis=1), 1.0)
+        self.units = self.screws / self.speed[:, None]
         self.owner = np.repeat(np.arange(len(self.joints)), [j.freedoms for j in self.joints])
 
     def rates(self, freedoms: Array) -> Array:
@@ -205,30 +208,67 @@ class _Linkage:
 
     def poses(self, q: Array) -> Array:
         """(B, 4, 4) motion of each body at joint coordinates q."""
+        return self._moved(self._across(q))
+
+    def _across(self, q: Array) -> list[Array]:
+        """(4, 4) of each joint: its second body in the first, from where the meshes are."""
+        steps = [np.eye(4)] * len(q)
+        moving = np.flatnonzero(q)
+        if len(moving):
+            angles = np.where(self.turning, self.speed * q, q)
+            made = exponentials(self.units[moving], angles[None, moving])[0]
+            for i, step in zip(moving, made, strict=True):
+                steps[i] = step
+        return [
+            reduce(np.matmul, steps[first:last], np.eye(4))
+            for first, last in zip(self.start, self.start[1:], strict=False)
+        ]
+
+    def _moved(self, across: list[Array]) -> Array:
+        """(B, 4, 4) motion of each body, from that of each joint."""
         out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
         for node in self.tree.order:
             k = self.tree.edge[node]
             if k >= 0:
-                across = self._across(k, q)
-                step = across if self.edges[k][1] == node else np.linalg.inv(across)
+                step = across[k] if self.edges[k][1] == node else inverse(across[k])
                 out[node] = out[self.tree.parent[node]] @ step
         return out
 
-    def _across(self, k: int, q: Array) -> Array:
-        out = np.eye(4)
-        for i in range(self.start[k], self.start[k + 1]):
-            if q[i]:
-                out = out @ displacement(self.screws[i] * q[i])
-        return out
-
     def _missing(self, q: Array) -> Array:
-        poses, out = self.poses(q), []
+        """(6 chords,) by how much the loops are open: turns (rad), then distances over the size."""
+        across = self._across(q)
+        poses, out = self._moved(across), []
         for k in self.chords:
             a, b = self.edges[k]
-            gap = poses[a] @ self._across(k, q) @ np.linalg.inv(poses[b])
+            gap = poses[a] @ across[k] @ inverse(poses[b])
             turn = 0.5 * (gap[:3, :3] - gap[:3, :3].T)
             out += [turn[2, 1], turn[0, 2], turn[1, 0], *(gap[:3, 3] / self.size)]
         return np.array(out)
+
+    def _slopes(self, q: Array) -> Array:
+        """(6 chords, n) of `_missing` by the coordinates, where loops are nearly closed: a coordinate turns what comes
+        after it on its way about its screw, carried to where that is now."""
+        across = self._across(q)
+        poses = self._moved(across)
+        screws = np.zeros((len(q), 6))
+        for k, (a, _) in enumerate(self.edges):
+            before = poses[a]
+            for i in range(self.start[k], self.start[k + 1]):
+                screws[i] = carry(before, self.screws[i : i + 1])[0]
+                before = before @ displacement(self.screws[i] * q[i]) if self.start[k + 1] - i > 1 else before
+        out = np.zeros((len(self.chords), 6, len(q)))
+        for row, k in zip(out, self.chords, strict=True):
+            for end, sign in zip(self.edges[k], (1.0, -1.0), strict=True):
+                node = end
+                while (edge := self.tree.edge[node]) >= 0:
+                    forward = 1.0 if self.edges[edge][1] == node else -1.0
+                    span = slice(self.start[edge], self.start[edge + 1])
+                    row[:, span] += sign * forward * screws[span].T
+                    node = self.tree.parent[node]
+            span = slice(self.start[k], self.start[k + 1])
+            row[:, span] += screws[span].T
+        out[:, 3:] /= self.size
+        return out.reshape(-1, len(q))
 
     def _closed(self, q: Array, driver: int) -> Array | None:
         """The nearest closed configuration with the driver where it is."""
@@ -238,11 +278,7 @@ class _Linkage:
             missing = self._missing(q)
             if float(np.abs(missing).max()) < constants.CLOSED_WELL:
                 return q
-            slope = np.empty((len(missing), len(free)))
-            for column, i in enumerate(free):
-                nudged = q.copy()
-                nudged[i] += constants.NUDGE * unit[i]
-                slope[:, column] = (self._missing(nudged) - missing) / constants.NUDGE
+            slope = self._slopes(q)[:, free] * unit[free]
             step = np.linalg.lstsq(slope, -missing, rcond=constants.SLOPE_RANK)[0]
             q = q.copy()
             q[free] += step * unit[free]

@@ -30,16 +30,19 @@ from kinform.reports.page.scene_data import embedded_scene
 from kinform.version import __version__
 
 
-def page_html(design: Design, scene: Scene | None = None, live: str = "") -> str:
-    """The report of a design as HTML; `scene` where it was made already. A page with a `live` number asks the server
-    that it came from whether there is a newer one."""
-    scene = scene or Scene(design)
+def page_html(design: Design, artist: Artist | None = None, live: str = "") -> str:
+    """The report of a design as HTML; `artist` where one has drawn of it already.
+
+    A page with a `live` number asks the server that it came from whether there is a newer one.
+    """
+    artist = artist or Artist(Scene(design))
+    scene = artist.scene
     embedded, blob = embedded_scene(scene)
     program = _asset_program()
     digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii")
     findings = facts.findings(design)
-    artist = Artist(scene)
-    pictures = {f.index: _data(artist.finding(f.index)) for f in findings[:MOST_PICTURES]}
+    worst = [finding for finding in findings[:MOST_PICTURES] if finding.severity != "note"]
+    pictures = {f.index: _data(artist.finding(f.index)) for f in worst}
     table = sorted(agreement.rows(design), key=lambda row: agreement.ORDER.index(row.mark))
     answered = intended.answer_rows(design)
     rules = facts.rules(design)
@@ -68,7 +71,7 @@ def page_html(design: Design, scene: Scene | None = None, live: str = "") -> str
         graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
         legend=[] if design.kinematics is None else graph_legend(design.kinematics),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plot_groups(design)],
-        overview=Markup(_data(artist.overview(800, 500))),
+        overview=Markup(_data(artist.overview())),
         style=Markup(_asset("page.css")),
         program=Markup(program),
         digest=digest,

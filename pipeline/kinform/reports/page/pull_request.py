@@ -5,27 +5,35 @@ from __future__ import annotations
 import re
 
 from kinform.design import Design
+from kinform.foundation.progress import Progress
 from kinform.reports.constants import MOST_PICTURE_FILES
 from kinform.reports.page import agreement, facts
 from kinform.reports.page.pictures import Artist
-from kinform.reports.page.scene import Scene
 
 
-def page_pictures(scene: Scene) -> dict[str, bytes]:
-    """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first."""
-    artist = Artist(scene)
-    out = {"overview.png": artist.overview(1200, 750)}
-    for name, finding in _pictured(scene.design):
-        out[name] = artist.finding(finding.index, 720, 480)
+def page_pictures(artist: Artist, notes: bool = False, progress: Progress | None = None) -> dict[str, bytes]:
+    """PNG files by name: overview.png, and finding-01-KF403.png and so on, the worst first; of `notes` where they are
+    asked for. `progress` is told how many are drawn, and of how many."""
+    pictured = [(name, finding) for name, finding in _told(artist.scene.design, notes) if name]
+    out = {"overview.png": artist.overview()}
+    for name, finding in pictured:
+        if progress is not None:
+            progress(len(out), len(pictured) + 1)
+        out[name] = artist.finding(finding.index)
     return out
 
 
-def _pictured(design: Design) -> list[tuple[str, facts.FindingFacts]]:
-    return [(f"finding-{n:02d}-{f.code}.png", f) for n, f in enumerate(facts.findings(design)[:MOST_PICTURE_FILES], 1)]
+def _told(design: Design, notes: bool) -> list[tuple[str, facts.FindingFacts]]:
+    """The findings that the summary tells, the worst first, each with the name of its picture; empty: it has none."""
+    found = facts.findings(design)[:MOST_PICTURE_FILES]
+    return [
+        (f"finding-{n:02d}-{f.code}.png" if notes or f.severity != "note" else "", f) for n, f in enumerate(found, 1)
+    ]
 
 
-def page_summary(design: Design) -> str:
-    """Markdown: verdict, overview, what disagrees, each finding with its picture; pictures are beside it."""
+def page_summary(design: Design, notes: bool = False) -> str:
+    """Markdown: verdict, overview, what disagrees, each finding; their pictures, those of `notes` where they are asked
+    for, are beside it."""
     verdict = facts.verdict_of(design)
     name = _plain(design.assembly.name)
     lines = [
@@ -50,8 +58,8 @@ def page_summary(design: Design) -> str:
             )
             lines.append("| " + " | ".join(map(_plain, cells)) + " |")
         lines.append("")
-    pictured = _pictured(design)
-    for file, finding in pictured:
+    told = _told(design, notes)
+    for file, finding in told:
         lines += [
             f"## {finding.sign} {finding.severity} {finding.code}: {_plain(finding.rule)}: {_plain(finding.subject)}",
             "",
@@ -60,8 +68,8 @@ def page_summary(design: Design) -> str:
         ]
         lines += [f"- {key}: {_plain(value)}" for key, value in finding.facts]
         lines += [f"- remedy: {_plain(finding.remedy)}"] if finding.remedy else []
-        lines += ["", f"![{finding.code}]({file})", ""]
-    left = len(design.report.findings) - len(pictured) if design.report else 0
+        lines += ["", f"![{finding.code}]({file})", ""] if file else [""]
+    left = len(design.report.findings) - len(told) if design.report else 0
     lines += [f"{left} more findings are in the report.", ""] if left > 0 else []
     undecided = [rule for rule in facts.rules(design) if rule.outcome == "inconclusive"]
     if undecided:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
-from kinform.reports.constants import EYE_RISE, EYE_TURN, PORTION, VIEW_MARGIN
+from kinform.reports.constants import EYE_RISE, EYE_TURN, PNG_EFFORT, PORTION, VIEW_MARGIN
 
 NOTHING = np.uint64(0xFFFFFFFFFFFFFFFF)
 
@@ -159,7 +159,7 @@ def png(pixels: NDArray[np.uint8]) -> bytes:
     rows[:, 1:] -= pixels[:, :-1]
     flat = np.concatenate([np.full((height, 1), 1, np.uint8), rows.astype(np.uint8).reshape(height, -1)], axis=1)
     head = struct.pack(">IIBBBBB", width, height, 8, {3: 2, 4: 6}[depth], 0, 0, 0)
-    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(flat.tobytes(), 9)), (b"IEND", b""))
+    chunks = ((b"IHDR", head), (b"IDAT", zlib.compress(flat.tobytes(), PNG_EFFORT)), (b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*chunk) for chunk in chunks)
 
 

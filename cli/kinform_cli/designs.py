@@ -1,0 +1,57 @@
+"""A whole design for commands that look at one: from a results file, a manifest, or any other source."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinform_cli import console, files
+from kinform_cli.progress import Working
+
+if TYPE_CHECKING:
+    from kinform.design import Design
+    from kinform.form.sources import Reading
+
+RESULTS = (".h5", ".hdf5")
+
+
+def whole_design(
+    sources: Sequence[Path], *, units: str | None, reading: Reading, allow_outside: bool, jobs: int, as_it_is: bool
+) -> Design:
+    """The design with every stage. What a results file lacks is computed and not kept, unless it is wanted
+    `as_it_is`; of any other source everything is computed, but what the results file beside it still has of it.
+
+    Raises InputError for sources that are no design, ResultsError for a results file that cannot be read.
+    """
+    from kinform import method
+    from kinform.form.sources import AS_IT_IS
+
+    if len(sources) == 1 and sources[0].suffix.lower() in RESULTS:
+        design = files.read(sources[0])
+        if as_it_is:
+            return design
+        with Working("run") as working:
+            design, ran = method.completed(design, jobs=jobs, progress=working.step, say=console.say)
+        if ran:
+            console.say(f"{sources[0]} has no results of {', '.join(ran)}: they were computed, and not kept")
+        return design
+    manifest = files.is_manifest(sources, units)
+    beside = sources[0].with_suffix(".h5")
+    if manifest and reading == AS_IT_IS and beside.is_file():
+        from kinform import results
+
+        if results.read_if_current(beside, sources[0], allow_outside=allow_outside) is not None:
+            console.say(f"{beside} holds this design as it is now: nothing is computed")
+            return results.read(beside)
+    with Working("run") as working:
+        outcome = method.run(
+            sources[0] if manifest else list(sources),
+            jobs=jobs,
+            progress=working.step,
+            allow_outside=allow_outside,
+            units=units,
+            say=console.say,
+            reading=reading,
+        )
+    return outcome.design
