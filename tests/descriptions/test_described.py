@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from tests.support.walkers import Box, Walker
 
-from kinform import form
+from kinform import form, run
 from kinform.consistency import RULES
 from kinform.consistency.context import Context
+from kinform.consistency.control import apply
+from kinform.consistency.outcome import decided
 from kinform.design import Design
 from kinform.foundation.meshes.hulls import hull_of
+from kinform.model.checks import CheckSettings
 
 CODES = ("KF110", "KF121", "KF123", "KF124", "KF130", "KF131", "KF132", "KF415")
 
@@ -187,3 +190,30 @@ def test_a_hull_tells_how_far_outside_a_point_is():
     assert hull.volume == pytest.approx(2.0, rel=1e-12)
     away = hull.outside(np.array([[3.0, 0.5, 0.5], [1.0, 0.5, 0.5]]))
     assert away == pytest.approx([1.0, -0.5], abs=1e-12)
+
+
+def overlaps(folder, widths):
+    walker = Walker()
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        low, high = 0.1 - widths, 0.15
+        middle = sign * (0.5 * (low + high) - 0.13)
+        walker.links[f"{side}_thigh"].boxes[0] = Box((0.05, high - low, 0.20), (0.0, middle, -0.10))
+    (folder / "walker.urdf").write_text(walker.text())
+    return [f for f in run(folder / "walker.urdf").findings if f.code == "KF201"]
+
+
+def test_links_that_a_joint_joins_may_overlap_a_little_and_not_deeply(tmp_path):
+    assert [(f.severity, "a joint joins" in f.message) for f in overlaps(tmp_path, 0.004)] == [("note", True)] * 2
+    assert [f.severity for f in overlaps(tmp_path, 0.03)] == ["warning"] * 2
+
+
+def test_of_many_warnings_on_a_description_the_first_are_told_and_the_others_named():
+    rule = next(rule for rule in RULES if rule.code == "KF201")
+    warnings = [rule.at("warning").finding([f"a{k}", f"b{k}"], f"overlap {k}") for k in range(9)]
+    description = CheckSettings(profile="description")
+    told = apply(rule, decided(warnings), description).findings
+    assert [f.message for f in told[:3]] == ["overlap 0", "overlap 1", "overlap 2"] and len(told) == 4
+    assert told[3].message.startswith("6 more of this rule, none worse: 'a3' and 'b3'")
+    assert set(told[3].subject) == {f"{letter}{k}" for letter in "ab" for k in range(3, 9)}
+    assert len(apply(rule, decided(warnings), CheckSettings(profile="design")).findings) == 9
+    assert len(apply(rule, decided(warnings[:6]), description).findings) == 6

@@ -51,6 +51,12 @@ different units: metres and millimetres."""
 TRIANGLE_ROUNDING = 1e-9
 """Relative rounding that the triangle inequality of the moments is allowed (thin discs reach equality)."""
 
+# --- rules/kf201_parts_interpenetrate ---------------------------------------------------------------------------------
+
+AT_JOINT = 0.02
+"""Share of the size of the smaller of two links that a joint joins, up to which they may overlap in a description:
+bearings, flush horns, bevel gears drawn at their nominal size."""
+
 # --- rules/kf405_joint_pitch_differs ----------------------------------------------------------------------------------
 
 SAME_PITCH = 1e-3
@@ -142,6 +148,16 @@ INERTIA_FAR = 30.0
 doubted: hollow shells have up to 3, dense motors in light shells down to a tenth."""
 CENTRE_OUTSIDE = 0.03
 """Share of the size by which a centre of mass may lie outside of the hull: pieces that are not drawn, rounding."""
+
+# --- control ----------------------------------------------------------------------------------------------------------
+
+FEW_WARNINGS = 6
+"""Warnings of one rule on a robot description that are told one by one: the sides of three joints. Of more, nobody
+reads the last."""
+WORST_WARNINGS = 3
+"""Of more, so many are told; the rest is one finding."""
+NAMED_WARNINGS = 4
+"""Of these, so many are named."""
 
 # --- comparisons/gathering --------------------------------------------------------------------------------------------
 

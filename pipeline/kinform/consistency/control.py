@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from kinform.consistency.constants import FEW_WARNINGS, NAMED_WARNINGS, WORST_WARNINGS
 from kinform.consistency.context import Unused
 from kinform.consistency.outcome import Outcome
 from kinform.consistency.profiles import SETTLED, at_most
@@ -53,8 +54,29 @@ def apply(rule: Rule, outcome: Outcome, settings: CheckSettings) -> Applied:
     whole = next((entry for entry in entries if entry.subject is None), None)
     if outcome.kind == "inconclusive" and whole is not None and whole not in used:
         used.append(whole)
+    if settings.profile == "description":
+        kept = list(_few(kept))
+        outcome = replace(outcome, findings=tuple(kept))
     settled = whole is not None or (rule.code.startswith(DOUBT) and bool(ignored) and not kept)
     return Applied(_outcome_under(rule, outcome, ignored, settled, whole), tuple(kept), tuple(ignored), tuple(used))
+
+
+def _few(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """The findings of one rule on a description: of many warnings the first ones, which are the worst, and one that
+    names all that the others are about."""
+    warnings = [finding for finding in findings if finding.severity == "warning"]
+    yield from (finding for finding in findings if finding.severity != "warning")
+    if len(warnings) <= FEW_WARNINGS:
+        yield from warnings
+        return
+    told, rest = warnings[:WORST_WARNINGS], warnings[WORST_WARNINGS:]
+    yield from told
+    about = [" and ".join(f"'{name}'" for name in finding.subject[:2]) for finding in rest]
+    text = f"{len(rest)} more of this rule, none worse: {'; '.join(about[:NAMED_WARNINGS])}"
+    if len(about) > NAMED_WARNINGS:
+        text += f' and {len(about) - NAMED_WARNINGS} more; `[check] profile = "design"` lists all'
+    subject = tuple(dict.fromkeys(name for finding in rest for name in finding.subject))
+    yield replace(rest[0], subject=subject, message=text, found=None, intended=None, place=None)
 
 
 def outcome_without(rule: RuleOutcome, left: Sequence[Finding], ignored: Sequence[Ignored]) -> RuleOutcome:

@@ -32,11 +32,12 @@ DESCRIPTION: Mapping[str, str] = {
     "KF412": "warning",
     "KF414": "note",
     "KF901": "note",
+    "KF903": "note",
     "KF904": "note",
 }
 """Severity of each rule's findings at most, where the profile is `description`."""
 
-SETTLED = frozenset({"KF204", "KF303", "KF402", "KF406", "KF901", "KF904"})
+SETTLED = frozenset({"KF204", "KF303", "KF402", "KF406", "KF901", "KF903", "KF904"})
 """Rules whose doubts, in a description, are notes and leave nothing undecided: meshes that are for looking at do not
 say more."""
 

@@ -3,8 +3,9 @@
 The density that a stated mass takes is told: mass over the volume that closed meshes enclose (parts that share space
 count twice), and over the volume of the convex hull, which nothing can exceed. An error where the hull would have to be
 denser than any material (23 000 kg/m³), or the inertia is larger than if all of the mass were at the farthest point of
-the shape. A warning above 12 000 kg/m³ or below 5 kg/m³ of the enclosed volume, and where the inertia is 30 times more
-or less than that of the same mass spread evenly over the shape. Impossible masses and inertias are KF121.
+the shape, and 30 times that of the mass spread evenly. A warning above 12 000 kg/m³ or below 5 kg/m³ of the enclosed
+volume, where the inertia is too large for the shape by less (something may not be drawn), or 30 times less than that of
+the mass spread evenly. Impossible masses and inertias are KF121.
 
 Why it matters: torques, natural frequencies and controllers tuned in simulation are wrong by the same factor, and a
 simulator with tiny inertias needs tiny steps or explodes.
@@ -92,9 +93,10 @@ def _of_inertia(body: Weighed) -> Ranked | None:
     even = _even(body)
     ratio = half_trace / even if even > 0.0 else 1.0
     if half_trace > INERTIA_LARGE * most:
-        severity, why = "error", "more than if all of the mass were at the farthest point of its geometry"
+        severity = "error" if ratio > INERTIA_FAR else "warning"
+        why = "of the mass spread evenly, and more than if all of it were at the farthest point of its geometry"
     elif half_trace <= 0.0 or not 1.0 / INERTIA_FAR < ratio < INERTIA_FAR:
-        severity, why = "warning", "for the same mass spread evenly over its geometry"
+        severity, why = "warning", "of the same mass spread evenly over its geometry"
     else:
         return None
     solid = body.solid
@@ -104,7 +106,7 @@ def _of_inertia(body: Weighed) -> Ranked | None:
     factor = f"{number(ratio, 2)} times" if ratio >= 1.0 else f"1/{number(1.0 / ratio, 2) if ratio > 0.0 else '∞'} of"
     text = (
         f"{body.what} of {mass(body.mass)} states moments of inertia of {shown} kg·m² in all, {factor} the {usual} "
-        + (f"{why}{takes}" if severity == "warning" else f"of the mass spread evenly, and {why}{takes}")
+        f"{why}{takes}"
     )
     finding = RULE.at(severity).finding(
         [body.name], text,

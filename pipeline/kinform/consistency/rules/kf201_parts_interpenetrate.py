@@ -1,7 +1,9 @@
 """Two parts occupy the same space, beyond the facets' own error and not as a fit of mating surfaces.
 
 An error between parts that move relative to each other, a warning between parts of one body (threads,
-pressed or screwed parts are often drawn so), a note where `[[assume]] ignore = true` covers the pair.
+pressed or screwed parts are often drawn so), a note where `[[assume]] ignore = true` covers the pair. In a robot
+description, of which the meshes are for looking at, a warning; a note between parts of one link, and between links that
+a joint joins where the overlap is at most 2 % of the smaller one.
 
 A shaft that is larger than its bore is a fit where it can be pressed: by up to 3 % of the diameter, beyond what the
 facets leave open. More is an overlap like any other, and the message says by how much it is more.
@@ -16,6 +18,7 @@ Example: a gimbal ring whose lug reaches 1.5 mm into the housing wall.
 
 from __future__ import annotations
 
+from kinform.consistency.constants import AT_JOINT
 from kinform.consistency.context import Context
 from kinform.consistency.rule import Findings, Rule
 from kinform.contacts.constants import PRESS_SHARE
@@ -23,18 +26,21 @@ from kinform.contacts.presses import beyond_press, press_limit
 from kinform.foundation.words import length, quoted, volume
 from kinform.model.contacts import Interference
 from kinform.model.findings import Finding
+from kinform.model.names import PartName
 
 
 def check(context: Context) -> Findings:
     """Overlaps that are not mated fits."""
-    return [_finding(context, overlap) for overlap in context.contacts.interferences if not overlap.mated]
+    overlaps = [overlap for overlap in context.contacts.interferences if not overlap.mated]
+    overlaps.sort(key=lambda overlap: (-overlap.depth, overlap.parts))
+    return [_finding(context, overlap) for overlap in overlaps]
 
 
 def _finding(context: Context, overlap: Interference) -> Finding:
     depth = length(overlap.depth, context.units, 3)
     measured = overlap.volume == overlap.volume
     size = f"{depth} deep" + (f", {volume(overlap.volume, context.units)}" if measured else "")
-    relation, severity = _relation(context, overlap.parts)
+    relation, severity = _relation(context, overlap)
     return RULE.at(severity).finding(
         overlap.parts,
         f"{quoted(overlap.parts)} overlap by {size}{_press(context, overlap.parts)}{relation}",
@@ -61,8 +67,9 @@ def _press(context: Context, parts: tuple[str, str]) -> str:
     )
 
 
-def _relation(context: Context, parts: tuple[str, str]) -> tuple[str, str]:
+def _relation(context: Context, overlap: Interference) -> tuple[str, str]:
     """What holds the parts together, in words, and the severity that follows."""
+    parts = overlap.parts
     assembly = context.assembly
     for assumption in assembly.assumptions:
         sides = [frozenset(assembly.parts_of(name)) for name in assumption.between]
@@ -70,8 +77,30 @@ def _relation(context: Context, parts: tuple[str, str]) -> tuple[str, str]:
             return f"; contact between them is ignored: {assumption.reason}", "note"
     kinematics = context.design.kinematics
     if kinematics is not None and kinematics.body_of(parts[0]).name == kinematics.body_of(parts[1]).name:
-        return "; they move as one body", "warning"
-    return "", "error"
+        return "; they move as one body", "note" if _links(context, parts) else "warning"
+    links = _links(context, parts)
+    joined = {frozenset(joint.between) for d in assembly.descriptions for joint in d.joints}
+    if links and frozenset(links) in joined and overlap.depth <= AT_JOINT * _size(context, links):
+        return f"; a joint joins the links {quoted(links)}", "note"
+    return f" (links {quoted(links)})" if links else "", "error"
+
+
+def _links(context: Context, parts: tuple[str, str]) -> tuple[str, ...]:
+    """The described links that the parts are of; none unless both are of one."""
+    of = {name: link.name for d in context.assembly.descriptions for link in d.links for name in link.parts}
+    return tuple(of[name] for name in parts) if all(name in of for name in parts) else ()
+
+
+def _size(context: Context, links: tuple[str, ...]) -> float:
+    """m: of the smaller link, the diagonal of its largest part."""
+    meshes = {part.name: part.mesh for part in context.assembly.parts}
+    sizes = []
+    for d in context.assembly.descriptions:
+        for link in d.links:
+            if link.name in links:
+                known = [mesh for name in link.parts if (mesh := meshes.get(PartName(name))) is not None]
+                sizes.append(max((mesh.diagonal for mesh in known), default=0.0))
+    return min(sizes, default=0.0)
 
 
 RULE = Rule("KF201", "parts-interpenetrate", "error", __doc__, check, needs=("contacts",))

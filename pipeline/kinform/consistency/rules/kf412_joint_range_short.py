@@ -30,7 +30,7 @@ def check(context: Context) -> Outcome:
     ranges = [item for item in range_comparisons(context) if not item.reason]
     if not ranges:
         return skipped("no range to compare")
-    findings = []
+    found: list[tuple[float, Finding]] = []
     for item in ranges:
         lower, upper = item.intended.range or (-math.inf, math.inf)
         allowed = (
@@ -43,8 +43,11 @@ def check(context: Context) -> Outcome:
                 continue
             value = item.sign * end.value
             if toward * (stated - value) > allowed:
-                findings.append(_finding(context, item, side, stated, value, end))
-    return decided(findings)
+                span = upper - lower
+                short = toward * (stated - value) / span if math.isfinite(span) else math.inf
+                found.append((-short, _finding(context, item, side, stated, value, end)))
+    found.sort(key=lambda entry: (entry[0], entry[1].message))
+    return decided(finding for _, finding in found)
 
 
 def _finding(context: Context, item: RangeComparison, side: str, stated: float, value: float, end: RangeEnd) -> Finding:
