@@ -313,6 +313,46 @@ def glb() -> list[bytes]:
     return [scene.export(file_type="glb")]
 
 
+THREEMF = """<?xml version="1.0"?>
+<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
+<object id="1" name="a"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+<vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1.5"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/>
+<triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="2" v2="0" v3="3"/></triangles></mesh>
+</object><object id="2"><components><component objectid="1"/><component objectid="1"
+transform="0 1 0 -1 0 0 0 0 1 5 6 7"/></components></object></resources><build><item objectid="2"/>
+<item objectid="1" partnumber="b"/></build></model>
+"""
+
+
+def archive(model: bytes) -> bytes:
+    """A 3MF with this model."""
+    import io
+    import zipfile
+
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as packed:
+        packed.writestr("3D/3dmodel.model", model)
+    return out.getvalue()
+
+
+def threemf() -> list[bytes]:
+    """A model with an object of components."""
+    return [THREEMF.encode()]
+
+
+def dae() -> list[bytes]:
+    """By trimesh, and with a node in a node."""
+    import re
+
+    import trimesh
+
+    text = trimesh.exchange.dae.export_collada(trimesh.Trimesh(CUBE, SIDES))
+    for tag in (b"library_effects", b"library_materials", b"bind_material"):
+        text = re.sub(rb"(?s)<%b>.*?</%b>" % (tag, tag), b"", text)
+    nested = re.sub(rb"(?s)(<node .*</node>)", rb'<node name="o"><rotate>0 0 1 30</rotate>\1</node>', text)
+    return [text, nested.replace(b"<up_axis>", b'<unit name="mm" meter="0.001"/><up_axis>')]
+
+
 def step() -> list[bytes]:
     """Boxes and pins in a sub-assembly."""
     return [(ROOT / "tests" / "form" / "step" / "names.step").read_bytes()]

@@ -174,6 +174,28 @@ def _scene(data: bytes) -> None:
             _mesh(read_by_trimesh(data, kind))
 
 
+def _threemf(data: bytes) -> None:
+    """Reads the model in an archive, at whose check sums every mutation of its bytes would stop."""
+    (_FOLDER / "a.3mf").write_bytes(seeds.archive(data))
+    _load("a.3mf")
+
+
+def _dae(data: bytes) -> None:
+    """Reads a COLLADA as an assembly, and as the mesh of a part."""
+    from kinform.form.scenes.dae import read_dae_mesh
+
+    (_FOLDER / "a.dae").write_bytes(data)
+    with contextlib.suppress(*REFUSED):
+        _load("a.dae")
+    _mesh(read_dae_mesh(data))
+
+
+def _load(name: str) -> None:
+    from kinform import form
+
+    form.load(_FOLDER / name)
+
+
 def _text_error(run: Callable[[bytes], None]) -> Callable[[bytes], None]:
     """Also lets pass what a text that is none is refused with where the command reads it."""
     from kinform.foundation.texts import TextError
@@ -255,6 +277,8 @@ TARGETS = {
         Target(
             "glb", _source(".glb"), seeds.glb, (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
         ),
+        Target("3mf", _threemf, seeds.threemf, (*_XML_WORDS, b"transform='1 0 0'", b"unit='inch'", b"objectid='1'")),
+        Target("dae", _dae, seeds.dae, (*_XML_WORDS, b"<instance_node url='#a'/>", b"<matrix>", b"Y_UP", b"meter='0'")),
         Target("step", _source(".step"), seeds.step, _STEP_WORDS, 0.5),
         Target("results", _results, seeds.edits, (), 2.0),
     )

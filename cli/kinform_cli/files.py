@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from kinform.design import Design
 
 
-MESHES = (".stl", ".obj")
+MESHES = (".stl", ".obj", ".ply", ".off")
 DESCRIPTIONS = (".urdf", ".xacro", ".xml", ".mjcf", ".sdf", ".world")
-SCENES = (".glb", ".gltf", ".step", ".stp")
+SCENES = (".glb", ".gltf", ".step", ".stp", ".3mf", ".dae")
 """Files of several parts that state their own unit of length."""
 
 
@@ -264,7 +264,7 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
             "several inputs that are not all meshes",
             file=next(source for source in sources if source.suffix.lower() not in MESHES),
             remedy="name one manifest (.toml), robot description (.urdf, .sdf, .xml) or scene (.step, .glb, .gltf), "
-            "or only meshes (.stl, .obj)",
+            "or only meshes (.stl, .obj, .ply, .off)",
         )
     if units is not None:
         raise refuse(

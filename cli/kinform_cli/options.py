@@ -232,8 +232,8 @@ Sources = Annotated[
     list[Path],
     argument(
         "SOURCE",
-        "A manifest, a robot description (URDF, xacro, SDF, MJCF), or a CAD or scene file (STEP, GLB, glTF); or STL "
-        "and OBJ files, with --units.",
+        "A manifest, a robot description (URDF, xacro, SDF, MJCF), or a CAD or scene file (STEP, GLB, glTF, 3MF, "
+        "DAE); or STL, OBJ, PLY and OFF files, with --units.",
     ),
 ]
 Results = Annotated[Path, argument("F.h5", "Results file to read.")]

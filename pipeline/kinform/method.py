@@ -112,7 +112,7 @@ def _import(
     paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
     if units is not None:
         return stages.import_meshes(paths, units=units)
-    if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj"):
+    if len(paths) != 1 or Path(paths[0]).suffix.lower() in (".stl", ".obj", ".ply", ".off"):
         problem = Problem("the unit of these meshes is not stated", str(paths[0]), None, "state units")
         raise InputError([problem])
     return stages.import_(paths[0], allow_outside=allow_outside, reading=reading, ledger=ledger)

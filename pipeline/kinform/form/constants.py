@@ -180,6 +180,9 @@ AXIS_LENGTH = 1e-9
 SCENE_TEXT_BYTES = 64 * 1024 * 1024
 """Largest JSON of a glTF: 10,000 nodes have a tenth of it, and what is parsed takes ten times as much memory."""
 
+SCENE_XML_BYTES = 1 << 29
+"""Largest XML of a 3MF or DAE, unpacked: ten million facets, which take ten times as much memory."""
+
 SCENE_DEEP = 64
 """Nodes of a scene in each other: twice what sub-assemblies may have, for each may have a frame of its own."""
 

@@ -21,7 +21,7 @@ from kinform.model.assembly import Assembly, Mesh, Part
 MESHES = (".stl", ".obj")
 """Suffixes of mesh files that kinform reads itself."""
 
-OTHER_MESHES = (".dae", ".glb", ".gltf", ".step", ".stp", ".ply", ".off")
+OTHER_MESHES = (".dae", ".glb", ".gltf", ".3mf", ".step", ".stp", ".ply", ".off")
 """Suffixes of mesh files that descriptions name besides, and of scenes."""
 
 
@@ -66,15 +66,19 @@ def _parsed(path: Path, data: bytes, reading: Reading = AS_IT_IS) -> RawMesh:
         from kinform.form.meshes.stl import read_stl
 
         return read_stl(data)
+    if path.suffix.lower() in (".ply", ".off"):
+        from kinform.form.meshes.by_trimesh import read_by_trimesh
+
+        return read_by_trimesh(data, path.suffix.lower()[1:])
+    if path.suffix.lower() == ".dae":
+        from kinform.form.scenes.dae import read_dae_mesh
+
+        return read_dae_mesh(data)
     if is_scene(path):
         from kinform.form.scenes.registry import scene_once
         from kinform.form.scenes.scene import whole
 
         return whole(scene_once(data, path, reading))
-    if path.suffix.lower() in OTHER_MESHES:
-        from kinform.form.meshes.by_trimesh import read_by_trimesh
-
-        return read_by_trimesh(data, path.suffix.lower()[1:])
     from kinform.form.meshes.obj import read_obj
 
     return read_obj(data)

@@ -26,10 +26,17 @@ _FORMATS: Mapping[str, str] = {
     ".world": "descriptions.tables",
     ".glb": "scenes.tables",
     ".gltf": "scenes.tables",
+    ".3mf": "scenes.tables",
+    ".dae": "scenes.tables",
+    ".ply": "scenes.tables",
+    ".off": "scenes.tables",
     ".step": "scenes.tables",
     ".stp": "scenes.tables",
 }
 """Module of `form` that reads files of a suffix."""
+
+_LOOSE = (".ply", ".off")
+"""Suffixes of formats without a unit of length."""
 
 GEOMETRIES = ("visual", "collision")
 """Which geometry of a description its parts are."""
@@ -90,6 +97,11 @@ def is_source(path: Path) -> bool:
 def is_scene(path: Path) -> bool:
     """Whether the suffix is that of a CAD or scene file."""
     return _FORMATS.get(path.suffix.lower()) == "scenes.tables"
+
+
+def states_units(path: Path) -> bool:
+    """Whether a description or an assembly file has its own unit of length; else it is a mesh as well."""
+    return is_source(path) and path.suffix.lower() not in _LOOSE
 
 
 def source_tables(source: Source) -> SourceTables | None:

@@ -17,7 +17,7 @@ from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.problems import Problems
 from kinform.form.readers.poses import shift
-from kinform.form.sources import is_scene
+from kinform.form.sources import states_units
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
 from kinform.model.assembly import Assembly, Part, Source
@@ -146,7 +146,7 @@ def _bodies(paths: list[Path], problems: Problems) -> list[tuple[Path, str | Non
         raise InputError([Problem("no mesh is given", None, None, "name STL or OBJ files")])
     out: list[tuple[Path, str | None, str, RawMesh]] = []
     for path in paths:
-        if is_scene(path):
+        if states_units(path):
             problems.add("states its own unit of length", str(path), None, "leave units out, and name it alone")
             continue
         try:

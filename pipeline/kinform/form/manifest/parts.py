@@ -95,7 +95,8 @@ class Part(Posed):
     )
     mesh: Reference | None = Field(
         None,
-        description="STL or OBJ file (also DAE, GLB, glTF, PLY, OFF), relative to the manifest; absent: a stick body",
+        description="STL or OBJ file (also DAE, GLB, glTF, 3MF, STEP, PLY, OFF), relative to the manifest; absent: a "
+        "stick body",
     )
     shape: ShapeTable | None = Field(None, description="a primitive in place of a mesh: box, cylinder, sphere, …")
     scale: Vector | None = Field(

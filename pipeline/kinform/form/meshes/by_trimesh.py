@@ -1,7 +1,4 @@
-"""Meshes of formats that trimesh reads: all bodies of a scene in one, in metres as far as the format has a unit.
-
-trimesh applies the unit of a COLLADA file itself; glTF is in metres; PLY and OFF have no unit.
-"""
+"""Meshes of formats that trimesh reads: all bodies of a file in one. PLY and OFF have no unit."""
 
 from __future__ import annotations
 
@@ -15,7 +12,7 @@ from kinform.form.meshes.raw import REEXPORT, Fault, MeshError, RawMesh, is_coor
 
 
 def read_by_trimesh(data: bytes, kind: str) -> RawMesh:
-    """Facets of a file of a kind such as "dae"; raises MeshError."""
+    """Facets of a file of a kind such as "ply"; raises MeshError."""
     import trimesh
 
     if data.startswith(b"version https://git-lfs"):

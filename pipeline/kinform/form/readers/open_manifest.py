@@ -193,7 +193,7 @@ def _over_source(
         return None
     if not is_source(below):
         problems.add(f"from = {in_quotes(stated)} is no description or assembly file", file, lines.line(key),
-                     "name a URDF, xacro, SDF, MJCF, STEP or GLB; a manifest goes into a [[subassembly]]")  # fmt: skip
+                     "name a URDF, SDF, MJCF, STEP, GLB or 3MF; a manifest goes into a [[subassembly]]")  # fmt: skip
         return None
     units = raw["assembly"].get("units")
     tables = _from_source(below, files.shown(below), path.parent, units if units in UNITS else None, files, problems)

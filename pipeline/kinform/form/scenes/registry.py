@@ -25,6 +25,10 @@ class Format:
 
 FORMATS = (
     Format("glTF", (".glb", ".gltf"), "gltf", "read_gltf"),
+    Format("3MF", (".3mf",), "threemf", "read_3mf"),
+    Format("DAE", (".dae",), "dae", "read_dae"),
+    Format("PLY", (".ply",), "loose", "read_loose"),
+    Format("OFF", (".off",), "loose", "read_loose"),
     Format("STEP", (".step", ".stp"), "step", "read_step"),
 )
 
