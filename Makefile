@@ -17,9 +17,9 @@ demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
 	@$(BIN)/kinform run --quiet $(DEMO) -o $(OUT)/seeker.h5
 	@$(BIN)/kinform show $(OUT)/seeker.h5 joints
-	@$(BIN)/kinform show $(OUT)/seeker.h5 mobility
-	@$(BIN)/kinform show $(OUT)/seeker.h5 mass
-	@$(BIN)/kinform show $(OUT)/seeker.h5 simulation
+	@$(BIN)/kinform report --quiet $(OUT)/seeker.h5 -o $(OUT)/seeker.html
+	@echo
+	@echo "the page with all of it, to be opened in a browser: $(OUT)/seeker.html"
 
 test: lint
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal

@@ -3,7 +3,8 @@
 In `docs/seeker.md` every `console` block is run as it stands, in the folder of `fixtures/seeker` that the comment
 above it names (`<!-- in FOLDER -->`), on a copy of the fixtures that lasts for the whole page; what a command prints
 is put below it, and its exit code where that is not 0. `<!-- picture FOLDER/FILE as NAME -->` takes a file that a
-command wrote to `docs/images`. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make
+command wrote to `docs/images`. `docs/gallery.md` shows the mechanisms among the fixtures: a picture, the verdict, the
+manifest. In `README.md` the block between `<!-- demo -->` and `<!-- /demo -->` is what `make
 demo` prints.
 """
 
@@ -18,12 +19,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kinform.design import Design
 
 ROOT = Path(__file__).resolve().parent.parent
 
-__all__ = ["demo", "readme", "story"]
+__all__ = ["demo", "gallery", "mechanisms", "readme", "story"]
 
 _BLOCK = re.compile(r"(<!-- in (?P<folder>\S+) -->\n```console\n)(?P<body>.*?)(```\n)", re.DOTALL)
 _PICTURE = re.compile(r"<!-- picture (?P<file>\S+) as (?P<name>\S+) -->")
@@ -100,8 +105,45 @@ def demo(work: Path) -> str:
         )
     if ran.returncode:
         raise RuntimeError(f"make demo failed:\n{ran.stderr}")
-    lines = [line.rstrip() for line in ran.stdout.splitlines() if not line.startswith("make[")]
+    printed = ran.stdout.replace(str(work / "out"), "build")
+    lines = [line.rstrip() for line in printed.splitlines() if not line.startswith("make[")]
     return "\n".join(lines) + "\n"
+
+
+def gallery(designs: Mapping[str, Design]) -> tuple[str, dict[str, bytes]]:
+    """The page of mechanisms, and their pictures by name; designs by the name of their folder in
+    `fixtures/mechanisms`, which also names their manifest."""
+    from kinform import reports
+    from kinform.reports.page import Artist, Scene
+
+    made, pictures = [_GALLERY], {}
+    for name, design in sorted(designs.items()):
+        assert design.report is not None and design.kinematics is not None
+        pictures[f"{name}.png"] = Artist(Scene(design)).overview(480, 300)
+        manifest = (ROOT / "fixtures" / "mechanisms" / name / f"{name}.toml").read_text(encoding="utf-8").strip()
+        said = reports.render(design.report, design, "brief", width=100).strip()
+        counts = f"{len(design.assembly.parts)} parts, {len(design.kinematics.joints)} joints, "
+        counts += f"mobility {design.kinematics.mobility.effective}"
+        made.append(
+            f"## {name.replace('_', ' ')}\n\n![{name}](gallery/{name}.png)\n\n```\n{said}\n```\n\n"
+            f"<details><summary>{counts}: the manifest</summary>\n\n```toml\n{manifest}\n```\n\n</details>\n"
+        )
+    return "\n".join(made), pictures
+
+
+_GALLERY = """# Gallery
+
+Mechanisms of `fixtures/mechanisms`, each as meshes and a manifest: what kinform draws of it, what `kinform run` says
+of it, and its manifest. Written by `python docs/generate.py`; to see one move: `kinform report
+fixtures/mechanisms/four_bar/four_bar.toml -o four_bar.html --open`.
+"""
+
+
+def mechanisms() -> list[Path]:
+    """The manifests of the gallery."""
+    return sorted(
+        folder / f"{folder.name}.toml" for folder in (ROOT / "fixtures" / "mechanisms").iterdir() if folder.is_dir()
+    )
 
 
 def readme(text: str, work: Path) -> str:
@@ -122,6 +164,14 @@ def _write() -> None:
                 old.unlink()
         for name, content in pictures.items():
             (images / name).write_bytes(content)
+        import kinform
+
+        text, pictures = gallery({path.stem: kinform.run(path).design for path in mechanisms()})
+        (ROOT / "docs" / "gallery.md").write_text(text, encoding="utf-8")
+        shutil.rmtree(ROOT / "docs" / "gallery", ignore_errors=True)
+        (ROOT / "docs" / "gallery").mkdir()
+        for name, content in pictures.items():
+            (ROOT / "docs" / "gallery" / name).write_bytes(content)
         page = ROOT / "README.md"
         page.write_text(readme(page.read_text(encoding="utf-8"), Path(folder) / "demo"), encoding="utf-8")
 

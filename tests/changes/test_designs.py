@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 
 import pytest
 from generators.solids import box, join
 from support.manifests import manifest
 
 from kinform import stages
-from kinform.changes import compare, read_lock, snapshot, with_lock, write_lock
+from kinform.changes import compare, compare_designs, read_lock, render, snapshot, with_lock, write_lock
 from kinform.consistency import verdict
 
 
@@ -104,3 +105,42 @@ def test_a_block_that_is_turned_about_its_centre_of_mass_has_changed(tmp_path):
     assert [(c.kind, c.subject) for c in compare(one, two).changes] == [("inertia-axes", ("block",))]
     report = with_lock(made[1].report, made[1], read_lock(write_lock(one), "b.json"))
     assert [f.subject for f in report.findings if f.code == "KF450"] == [("block",)]
+
+
+def test_the_cause_is_named_first_and_each_value_once(before, tmp_path):
+    after = drawer(tmp_path / "longer", stop=46.0, long=27.0)
+    found = compare_designs(before, after)
+    assert {cause.part: cause.kind for cause in found.causes} == {"rail": "part-shape", "slider": "part-shape"}
+    told = {cause.part: cause.message for cause in found.causes}
+    # 2 mm of 45 mm
+    assert told["slider"] == "has another shape: volume +4.4 %, 2 mm longer along x and vertices moved by up to 2 mm"
+    lines = render(found, "full").splitlines()
+    assert lines[0].startswith("rail has another shape")
+    assert lines.index("  mass +2.512 g") > lines.index("slider " + told["slider"])
+    whole = lines.index("of all of them together:")
+    assert lines[whole + 1 : whole + 3] == ["  rail~slider: upper end of the range -6 mm", "    25 mm → 19 mm"]
+    assert sum(" 25 mm" in line for line in lines) == 1
+    shown = json.loads(render(found, "json"))
+    every = sorted(k for group in shown["groups"] for k in group["changes"])
+    assert every == list(range(len(shown["changes"])))
+
+
+def test_a_part_that_moved_is_told_alike_by_its_pose_and_by_its_mesh(tmp_path):
+    shaft, block = box(-5, 5, -5, 5, 0, 60), box(20, 60, -20, 20, 0, 60)
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    one = derived(manifest(tmp_path / "a", {"shaft": shaft, "block": block}, ""))
+    by_mesh = derived(manifest(tmp_path / "b", {"shaft": shaft, "block": box(21, 61, -20, 20, 0, 60)}, ""))
+    path = next((tmp_path / "a").glob("*.toml"))
+    text = path.read_text()
+    path.write_text(text.replace('name = "block"', 'name = "block"\nposition = [1, 0, 0]'))
+    by_pose = derived(path)
+    for after in (by_mesh, by_pose):
+        (cause,) = compare_designs(one, after).causes
+        assert (cause.kind, cause.part, cause.message) == ("part-moved", "block", "moved 1 mm along x")
+        assert cause.X[:3, 3] == pytest.approx([1e-3, 0, 0])
+    path.write_text(text.replace('name = "block"', 'name = "block"\nrpy = [0, 0, 2]'))
+    (cause,) = compare_designs(one, derived(path)).causes
+    # the middle is 40 mm from the axis
+    assert cause.message == f"turned 2° about z, its middle moved {80 * math.sin(math.radians(1)):.4g} mm"
+    assert compare_designs(one, one).causes == ()

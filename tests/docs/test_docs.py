@@ -96,3 +96,23 @@ def test_every_folder_named_in_the_architecture_is_there():
     text = (ROOT / "docs" / "architecture.md").read_text()
     for folder in re.findall(r"^\| `(\w+)/` \|", text, re.MULTILINE):
         assert any((ROOT / place / folder).is_dir() for place in ("pipeline/kinform", "cli"))
+
+
+def test_the_gallery_shows_the_mechanisms_as_they_are_judged(generate, derive_design):
+    text, pictures = generate.gallery({path.stem: derive_design(path) for path in generate.mechanisms()})
+    assert (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8") == text, "write it again: make docs"
+    assert len(pictures) >= 20
+    for name, content in pictures.items():
+        kept = (ROOT / "docs" / "gallery" / name).read_bytes()
+        assert kept == content or _alike(name, kept, content), f"{name} shows something else: make docs"
+    assert {path.name for path in (ROOT / "docs" / "gallery").iterdir()} == set(pictures)
+
+
+def test_the_readme_opens_with_a_picture_and_three_commands():
+    head = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n## ")[0]
+    (picture,) = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", head)
+    data = (ROOT / picture).read_bytes()
+    assert data.startswith(b"\x89PNG")
+    assert len(data) < 300_000
+    commands = [line for line in head.splitlines() if line.startswith("kinform ")]
+    assert [line.split()[1] for line in commands] == ["init", "run", "report"]

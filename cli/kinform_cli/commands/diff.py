@@ -45,7 +45,7 @@ def diff(
     within = tolerance(tolerances)
     from kinform import changes
 
-    result = changes.compare(changes.snapshot(files.read(before)), changes.snapshot(files.read(after)), within)
+    result = changes.compare_designs(files.read(before), files.read(after), within)
     console.emit(changes.render(result, format.value))
     raise typer.Exit(result.code)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kinform.changes.behaviours import Snapshot, snapshot
 from kinform.changes.change import Change
-from kinform.changes.comparison import Comparison, compare
+from kinform.changes.comparison import Comparison, compare, compare_designs
 from kinform.changes.lock import Lock, read_lock, with_lock, write_lock
 from kinform.changes.render import FORMATS, render
 from kinform.changes.tolerance import Tolerance
@@ -17,6 +17,7 @@ __all__ = [
     "Snapshot",
     "Tolerance",
     "compare",
+    "compare_designs",
     "read_lock",
     "render",
     "snapshot",

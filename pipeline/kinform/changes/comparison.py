@@ -8,14 +8,16 @@ way their directions point.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from kinform.changes.behaviours import Snapshot
+from kinform.changes.behaviours import Snapshot, snapshot
+from kinform.changes.causes import Cause, Consequences, causes_of, grouped
 from kinform.changes.change import Change, Measure, freedoms_changed, quoted, signed
 from kinform.changes.joints import joint_changes
 from kinform.changes.masses import mass_changes
 from kinform.changes.matching import holder, new_names, same_bodies, with_names
 from kinform.changes.tolerance import Tolerance
+from kinform.design import Design
 
 PARTS = ("bodies", "joints", "ranges", "mobility", "masses", "interferences", "simulation", "findings")
 """What is compared, where both know it."""
@@ -33,6 +35,10 @@ class Comparison:
     """(what, why) that only one side knows: not verified."""
     compared: tuple[str, ...]
     tolerance: Tolerance
+    causes: tuple[Cause, ...] = ()
+    """What was done to the parts, where the designs themselves are known."""
+    groups: tuple[Consequences, ...] = ()
+    """The changes by the causes that they follow from; empty without causes."""
 
     @property
     def code(self) -> int:
@@ -64,6 +70,14 @@ def compare(before: Snapshot, after: Snapshot, tolerance: Tolerance | None = Non
     }
     changes = tuple(change for name in both if name in steps for change in steps[name]())
     return Comparison(before.assembly, after.assembly, changes, tuple(missing), tuple(both), within)
+
+
+def compare_designs(before: Design, after: Design, tolerance: Tolerance | None = None) -> Comparison:
+    """As `compare`, of two designs: with what was done to the parts, and what follows from it."""
+    old, new = snapshot(before), snapshot(after)
+    found = compare(old, new, tolerance)
+    causes = causes_of(before, after, old, new)
+    return replace(found, causes=causes, groups=tuple(grouped(found.changes, causes, old, new)) if causes else ())
 
 
 def _bodies(before: Snapshot, after: Snapshot, now: Mapping[str, str], other: Mapping[str, str]) -> Iterator[Change]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
+from kinform.changes.causes import Consequences
 from kinform.changes.change import Change
 from kinform.changes.comparison import Comparison
-from kinform.foundation.words import counted, one_line
+from kinform.foundation.words import counted, listed, one_line
 from kinform.reports.markdown import cell_code, code, escaped, table
 
 SCHEMA = "kinform/diff/1"
@@ -23,12 +24,36 @@ def render(comparison: Comparison, format: str) -> str:
 
 def _full(comparison: Comparison) -> str:
     lines = []
-    for change in comparison.changes:
-        lines.append(f"{_subject(change)}: {one_line(change.message)}")
-        if change.before is not None and change.after is not None:
-            lines.append(f"  {one_line(change.before)} → {one_line(change.after)}")
+    if comparison.groups:
+        for group in comparison.groups:
+            lines += cause_lines(group, comparison)
+            own = {cause.part for cause in group.causes}
+            lines += ["  " + line for change in group.changes for line in change_lines(change, own)]
+    else:
+        lines += [line for change in comparison.changes for line in change_lines(change)]
     lines += [f"not compared: {what}: {why}" for what, why in comparison.missing]
     return "\n".join([*lines, _verdict(comparison)]) + "\n"
+
+
+def cause_lines(group: Consequences, comparison: Comparison) -> list[str]:
+    """What was done, where this group is the only one of it; else by whose names it follows."""
+    names = list(dict.fromkeys(one_line(cause.part) for cause in group.causes))
+    if not names:
+        return ["of no part that was changed:"] if group.changes else []
+    every = len(names) == len({cause.part for cause in comparison.causes})
+    if len(names) > 1:
+        return [f"of {'all of them' if every else listed(names)} together:"] if group.changes else []
+    return [f"{names[0]} {listed([one_line(cause.message) for cause in group.causes])}"]
+
+
+def change_lines(change: Change, known: Collection[str] = ()) -> list[str]:
+    """The change with what was and what is, each said once, as is its subject where that is the only one `known`."""
+    text = one_line(change.message)
+    line = text if list(known) == list(change.subject) else f"{_subject(change)}: {text}"
+    old, new = change.before, change.after
+    if old is None or new is None or (one_line(old) in text and one_line(new) in text):
+        return [line]
+    return [line, f"  {one_line(old)} → {one_line(new)}"]
 
 
 def _json(comparison: Comparison) -> str:
@@ -37,6 +62,14 @@ def _json(comparison: Comparison) -> str:
         "before": comparison.before,
         "after": comparison.after,
         "verdict": _verdict(comparison),
+        "causes": [{"kind": cause.kind, "part": cause.part, "message": cause.message} for cause in comparison.causes],
+        "groups": [
+            {
+                "parts": list(dict.fromkeys(cause.part for cause in group.causes)),
+                "changes": [comparison.changes.index(change) for change in group.changes],
+            }
+            for group in comparison.groups
+        ],
         "changes": [dataclasses.asdict(change) for change in comparison.changes],
         "compared": comparison.compared,
         "not_compared": [{"what": what, "why": why} for what, why in comparison.missing],
@@ -47,6 +80,8 @@ def _json(comparison: Comparison) -> str:
 
 def _markdown(comparison: Comparison) -> str:
     blocks = [f"### kinform: behaviour of {code(comparison.after)}", escaped(_verdict(comparison))]
+    if comparison.causes:
+        blocks.append("\n".join(f"- {code(cause.part)} {escaped(cause.message)}" for cause in comparison.causes))
     if comparison.changes:
         rows = [
             (
@@ -55,7 +90,7 @@ def _markdown(comparison: Comparison) -> str:
                 escaped(change.before or ""),
                 escaped(change.after or ""),
             )
-            for change in comparison.changes
+            for change in ([change for group in comparison.groups for change in group.changes] or comparison.changes)
         ]
         blocks.append(table(("what", "change", "before", "after"), rows))
     if comparison.missing:

@@ -40,12 +40,13 @@ class Artist:
         self.scene = scene
         self.known: dict[str, _Item] = {}
         self.drawn: dict[int, bytes] = {}
-        self.whole = b""
+        self.wholes: dict[tuple[int, int], bytes] = {}
 
-    def overview(self) -> bytes:
-        """The whole assembly with the axes of its joints, overlaps in red, as PNG; drawn once."""
-        self.whole = self.whole or self._overview(constants.OVERVIEW_WIDTH, constants.OVERVIEW_HEIGHT)
-        return self.whole
+    def overview(self, width: int = constants.OVERVIEW_WIDTH, height: int = constants.OVERVIEW_HEIGHT) -> bytes:
+        """The whole assembly with the axes of its joints, overlaps in red, as PNG; drawn once of each size."""
+        if (width, height) not in self.wholes:
+            self.wholes[width, height] = self._overview(width, height)
+        return self.wholes[width, height]
 
     def _overview(self, width: int, height: int) -> bytes:
         items = self._items([part.name for part in self.scene.design.assembly.parts])
