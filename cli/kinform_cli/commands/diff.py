@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinform_cli import console, files
-from kinform_cli.options import Tolerances, argument, examples
+from kinform_cli.options import Tolerances, argument, examples, option
 
 if TYPE_CHECKING:
     from kinform.changes import Tolerance
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 EXAMPLES = examples(
     "kinform diff before.h5 after.h5",
     "kinform diff before.h5 after.h5 --tolerance 0.1mm --tolerance 1%",
+    "kinform diff before.h5 after.h5 --report change.html    # before and after in one view",
     "kinform diff before.h5 after.h5 --format md > change.md",
 )
 
@@ -35,6 +36,9 @@ def diff(
     after: Annotated[Path, argument("B.h5", "Results file after.")],
     format: Annotated[DiffFormat, typer.Option("--format", "-f", help="json: SI and radians.")] = DiffFormat.full,
     tolerances: Tolerances = None,
+    report: Annotated[
+        Path | None, option("--report", "FILE.html", "Also write a page: before and after in one view.")
+    ] = None,
 ) -> None:
     """Say what changed in behaviour: joints, axes, freedoms, ranges, masses, overlaps, findings.
 
@@ -45,7 +49,13 @@ def diff(
     within = tolerance(tolerances)
     from kinform import changes
 
-    result = changes.compare_designs(files.read(before), files.read(after), within)
+    if report is not None:
+        files.check_page(report, inputs=[before, after])
+    old, new = files.read(before), files.read(after)
+    result = changes.compare_designs(old, new, within)
+    if report is not None:
+        files.write_text(report, changes.diff_page(result, old, new, (before.name, after.name)))
+        console.say(f"{report}: to be opened in a browser")
     console.emit(changes.render(result, format.value))
     raise typer.Exit(result.code)
 

@@ -6,6 +6,7 @@ from kinform.changes.behaviours import Snapshot, snapshot
 from kinform.changes.change import Change
 from kinform.changes.comparison import Comparison, compare, compare_designs
 from kinform.changes.lock import Lock, read_lock, with_lock, write_lock
+from kinform.changes.page import diff_page
 from kinform.changes.render import FORMATS, render
 from kinform.changes.tolerance import Tolerance
 
@@ -18,6 +19,7 @@ __all__ = [
     "Tolerance",
     "compare",
     "compare_designs",
+    "diff_page",
     "read_lock",
     "render",
     "snapshot",

@@ -23,3 +23,12 @@ ALONG = 1e-6
 
 OF_THE_WHOLE = ("mobility", "simulation")
 """Kinds of changes that are about no part."""
+
+REVISION_COLOURS = {
+    "as it was": "#8b929c", "moved": "#3f7fbf", "other material": "#b08abf", "other shape, before": "#d39a5b",
+    "other shape, after": "#2e9e76", "new": "#79ab83", "gone": "#c9807a",
+}  # fmt: skip
+"""Of parts on the page of two revisions; the legend and the text say the same in words."""
+
+REVISION_FRAMES = 17
+"""Poses from before to after: enough for a turn of half a circle to look round."""

@@ -32,7 +32,7 @@ def _full(comparison: Comparison) -> str:
     else:
         lines += [line for change in comparison.changes for line in change_lines(change)]
     lines += [f"not compared: {what}: {why}" for what, why in comparison.missing]
-    return "\n".join([*lines, _verdict(comparison)]) + "\n"
+    return "\n".join([*lines, verdict_words(comparison)]) + "\n"
 
 
 def cause_lines(group: Consequences, comparison: Comparison) -> list[str]:
@@ -61,7 +61,7 @@ def _json(comparison: Comparison) -> str:
         "schema": SCHEMA,
         "before": comparison.before,
         "after": comparison.after,
-        "verdict": _verdict(comparison),
+        "verdict": verdict_words(comparison),
         "causes": [{"kind": cause.kind, "part": cause.part, "message": cause.message} for cause in comparison.causes],
         "groups": [
             {
@@ -79,7 +79,7 @@ def _json(comparison: Comparison) -> str:
 
 
 def _markdown(comparison: Comparison) -> str:
-    blocks = [f"### kinform: behaviour of {code(comparison.after)}", escaped(_verdict(comparison))]
+    blocks = [f"### kinform: behaviour of {code(comparison.after)}", escaped(verdict_words(comparison))]
     if comparison.causes:
         blocks.append("\n".join(f"- {code(cause.part)} {escaped(cause.message)}" for cause in comparison.causes))
     if comparison.changes:
@@ -102,7 +102,8 @@ def _subject(change: Change) -> str:
     return ", ".join(map(one_line, change.subject))
 
 
-def _verdict(comparison: Comparison) -> str:
+def verdict_words(comparison: Comparison) -> str:
+    """How many changes there are, or that there is none, or that this is not known."""
     beyond = f"beyond {comparison.tolerance.in_words()}"
     if comparison.changes:
         return f"{counted(len(comparison.changes), 'change')} of behaviour {beyond}"

@@ -11,11 +11,12 @@ import hashlib
 import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from kinform.design import Design
@@ -38,17 +39,15 @@ def page_html(design: Design, artist: Artist | None = None, live: str = "") -> s
     artist = artist or Artist(Scene(design))
     scene = artist.scene
     embedded, blob = embedded_scene(scene)
-    program = _asset_program()
-    digest = base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii")
     findings = facts.findings(design)
     worst = [finding for finding in findings[:MOST_PICTURES] if finding.severity != "note"]
-    pictures = {f.index: _data(artist.finding(f.index)) for f in worst}
+    pictures = {f.index: image_url(artist.finding(f.index)) for f in worst}
     table = sorted(agreement.rows(design), key=lambda row: agreement.ORDER.index(row.mark))
     answered = intended.answer_rows(design)
     rules = facts.rules(design)
-    template = _environment().from_string(_asset("page.html.j2"))
+    template = environment().get_template("page.html.j2")
     return template.render(
-        version=__version__,
+        **frame(embedded, blob),
         design=design,
         name=design.assembly.name,
         verdict=facts.verdict_of(design),
@@ -58,25 +57,17 @@ def page_html(design: Design, artist: Artist | None = None, live: str = "") -> s
         answers=answered,
         answer_counts=_counts((row.answer for row in answered), intended.ORDER),
         findings=findings,
-        pictures={k: Markup(url) for k, url in pictures.items()},
+        pictures=pictures,
         joints=facts.joints(design),
         assumed=facts.assumptions(design),
         rules=rules,
         undecided=[rule for rule in rules if rule.outcome == "inconclusive"],
         bodies=_bodies(design, scene),
         facets=sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None),
-        fits=FIT_COLOURS,
-        has_overlaps=bool(embedded["overlaps"]),
-        motions=embedded["motions"],
         graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
         legend=[] if design.kinematics is None else graph_legend(design.kinematics),
         plots=[(heading, [Markup(svg) for svg in drawn], left) for heading, drawn, left in plot_groups(design)],
-        overview=Markup(_data(artist.overview())),
-        style=Markup(_asset("page.css")),
-        program=Markup(program),
-        digest=digest,
-        scene=Markup(json.dumps(embedded, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")),
-        blob=Markup(blob),
+        overview=image_url(artist.overview()),
     )
 
 
@@ -98,10 +89,38 @@ def _counts(kinds: Iterable[str], order: Sequence[str]) -> str:
 
 
 @cache
-def _environment() -> Environment:
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters["ticks"] = _ticks
-    return environment
+def environment() -> Environment:
+    """The templates among the assets; `ticks` sets what stands between backticks as code."""
+    made = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        loader=FunctionLoader(_asset),
+    )
+    made.filters["ticks"] = _ticks
+    return made
+
+
+def frame(drawn: Mapping[str, Any], blob: str) -> dict[str, Any]:
+    """What every page with a view holds: style, program with its hash, the scene as JSON, and its numbers."""
+    program = _asset_program()
+    return {
+        "version": __version__,
+        "style": Markup(_asset("page.css")),
+        "program": Markup(program),
+        "digest": base64.b64encode(hashlib.sha256(program.encode()).digest()).decode("ascii"),
+        "scene": Markup(json.dumps(drawn, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")),
+        "blob": Markup(blob),
+        "fits": FIT_COLOURS,
+        "has_overlaps": bool(drawn["overlaps"]),
+        "motions": drawn["motions"],
+    }
+
+
+def image_url(png: bytes) -> Markup:
+    """The picture as an address that holds it."""
+    return Markup("data:image/png;base64," + base64.b64encode(png).decode("ascii"))
 
 
 def _ticks(text: str) -> Markup:
@@ -120,7 +139,3 @@ def _asset_program() -> str:
     names = sorted((f.name for f in folder.iterdir() if f.name.endswith(".js")), key=lambda n: int(n.split("-")[0]))
     texts = [folder.joinpath(name).read_text(encoding="utf-8").strip() for name in names]
     return "\n(() => {\n'use strict';\n\n" + "\n\n".join(texts) + "\n})();\n"
-
-
-def _data(png: bytes) -> str:
-    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")

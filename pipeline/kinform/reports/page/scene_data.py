@@ -28,7 +28,7 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
     """JSON of the scene, and the bytes it points into as base64 of deflate."""
     blob = Blob()
     numbers = {digest: k for k, digest in enumerate(scene.shapes)}
-    meshes = [_mesh(blob, shape) for shape in scene.shapes.values()]
+    meshes = [packed_mesh(blob, shape) for shape in scene.shapes.values()]
     overlaps = [] if scene.design.contacts is None else scene.design.contacts.interferences
     found = () if scene.design.report is None else scene.design.report.findings
     low, high = scene.box
@@ -61,7 +61,7 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
             | {
                 "depth": words.length(item.depth, scene.design.assembly.units, 3),
                 "body": scene.body_index.get(item.parts[0], 0),
-                "mesh": None if shape is None else _mesh(blob, shape),
+                "mesh": None if shape is None else packed_mesh(blob, shape),
             }
             for item, shape in zip(overlaps, scene.overlaps, strict=True)
         ],
@@ -153,7 +153,7 @@ def _movement(scene: Scene, blob: Blob, movement: Movement) -> dict[str, Any]:
         "unit": unit,
         "moved": _moved(movement),
         "bodies": [number[name] for name in movement.bodies],
-        **_frames(blob, movement.places, movement.turns),
+        **packed_frames(blob, movement.places, movement.turns),
     }
 
 
@@ -176,7 +176,8 @@ def _moved(movement: Movement) -> str:
     return "angle" if movement.angular else "travel"
 
 
-def _mesh(blob: Blob, shape: Shape) -> dict[str, Any]:
+def packed_mesh(blob: Blob, shape: Shape) -> dict[str, Any]:
+    """A mesh as the viewer takes it: numbers in the blob, and where."""
     low = shape.vertices.min(axis=0) if len(shape.vertices) else np.zeros(3)
     size = shape.vertices.max(axis=0) - low if len(shape.vertices) else np.zeros(3)
     return {
@@ -197,7 +198,7 @@ def _halves(lines: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.column_stack([ordered & 0xFFFF, ordered >> 16])
 
 
-def _frames(blob: Blob, places: Array, turns: Array) -> dict[str, Any]:
+def packed_frames(blob: Blob, places: Array, turns: Array) -> dict[str, Any]:
     """Poses (T, B, 3) m and (T, B, 4) wxyz as columns that change little from frame to frame."""
     frames, bodies = places.shape[:2]
     low = places.min(axis=(0, 1)) if bodies else np.zeros(3)

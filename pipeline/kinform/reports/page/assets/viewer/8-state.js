@@ -90,8 +90,14 @@ class State {
     return [...normal, way * (this.scene.low[axis] + share * (this.scene.high[axis] - this.scene.low[axis]))];
   }
 
+  // Whether a part is of the other one of two revisions than the one that is shown.
+  absent(k) {
+    const { when } = this.scene.parts[k];
+    return Boolean(when) && (when === "before") !== (this.motion !== null && this.time < 0.5);
+  }
+
   look(k) {
-    if (this.hidden.has(k)) return "hidden";
+    if (this.hidden.has(k) || this.absent(k)) return "hidden";
     if (this.layers.xray || (this.layers.contacts && this.joint < 0)) return "ghost";
     const body = this.scene.parts[k].body;
     if (this.focus) return this.focus.has(k) ? (this.layers.contacts ? "ghost" : "plain") : "ghost";
