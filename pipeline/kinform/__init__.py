@@ -14,10 +14,11 @@ from kinform.errors import InputError, KinformError, Problem, ResultsError, Stag
 from kinform.version import __version__
 
 if TYPE_CHECKING:
-    from kinform.api import Named, Outcome, Results
+    from kinform.api import Assembly, Named, Outcome, Results
     from kinform.method import run
 
 __all__ = [
+    "Assembly",
     "InputError",
     "KinformError",
     "Named",
@@ -42,7 +43,13 @@ def open(path: str | Path) -> Results:
     return api.open_results(path)
 
 
-_LAZY = {"run": "kinform.method", "Named": "kinform.api", "Outcome": "kinform.api", "Results": "kinform.api"}
+_LAZY = {
+    "run": "kinform.method",
+    "Assembly": "kinform.api",
+    "Named": "kinform.api",
+    "Outcome": "kinform.api",
+    "Results": "kinform.api",
+}
 """Public names that are imported when they are first used, and where from."""
 
 

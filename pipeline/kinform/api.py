@@ -12,12 +12,35 @@ from kinform.errors import Problem, ResultsError, StageError
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
-    from kinform.model.assembly import Assembly, Part
+    from kinform.model.assembly import Assembly as AssemblyModel
+    from kinform.model.assembly import Part
     from kinform.model.contacts import Contacts
     from kinform.model.findings import CheckReport, Finding
     from kinform.model.kinematics import Body, Joint, Mobility
     from kinform.model.mass import MassProperties
     from kinform.model.simulation import Simulation
+
+
+class Assembly:
+    """Assemblies that a program makes, as `kinform.run` takes them: of type `kinform.model.assembly.Assembly`."""
+
+    @staticmethod
+    def from_meshes(
+        meshes: Any,
+        *,
+        units: str | None = None,
+        name: str = "assembly",
+        density: float | None = None,
+        deviation: float | None = None,
+    ) -> AssemblyModel:
+        """An assembly of {name: mesh or (mesh, pose)}, or of a scene of trimesh; see `kinform.form.from_python`.
+
+        A mesh has vertices and faces, or is a pair of such arrays, or can be tessellated (build123d, CadQuery); a pose
+        is a matrix (4, 4). `units` is the unit of all lengths. Raises InputError with every problem.
+        """
+        from kinform import form
+
+        return form.from_meshes(meshes, units=units, name=name, density=density, deviation=deviation)
 
 
 class _HasName(Protocol):
@@ -71,7 +94,7 @@ class Results:
         return self._design
 
     @property
-    def assembly(self) -> Assembly:
+    def assembly(self) -> AssemblyModel:
         """Form and function: parts, groups, poses, intended joints."""
         return self.design.assembly
 

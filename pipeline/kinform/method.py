@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinform.api import Outcome
 from kinform.design import Design
@@ -24,7 +24,7 @@ Progress = Callable[[str, int, int], None]
 
 
 def run(
-    manifest: str | Path | Sequence[str | Path],
+    manifest: Any,
     output: str | Path | None = None,
     *,
     jobs: int = 1,
@@ -39,9 +39,10 @@ def run(
     """Everything about a design, from its manifest to the findings.
 
     `manifest` is a TOML file, a robot description or a CAD or scene file (URDF, xacro, SDF, MJCF, STEP,
-    GLB, glTF; `reading` says how it is read), or one or several mesh files, which need `units`. With `output` the
-    results are written there in one step, and what is still valid in an earlier file is reused; the result is the
-    same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
+    GLB, glTF; `reading` says how it is read), or one or several mesh files, which need `units`; or what a
+    program holds: {name: mesh or (mesh, pose)} with `units`, a scene of trimesh, or an assembly made of such. With
+    `output` the results are written there in one step, and what is still valid in an earlier file is reused; the result
+    is the same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
     longer whole. `ranges`: whether it is found how far each joint goes; None: where the function states ranges or
     requirements. `changed`: an earlier file is known not to be what a run would give, and is not asked.
@@ -100,14 +101,22 @@ def completed(
 
 
 def _import(
-    manifest: str | Path | Sequence[str | Path],
+    manifest: Any,
     units: str | None,
     allow_outside: bool,
     reading: Reading,
     ledger: Ledger,
 ) -> Design:
-    """The assembly of a manifest, or of meshes in place of one."""
+    """The assembly of a manifest, or of meshes in place of one, as files or as a program holds them."""
     from kinform import stages
+    from kinform.model.assembly import Assembly
+
+    if isinstance(manifest, Assembly):
+        return stages.import_assembly(manifest)
+    if isinstance(manifest, Mapping) or not isinstance(manifest, str | Path | Sequence):
+        from kinform.form.from_python import from_meshes
+
+        return stages.import_assembly(from_meshes(manifest, units=units))
 
     paths = [manifest] if isinstance(manifest, str | Path) else list(manifest)
     if units is not None:

@@ -63,6 +63,11 @@ def import_meshes(
     return _imported(form.load_meshes([Path(mesh) for mesh in meshes], units=units, name=name, density=density))
 
 
+def import_assembly(assembly: Assembly) -> Design:
+    """The design of an assembly that a program made: `form.from_meshes`."""
+    return _imported(assembly)
+
+
 def contacts(
     design: Design, *, jobs: int = 1, progress: Progress | None = None, ledger: Ledger | None = None
 ) -> Design:

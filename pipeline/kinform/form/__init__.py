@@ -9,16 +9,18 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from kinform.form.from_python import from_meshes
     from kinform.form.manifest import json_schema as schema
     from kinform.form.readers.assembly import load
     from kinform.form.without_manifest import init_manifest, load_meshes
 
-__all__ = ["CODE_VERSION", "init_manifest", "load", "load_meshes", "schema"]
+__all__ = ["CODE_VERSION", "from_meshes", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 10
+CODE_VERSION: int = 11
 """Bumped when results change."""
 
 _LAZY = {
+    "from_meshes": ("from_python", "from_meshes"),
     "load": ("readers.assembly", "load"),
     "load_meshes": ("without_manifest", "load_meshes"),
     "init_manifest": ("without_manifest", "init_manifest"),

@@ -216,6 +216,9 @@ STEP_EDGES = 0.005
 """Largest distance of facets from surfaces, as a share of the size of edges: not a length, for what is fine for a watch
 takes all memory for a ship (a ball of 10 m, at 0.01 mm, more than 20 GB)."""
 
+SOLID_DEVIATION = 1e-3
+"""Deviation of facets of solids that a program holds, in diagonals: `STEP_TURN` decides for what is round."""
+
 STEP_STATED_TURN = 0.25
 """As STEP_TURN, where a deviation is stated: still 25 facets round a circle, for 12 are as few as fits know a cylinder
 by."""
