@@ -155,7 +155,8 @@ def derive(
 
 def _complete(assembly: Assembly) -> bool:
     """Whether the function of the top states every joint that is meant to move."""
-    return "" in assembly.function.complete and bool(assembly.function.joints)
+    stated = any(joint.type != "fixed" for joint in assembly.function.joints)
+    return stated and "" in assembly.function.complete
 
 
 def _membership(found: Partition, of_part: Mapping[PartName, BodyName]) -> tuple[Membership, ...]:

@@ -93,7 +93,8 @@ class Suggestion:
 
     parts: PartPair
     kind: str
-    """holes, pressed or pocket: one body. rim or bolt circle: an axis of a contact of planes alone."""
+    """holes, pressed or pocket: one body. spigot: holes line up round a journal, which a flange has, and a joint in one
+    of its poses. rim or bolt circle: an axis of a contact of planes alone."""
     evidence: str
     axis: Direction
     """(3,) of the holes, of the fit, out of the pocket, or of the joint."""

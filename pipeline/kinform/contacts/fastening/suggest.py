@@ -93,11 +93,13 @@ def _of_pair(pair: Pair, patches: list[Patch], scene: _Scene, tolerance: float) 
     out = _pressed(pair, firm) + _pocket(pair, firm)
     if not planes:
         return out
-    holes = _holes(pair, planes, patches, scene, tolerance)
-    if len(holes.radii) >= 2:
-        text = f"{len(holes.radii)} aligned empty holes"
-        out.append(_hint(pair, "holes", text, holes.axes[0], holes.places.mean(axis=0)))
-        return out
+    pivoted = [_pivoted(plane, patches, tolerance) for plane in planes]
+    for round_it, kind, where in ((False, "holes", ""), (True, "spigot", " round a journal")):
+        holes = _holes(pair, [p for p, yes in zip(planes, pivoted, strict=True) if yes == round_it], scene, tolerance)
+        if len(holes.radii) >= 2:
+            text = f"{len(holes.radii)} aligned empty holes{where}"
+            out.append(_hint(pair, kind, text, holes.axes[0], holes.places.mean(axis=0)))
+            return out
     largest = planes[0]
     flat = all(
         patch.kind == "plane" and abs(float(patch.axis @ largest.axis)) > constants.UPRIGHT_COSINE for patch in patches
@@ -113,10 +115,9 @@ def _hint(pair: Pair, kind: str, evidence: str, axis: Array, point: Array) -> Su
     return Suggestion(pair, kind, evidence, np.asarray(freeze(turned + 0.0)), np.asarray(freeze(point + 0.0)))
 
 
-def _holes(pair: Pair, planes: list[Patch], patches: list[Patch], scene: _Scene, tolerance: float) -> Holes:
-    """Aligned holes with nothing in them, across planes that do not turn on a single journal."""
-    fixed = [plane for plane in planes if not _pivoted(plane, patches, tolerance)]
-    holes = aligned_holes(scene.cylinders(pair[0]), scene.cylinders(pair[1]), fixed, tolerance)
+def _holes(pair: Pair, planes: list[Patch], scene: _Scene, tolerance: float) -> Holes:
+    """Aligned holes with nothing in them, across these planes."""
+    holes = aligned_holes(scene.cylinders(pair[0]), scene.cylinders(pair[1]), planes, tolerance)
     if not len(holes.radii):
         return holes
     empty = ~occupied(holes, scene.beside(pair), tolerance)

@@ -5,10 +5,13 @@ Nodes are 0 … n−1, edges pairs of nodes, in the order given; all answers are
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 Edge = tuple[int, int]
+Node = TypeVar("Node", bound=Hashable)
 
 
 class UnionFind:
@@ -118,3 +121,21 @@ def blocks(nodes: int, edges: Sequence[Edge]) -> list[list[int]]:
                         block.append(stack.pop())
                     components.append(sorted(block))
     return sorted(components)
+
+
+def shortest_path(near: Mapping[Node, Sequence[Node]], start: Node, end: Node) -> list[Node]:
+    """Nodes of a shortest path, both ends included; empty where there is none. Neighbours are tried in their order."""
+    came: dict[Node, Node] = {start: start}
+    waiting = deque([start])
+    while waiting and end not in came:
+        node = waiting.popleft()
+        for other in near.get(node, ()):
+            if other not in came:
+                came[other] = node
+                waiting.append(other)
+    if end not in came:
+        return []
+    path = [end]
+    while path[-1] != start:
+        path.append(came[path[-1]])
+    return path[::-1]

@@ -68,7 +68,7 @@ def turn_about_suggested_axes(
     hints: dict[tuple[BodyName, BodyName], list[Suggestion]] = {}
     for hint in contacts.suggestions:
         first, second = sorted(of_part[part] for part in hint.parts)
-        if not hint.fastens and first != second:
+        if hint.kind in ("rim", "bolt circle") and first != second:
             hints.setdefault((first, second), []).append(hint)
     settled = _stated_otherwise(assembly, of_part)
     return [joint if settled(joint) else _revolute(joint, hints.get(joint.bodies, [])) for joint in joints]

@@ -23,16 +23,26 @@ FLAT_BESIDE = 300.0
 """Price of parting a flat beside the axis."""
 JOURNAL_OFF = 0.7
 """Share of its reach by which the middle of a round patch may lie beside the axis that it goes round: half of one."""
+COAXIAL = np.radians(1.0)
+"""rad: a surface of revolution whose axis differs by less from the joint's goes round it, however little of it
+touches."""
+COAXIAL_OFF = 0.1
+"""The same of its distance, as a share of its radius."""
 FACE_OFF = 0.5
 """The same of other faces."""
 GUIDED_ROUND = np.radians(181.0)
 """rad: normals of a guide leave no wider gap round it than this."""
-FASTENED = {"holes": 5000.0, "pocket": 1000.0, "pressed": 20.0}
-"""Price of parting what is fastened, by what suggests it: screws that are not modelled, a pocket, a press."""
+FASTENED = {"holes": 5000.0, "pocket": 1000.0, "spigot": 200.0, "pressed": 20.0}
+"""Price of parting what is fastened, by what suggests it: screws that are not modelled, a pocket, holes that line up
+round a journal (of a flange, or of a joint in the pose that is drawn), a press."""
+ROLLING = 1.0
+"""Price of parting what touches at points or along lines only: balls, rollers, teeth hold nothing together."""
 BROKEN = 20000.0
 """Price of a contact between bodies that no joint of theirs may part: legs that cross are drawn touching, too."""
 EITHER = 25.0
 """Margin up to which a part may go either way: less than the price of a flange."""
+PARTED = 100.0
+"""Price up to which contact is made to be parted: it does not say that two names stand for one body."""
 TOUCH_WORTH = 0.5
 """Price of parting the pair that touches over the largest area of all, in proportion for others: what nothing else
 tells apart goes with the part that it touches most."""
@@ -40,3 +50,12 @@ NEAREST_TRIED = 6
 """Of so many parts whose boxes are nearest to one that touches nothing, the nearest surface is looked for."""
 MOST_SECONDS = 60.0
 """s: what the integer program may take before the best answer so far is taken and said to be unproven."""
+PROPOSED = (100.0, 310.0, np.inf)
+"""Greatest prices of parting a pair at which a joint is looked for where no function is: journals, faces round the axis
+and serrations; where that parts nothing, flats beside it, too; then all that the turn leaves free."""
+SUBSTANTIAL = 0.002
+"""Share of the assembly's volume that either side of a proposed joint has at least."""
+SAME_AXIS = np.radians(1.0)
+"""rad: journals whose axes differ by less are on one axis."""
+SAME_AXIS_OFF = 0.02
+"""The same of their distance, as a share of the smaller journal's reach."""

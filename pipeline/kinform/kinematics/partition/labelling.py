@@ -33,6 +33,15 @@ class Edge:
         """What it costs that its ends have these labels."""
         return 0.0 if first == second else min(self.parted.get((first, second), self.broken), self.broken)
 
+    def relabelled(self, new: Sequence[int]) -> Edge:
+        """The same with label k called new[k]; a joint within one body parts nothing."""
+        table: dict[Labels, float] = {}
+        for (first, second), price in self.parted.items():
+            ends = (new[first], new[second])
+            if ends[0] != ends[1]:
+                table[ends] = min(price, table.get(ends, price))
+        return Edge(self.ends, table, self.broken)
+
 
 @dataclass(frozen=True, eq=False)
 class Labelling:
@@ -47,9 +56,12 @@ def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> La
     """Labels of all nodes that make the sum of the prices least; `seeds` have theirs."""
     labels: list[int | None] = [seeds.get(node) for node in range(nodes)]
     proven = True
+    around: dict[int, list[int]] = {}
+    for number, edge in enumerate(edges):
+        for end in set(edge.ends):
+            around.setdefault(end, []).append(number)
     for members in regions(nodes, seeds, edges):
-        inside = set(members)
-        near = [edge for edge in edges if inside & set(edge.ends)]
+        near = [edges[number] for number in sorted({k for node in members for k in around.get(node, ())})]
         touched = {seeds[n] for edge in near for n in edge.ends if n in seeds}
         # a body that touches nothing here may be on the other side of a joint that does
         candidates = sorted(touched | {b for edge in near for a, b in edge.parted if a in touched})

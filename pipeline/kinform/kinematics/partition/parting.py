@@ -77,18 +77,9 @@ def prices(
     suggestions: Sequence[Suggestion],
 ) -> Prices:
     """The price of parting every pair of parts that touch, by every joint that may."""
-    between: dict[PartPair, list[Patch]] = {}
-    for patch in patches:
-        if not patch.narrow:
-            between.setdefault(patch.parts, []).append(patch)
-    hints: dict[PartPair, float] = {}
-    for suggestion in suggestions:
-        if suggestion.fastens:
-            worth = constants.FASTENED[suggestion.kind]
-            hints[suggestion.parts] = max(hints.get(suggestion.parts, 0.0), worth)
+    hints = hints_of(suggestions)
     by_joint, held = {}, {}
-    for pair in sorted(between):
-        contact = _Contact.of(between[pair])
+    for pair, contact in contact_of_pairs(patches).items():
         hint = hints.get(pair, 0.0)
         costs = {}
         for number, (joint, motions) in enumerate(zip(joints, twists, strict=True)):
@@ -102,8 +93,27 @@ def prices(
     return Prices(by_joint, held)
 
 
+def contact_of_pairs(patches: Sequence[Patch]) -> dict[PartPair, Contact]:
+    """All contact of each pair of parts, sorted by their names."""
+    between: dict[PartPair, list[Patch]] = {}
+    for patch in patches:
+        if not patch.narrow:
+            between.setdefault(patch.parts, []).append(patch)
+    return {pair: Contact.of(between[pair]) for pair in sorted(between)}
+
+
+def hints_of(suggestions: Sequence[Suggestion]) -> dict[PartPair, float]:
+    """What parting pairs costs beside, as something suggests that they are fastened."""
+    out: dict[PartPair, float] = {}
+    for suggestion in suggestions:
+        worth = constants.FASTENED.get(suggestion.kind)
+        if worth is not None:
+            out[suggestion.parts] = max(out.get(suggestion.parts, 0.0), worth)
+    return out
+
+
 @dataclass(frozen=True, eq=False)
-class _Contact:
+class Contact:
     """All contact of a pair of parts."""
 
     patches: tuple[Patch, ...]
@@ -113,8 +123,8 @@ class _Contact:
     start: Ints
 
     @staticmethod
-    def of(patches: Sequence[Patch]) -> _Contact:
-        return _Contact(
+    def of(patches: Sequence[Patch]) -> Contact:
+        return Contact(
             tuple(patches),
             np.concatenate([patch.points for patch in patches]),
             np.concatenate([patch.normals for patch in patches]),
@@ -122,8 +132,16 @@ class _Contact:
             np.cumsum([0, *(len(patch.points) for patch in patches)]),
         )
 
+    def near(self, joint: IntendedJoint) -> bool:
+        """Whether the joint's axis, or centre, passes through the ball round the contact."""
+        assert joint.point is not None
+        arm = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0)) - joint.point
+        if joint.axis is not None:
+            arm = arm - (arm @ joint.axis) * joint.axis
+        return float(np.linalg.norm(arm)) <= 0.5 * float(np.linalg.norm(np.ptp(self.points, axis=0)))
+
     def price(self, joint: IntendedJoint, motions: Array) -> float | None:
-        """What it costs to part them by this joint; None where it may not."""
+        """What it costs to part them by this joint, whose motions these are; None where it may not."""
         opposed = np.zeros(len(self.points), dtype=bool)
         for motion in motions:
             speeds = motion[3:] + cross(motion[:3], self.points)
@@ -137,6 +155,8 @@ class _Contact:
         serrated = self._serrated(joint) if turns else np.zeros(len(self.points), dtype=bool)
         if float(self.weights[opposed & ~serrated].sum()) > constants.OPPOSED_AREA * total:
             return None
+        if all(patch.kind in ("point", "line") for patch in self.patches):
+            return constants.ROLLING
         if not turns:
             return self._guided(joint, opposed)
         price = self._round(joint, opposed)
@@ -167,17 +187,30 @@ class _Contact:
     def _round(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a turn: do patches go round its axis, or its centre?"""
         journal, farthest = False, 0.0
+        total = float(self.weights.sum())
         for k, patch in enumerate(self.patches):
             rows = slice(int(self.start[k]), int(self.start[k + 1]))
-            if opposed[rows].any():
+            if opposed[rows].any() or float(patch.weights.sum()) < constants.OPPOSED_AREA * total:
                 continue
             off = self._off(joint, k)
-            journal |= patch.kind in ROUND and off < constants.JOURNAL_OFF
+            journal |= patch.kind in ROUND and (off < constants.JOURNAL_OFF or self._coaxial(joint, k))
             farthest = max(farthest, off)
         round_it = farthest < constants.FACE_OFF
         if journal and round_it:
             return constants.JOURNAL
         return constants.FACE_ROUND if journal or round_it else constants.FLAT_BESIDE
+
+    def _coaxial(self, joint: IntendedJoint, k: int) -> bool:
+        """Whether patch k lies on a surface of revolution about the joint's axis, or on a sphere about its centre."""
+        assert joint.point is not None
+        patch = self.patches[k]
+        arm = patch.point - joint.point
+        size = max(patch.radii, default=0.0)
+        if joint.type == "spherical" or joint.axis is None:
+            return patch.kind == "sphere" and float(np.linalg.norm(arm)) < constants.COAXIAL_OFF * size
+        axis = joint.axis / np.linalg.norm(joint.axis)
+        off = float(np.linalg.norm(arm - (arm @ axis) * axis))
+        return abs(float(patch.axis @ axis)) > np.cos(constants.COAXIAL) and off < constants.COAXIAL_OFF * size
 
     def _guided(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a slide: do faces that run along it stand round it?"""

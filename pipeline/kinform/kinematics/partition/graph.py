@@ -1,0 +1,135 @@
+"""The graph that bodies are cut from: pieces, which contact makes one whatever the joints, and what is between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.labelling import Edge, Labels
+from kinform.kinematics.partition.one_body import Hold, joined_by_cost, one_body
+from kinform.kinematics.partition.parting import PartPair, Prices, joint_twists, prices
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.names import PartName
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Pieces, and the contacts between them. Labels are bodies: there are as many as `names`."""
+
+    names: tuple[str, ...]
+    """Of the labels: the first name that a joint gives it."""
+    piece_of: Mapping[PartName, int]
+    seeds: Mapping[int, int]
+    """Labels of pieces with a part that a joint names."""
+    edges: tuple[Edge, ...]
+    sides: tuple[Labels, ...]
+    """Of the joints."""
+    named: tuple[tuple[PartName, PartName], ...]
+    """A part on either side of each joint."""
+    prices: Prices
+
+    @property
+    def nodes(self) -> int:
+        """How many pieces there are."""
+        return max(self.piece_of.values(), default=-1) + 1
+
+
+def graph_of(assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJoint], merger: Merger) -> Graph:
+    """The graph for these joints, none of them fixed; parts that are one in `merger` are one piece."""
+    costs = prices(joints, [joint_twists(joint) for joint in joints], contacts.patches, contacts.suggestions)
+    parts = sorted(part.name for part in assembly.parts)
+    number = {name: k for k, name in enumerate(parts)}
+    named = [tuple(assembly.parts_of(name)[0] for name in joint.between) for joint in joints]
+    first_name: dict[int, str] = {}
+    for joint, ends in zip(joints, named, strict=True):
+        for name, part in zip(joint.between, ends, strict=True):
+            root = merger.root(part)
+            first_name[root] = min(name, first_name.get(root, name))
+    roots = sorted(first_name, key=lambda root: first_name[root])
+    label_of = {root: k for k, root in enumerate(roots)}
+    sides = [(label_of[merger.root(a)], label_of[merger.root(b)]) for a, b in named]
+    sets = UnionFind(len(parts))
+    by_root: dict[int, PartName] = {}
+    for name in parts:
+        sets.union(number[by_root.setdefault(merger.root(name), name)], number[name])
+    at = {number[by_root[root]]: label for root, label in label_of.items()}
+    least = one_body(sets, at, _holds(number, costs, contacts.patches), sides)
+    _contract(sets, number, costs, {node: least[label] for node, label in at.items()})
+    order: dict[int, int] = {}
+    for name in parts:
+        order.setdefault(sets.find(number[name]), len(order))
+    piece_of = {name: order[sets.find(number[name])] for name in parts}
+    sides = [(least[a], least[b]) for a, b in sides]
+    seeds = {order[sets.find(node)]: least[label] for node, label in at.items()}
+    edges = _edges(piece_of, sides, costs, contacts.patches)
+    final = joined_by_cost(seeds, edges, sides, least)
+    kept = {label: k for k, label in enumerate(sorted(set(final)))}
+    new = [kept[label] for label in final]
+    return Graph(
+        tuple(first_name[roots[new.index(k)]] for k in range(len(kept))),
+        piece_of,
+        {node: new[label] for node, label in seeds.items()},
+        tuple(edge.relabelled(new) for edge in edges),
+        tuple((new[a], new[b]) for a, b in sides),
+        tuple((a, b) for a, b in named),
+        costs,
+    )
+
+
+def _areas(patches: Sequence[Patch]) -> dict[PartPair, float]:
+    """Area of contact of each pair, m²."""
+    out: dict[PartPair, float] = {}
+    for patch in patches:
+        out[patch.parts] = out.get(patch.parts, 0.0) + patch.area
+    return out
+
+
+def _holds(number: Mapping[PartName, int], costs: Prices, patches: Sequence[Patch]) -> list[Hold]:
+    """What parting each pair costs at least, the dearest first; of those that cost the same, the largest."""
+    areas = _areas(patches)
+    least = {pair: min(parted.values(), default=costs.held[pair]) for pair, parted in costs.by_joint.items()}
+    ranked = sorted(least, key=lambda pair: (-least[pair], -areas[pair], pair))
+    return [(least[pair], (number[pair[0]], number[pair[1]])) for pair in ranked]
+
+
+def _edges(
+    piece_of: Mapping[PartName, int], sides: Sequence[Labels], costs: Prices, patches: Sequence[Patch]
+) -> list[Edge]:
+    """The contacts between pieces; of two that cost the same, the larger is a little dearer."""
+    area = _areas(patches)
+    largest = max(area.values(), default=1.0)
+    edges = []
+    for pair, parted in costs.by_joint.items():
+        ends = (piece_of[pair[0]], piece_of[pair[1]])
+        if ends[0] == ends[1]:
+            continue
+        touch = constants.TOUCH_WORTH * area[pair] / largest
+        table: dict[Labels, float] = {}
+        for joint, price in parted.items():
+            for labels in (sides[joint], sides[joint][::-1]):
+                table[labels] = min(price + touch, table.get(labels, np.inf))
+        edges.append(Edge(ends, table, costs.held[pair] + touch))
+    return edges
+
+
+def _contract(sets: UnionFind, number: Mapping[PartName, int], costs: Prices, seeds: Mapping[int, int]) -> None:
+    """Make one what no joint may part, unless that would make two bodies one."""
+    held = UnionFind(len(number))
+    for node in number.values():
+        held.union(node, sets.find(node))
+    firm = [pair for pair, parted in costs.by_joint.items() if not parted]
+    for first, second in firm:
+        held.union(number[first], number[second])
+    inside: dict[int, set[int]] = {}
+    for seed, label in seeds.items():
+        inside.setdefault(held.find(seed), set()).add(label)
+    for first, second in firm:
+        if len(inside.get(held.find(number[first]), ())) <= 1:
+            sets.union(number[first], number[second])

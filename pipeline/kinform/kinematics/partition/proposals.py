@@ -1,0 +1,183 @@
+"""Joints that may be meant, where no function is stated: axes of journals that part the assembly.
+
+Every axis on which journals lie is a candidate. Along it, pairs may part whose contact its turn leaves free and that
+go round it (`parting`), and no others: flats beside it, holes that line up and everything that it does not move hold.
+An axis is proposed where that leaves two substantial bodies on either side of it, by itself or, in loops, together
+with all other candidates. Two axes between the same two bodies hold each other: neither is proposed. Sliders are not
+looked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinform.foundation.algebra.vectors import canonical_sign
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts, Patch
+from kinform.model.function import IntendedJoint
+from kinform.model.names import PartName
+
+
+Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
+"""The parts of two bodies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A joint that may be meant."""
+
+    type: str
+    """revolute or spherical."""
+    axis: Array | None
+    """(3,) unit; None of spherical ones."""
+    point: Array
+    """(3,) m."""
+    sides: Sides
+    """The parts that would move relative to each other; the larger side first."""
+    share: float
+    """Volume of the smaller side, of all."""
+
+    def between(self, volume: Mapping[PartName, float]) -> tuple[PartName, PartName]:
+        """The largest part of either side."""
+        first, second = (max(side, key=lambda name: (volume[name], name)) for side in self.sides)
+        return first, second
+
+
+def propose(assembly: Assembly, contacts: Contacts) -> list[Proposal]:
+    """Joints that may be meant, the largest smaller side first."""
+    volume = volumes(assembly)
+    parts = sorted(volume)
+    pairs = contact_of_pairs(contacts.patches)
+    hints = hints_of(contacts.suggestions)
+    axes = _candidates(contacts.patches)
+    free = [_freed(axis, pairs, hints, constants.PROPOSED[0]) for axis in axes]
+    graph = _Parts(parts, sorted(pairs), volume)
+    found: dict[int, list[Sides]] = {}
+    for most in constants.PROPOSED:
+        for number, axis in enumerate(axes):
+            if free[number] and not found.get(number):
+                cut = free[number] if most == constants.PROPOSED[0] else _freed(axis, pairs, hints, most)
+                found[number] = graph.sides(free[number], cut)
+    every = frozenset().union(*free)
+    for number, cut in enumerate(free):
+        if not found.get(number):
+            found[number] = graph.sides(cut, every)
+    ways = [(axes[number], sides) for number, several in sorted(found.items()) for sides in several]
+    total = sum(volume.values())
+    out = []
+    for joint, sides in ways:
+        if not any(other is not joint and graph.alike(sides, theirs) for other, theirs in ways):
+            assert joint.point is not None
+            share = min(sum(volume[name] for name in side) for side in sides) / total
+            out.append(Proposal(joint.type, joint.axis, joint.point, sides, share))
+    return sorted(out, key=lambda one: (-one.share, one.sides))
+
+
+def volumes(assembly: Assembly) -> dict[PartName, float]:
+    """m³ of every part with a mesh; that of its box where the mesh is open."""
+    out = {}
+    for part in assembly.parts:
+        if part.mesh is not None:
+            low, high = part.mesh.placed_box(part.X_WP)
+            own = part.mesh.health.volume
+            out[part.name] = abs(own) if own else float(np.prod(high - low))
+    return out
+
+
+def _candidates(patches: Sequence[Patch]) -> list[IntendedJoint]:
+    """The axes of all journals, each once, and the centres of ball joints."""
+    out: list[IntendedJoint] = []
+    for patch in sorted(patches, key=lambda patch: -patch.area):
+        if patch.narrow or patch.kind not in ROUND:
+            continue
+        reach = float(np.linalg.norm(np.ptp(patch.points, axis=0))) or 1e-6
+        if patch.kind == "sphere":
+            joint = _joint("spherical", None, patch.point)
+        else:
+            joint = _joint("revolute", patch.axis * canonical_sign(patch.axis), patch.point)
+        if not any(_same(joint, other, constants.SAME_AXIS_OFF * reach) for other in out):
+            out.append(joint)
+    return out
+
+
+def _joint(type_: str, axis: Array | None, point: Array) -> IntendedJoint:
+    return IntendedJoint("", ("", ""), type_, axis, None, point, None, None, "", None)
+
+
+def _same(one: IntendedJoint, other: IntendedJoint, off: float) -> bool:
+    assert one.point is not None and other.point is not None
+    apart = one.point - other.point
+    if one.axis is None or other.axis is None:
+        return one.type == other.type and float(np.linalg.norm(apart)) <= off
+    if abs(float(one.axis @ other.axis)) < np.cos(constants.SAME_AXIS):
+        return False
+    return float(np.linalg.norm(apart - (apart @ other.axis) * other.axis)) <= off
+
+
+def _freed(
+    joint: IntendedJoint, pairs: Mapping[PartPair, Contact], hints: Mapping[PartPair, float], most: float
+) -> frozenset[PartPair]:
+    """Pairs that a joint may part at `most` at this price."""
+    out = []
+    motions = joint_twists(joint)
+    assert motions is not None
+    for pair, contact in pairs.items():
+        if most > constants.PROPOSED[0] or contact.near(joint):
+            price = contact.price(joint, motions)
+            if price is not None and price + hints.get(pair, 0.0) <= most:
+                out.append(pair)
+    return frozenset(out)
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """The parts and what touches."""
+
+    parts: Sequence[PartName]
+    pairs: Sequence[PartPair]
+    volume: Mapping[PartName, float]
+
+    def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
+        """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one
+        first. What is small lies between the others."""
+        number = {name: k for k, name in enumerate(self.parts)}
+        sets = UnionFind(len(self.parts))
+        for pair in self.pairs:
+            if pair not in cut:
+                sets.union(number[pair[0]], number[pair[1]])
+        members: dict[int, list[PartName]] = {}
+        for name in self.parts:
+            members.setdefault(sets.find(number[name]), []).append(name)
+        size = {root: sum(self.volume[name] for name in names) for root, names in members.items()}
+        least = constants.SUBSTANTIAL * sum(size.values())
+        near: dict[int, set[int]] = {}
+        for pair in own:
+            first, second = (sets.find(number[name]) for name in pair)
+            if first != second:
+                near.setdefault(first, set()).add(second)
+                near.setdefault(second, set()).add(first)
+        large = sorted((root for root in near if size[root] >= least), key=lambda root: (-size[root], root))
+        out = []
+        for k, one in enumerate(large):
+            reached, waiting = {one}, [one]
+            while waiting:
+                for other in near[waiting.pop()]:
+                    if other not in reached:
+                        reached.add(other)
+                        if size[other] < least:
+                            waiting.append(other)
+            out += [(tuple(members[one]), tuple(members[other])) for other in large[k + 1 :] if other in reached]
+        return out
+
+    def alike(self, one: Sides, other: Sides) -> bool:
+        """Whether these are the same two bodies, but for what is small."""
+        least = constants.SUBSTANTIAL * sum(self.volume.values())
+        odd = (set(a) ^ set(b) for a, b in zip(one, other, strict=True))
+        return all(sum(self.volume[name] for name in names) < least for names in odd)
