@@ -15,7 +15,9 @@ from kinform_cli.progress import Working
 from kinform_cli.text import command
 
 if TYPE_CHECKING:
+    from kinform.design import Design
     from kinform.model.assembly import Assembly
+    from kinform.model.function import IntendedJoint
     from kinform.model.names import PartName
 
 
@@ -61,8 +63,14 @@ def init(
         return
     assert units is not None
     name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
+    hints = _Hints() if suggest else None
     text = form.init_manifest(
-        meshes, units=units, name=name, relative_to=folder, fastened=_suggest_groups if suggest else _no_groups
+        meshes,
+        units=units,
+        name=name,
+        relative_to=folder,
+        fastened=_no_groups if hints is None else hints.groups,
+        jointed=None if hints is None else hints.joints,
     )
     _write(text, output)
 
@@ -86,9 +94,14 @@ def _write(text: str, output: Path | None) -> None:
 
 
 def _proposals(text: str) -> str:
-    """As in ", 2 groups proposed as comments"; `frame` is an example and nobody's proposal."""
-    many = text.count("# [[group]]") if "\n## " in text else 0
-    return f", {counted(many, 'group')} proposed as comments" if many else ""
+    """As in ", 2 groups and 1 joint proposed as comments"; what stands without evidence is an example."""
+    proposed = {"group": 0, "joint": 0}
+    lines = text.splitlines()
+    for before, line in zip(lines, lines[1:], strict=False):
+        for kind, head in (("group", "# [[group]]"), ("joint", "# [[function.joint]]")):
+            proposed[kind] += line == head and before.startswith("## ")
+    found = [counted(many, kind) for kind, many in proposed.items() if many]
+    return f", {' and '.join(found)} proposed as comments" if found else ""
 
 
 def _no_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
@@ -100,16 +113,31 @@ def _no_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
     return []
 
 
-def _suggest_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
-    """Parts that their contacts suggest are one body; none where the unit is doubtful: tolerances depend on it."""
-    from kinform.form.without_manifest import doubts
+class _Hints:
+    """What the contacts of an assembly suggest; nothing where the unit is doubtful: tolerances depend on it."""
 
-    if doubts(assembly):
-        return _no_groups(assembly)
-    from kinform import stages
-    from kinform.contacts.fastening import fastened
-    from kinform.design import Design
+    def __init__(self) -> None:
+        self.design: Design | None = None
 
-    with Working("contacts") as progress:
-        contacts = stages.contacts(Design(assembly), jobs=cores(None), progress=progress).contacts
-    return [] if contacts is None else fastened(contacts.suggestions)
+    def groups(self, assembly: Assembly) -> list[tuple[list[PartName], str]]:
+        """Parts that are probably one body."""
+        from kinform.form.without_manifest import doubts
+
+        if doubts(assembly):
+            return _no_groups(assembly)
+        from kinform import stages
+        from kinform.contacts.fastening import fastened
+        from kinform.design import Design
+
+        with Working("contacts") as progress:
+            self.design = stages.contacts(Design(assembly), jobs=cores(None), progress=progress)
+        contacts = self.design.contacts
+        return [] if contacts is None else fastened(contacts.suggestions)
+
+    def joints(self, assembly: Assembly) -> list[tuple[IntendedJoint, str]]:
+        """Joints that may be meant."""
+        if self.design is None or self.design.contacts is None:
+            return []
+        from kinform.kinematics import proposed_joints
+
+        return proposed_joints(assembly, self.design.surfaces, self.design.contacts)

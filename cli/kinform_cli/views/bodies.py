@@ -27,9 +27,9 @@ def render(design: Design) -> RenderableType:
     if not unclear:
         return stacked(rows)
     title = f"\n{counted(len(unclear), 'part')} that could be in another body, the least clear first"
-    more = Rows("part", "is in", "could be in", "by", "how clear", title=title, right=["how clear"])
+    more = Rows("part", "is in", "could be in", "by", "how clear", "evidence", title=title, right=["how clear"])
     for one in unclear:
-        more.add(one.part, one.body, one.other or NONE, _HOW[one.how], _clear(one))
+        more.add(one.part, one.body, one.other or NONE, _HOW[one.how], _clear(one), one.evidence or NONE)
     legend = "how clear: by how much breaking the contacts of the other body would be dearer (a journal 40, a flat 300)"
     return stacked(rows, more, Text(legend, style="dim"))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -20,8 +21,9 @@ from kinform.form.readers.poses import shift
 from kinform.form.sources import states_units
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
+from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
-from kinform.model.function import Function
+from kinform.model.function import Function, IntendedJoint
 from kinform.model.names import PartName
 from kinform.model.tolerances import Tolerances
 
@@ -75,12 +77,13 @@ def init_manifest(
     name: str | None = None,
     relative_to: str | Path = ".",
     fastened: Callable[[Assembly], Sequence[tuple[Sequence[str], str]]] | None = None,
+    jointed: Callable[[Assembly], Sequence[tuple[IntendedJoint, str]]] | None = None,
 ) -> str:
     """Text of a manifest for these meshes, whose paths are written relative to the folder `relative_to`.
 
-    `fastened` names parts that are probably one body, with the evidence; they are written as comments, ready to
-    be taken over. Doubts a unit that makes the assembly implausibly small or large. Raises InputError with every
-    problem.
+    `fastened` names parts that are probably one body, with the evidence, `jointed` joints that may be meant (m), with
+    what they would move; they are written as comments, ready to be taken over. Doubts a unit that makes the assembly
+    implausibly small or large. Raises InputError with every problem.
     """
     assembly = load_meshes(paths, units=units, name=name)
     where = {Path(p).name: Path(os.path.relpath(p, relative_to)).as_posix() for p in paths}
@@ -103,8 +106,34 @@ def init_manifest(
         lines += ["# [[group]]", f"# name = {_text(label)}", f"# parts = [{members}]"]
     if not hints:
         lines += ["# [[group]]", '# name = "…"', '# parts = ["…", "…"]']
-    lines += ["", "# What the device is for:", "# [function]", "# mobility = 1", ""]
+    lines += ["", "# What the device is for:"]
+    joints = [] if jointed is None else jointed(assembly)
+    if joints:
+        lines += ["# Journals that part the assembly, the largest parts first. Keep those that are meant, add what is"]
+        lines += ["# missing: with complete = true the bodies follow from them."]
+    lines += ["# [function]", "# complete = true" if joints else "# mobility = 1"]
+    for joint, evidence in joints:
+        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in _joint_lines(joint, units))]
+    lines.append("")
     return "\n".join(lines)
+
+
+def _joint_lines(joint: IntendedJoint, units: str) -> list[str]:
+    """A joint in the manifest's unit."""
+    lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
+    lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
+    if joint.axis is not None:
+        lines.append(f"axis = {_numbers(joint.axis, 9)}")
+    if joint.point is not None:
+        lines.append(f"point = {_numbers(joint.point / metres_per(units), 7)}")
+    return lines
+
+
+def _numbers(values: Array, digits: int) -> str:
+    """As in "[0, 1, 0.25]", each to so many significant digits of the largest."""
+    largest = max(float(np.abs(values).max()), 1e-12)
+    places = digits - 1 - math.floor(math.log10(largest))
+    return "[" + ", ".join(f"{round(float(value), places) + 0.0:.12g}" for value in values) + "]"
 
 
 def _free(name: str, taken: set[str]) -> str:

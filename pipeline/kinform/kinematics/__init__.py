@@ -4,6 +4,8 @@
 which one reads them; each knows those before it and none after it (separation needs `pair` and `answers` only):
 
 - `pair`: the joint of two bodies, from the contact between them. Its docstring tells how a joint is decided.
+- `partition`: which parts are one body where the function states all joints, and which joints may be meant where it
+  states none.
 - `bodies`: which parts are one body, and which bodies have a joint.
 - `loops`: closure of the loops that joints make. Its docstring tells how a loop is closed.
 - `axes`: joint axes made exactly consistent across the assembly.
@@ -16,6 +18,7 @@ in words; `answers` is how steps are found that an earlier run has taken."""
 
 from kinform.kinematics.derivation import derive, functional, mobility_within
 from kinform.kinematics.mobility.named_freedoms import Motions
+from kinform.kinematics.partition import propose, proposed_joints
 from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
 from kinform.kinematics.questions.joint_insight import Insight, insight
 from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
@@ -33,8 +36,10 @@ __all__ = [
     "insight",
     "intended_answers",
     "mobility_within",
+    "propose",
+    "proposed_joints",
     "query",
 ]
 
-CODE_VERSION = 22
+CODE_VERSION = 23
 """Bumped when the results of this stage change for the same input."""

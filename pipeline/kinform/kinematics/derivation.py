@@ -58,6 +58,7 @@ from kinform.model.kinematics import (
     Misfit,
     Mobility,
     Separation,
+    Unparted,
 )
 from kinform.model.names import BodyName, JointName, PartName
 from kinform.model.surfaces import MeshSurfaces
@@ -104,7 +105,7 @@ def derive(
     extents = Extents(assembly)
     patches, size = bare_patches(contacts.patches), extents.assembly
     pairs = Pairs(assembly, contacts, patches, extents, answers)
-    found = partition(assembly, contacts, assembly.function.joints) if _complete(assembly) else None
+    found = partition(assembly, contacts, assembly.function.joints, surfaces) if _complete(assembly) else None
     settled = complete_joints(assembly)
     merger, decided, hints = _fuse_and_decide(pairs, contacts, found)
     bodies = merger.bodies()
@@ -150,6 +151,7 @@ def derive(
         moves=moves,
         asides=asides,
         membership=() if found is None else _membership(found, _body_of_part(bodies)),
+        unparted=() if found is None else tuple(Unparted(joint, parts) for joint, parts in found.unparted.items()),
     )
 
 
@@ -170,6 +172,7 @@ def _membership(found: Partition, of_part: Mapping[PartName, BodyName]) -> tuple
             placed.margin,
             BodyName("") if placed.other is None else names[placed.other],
             placed.unclear,
+            placed.evidence,
         )
         for part, placed in sorted(found.placed.items())
     )

@@ -404,6 +404,18 @@ class Membership:
     """The next best body; empty where none is in question."""
     either: bool
     """Whether it could be in that body as well, as far as joints and contact tell."""
+    evidence: str = ""
+    """What holds it there, what it was parted from, and which standard part it is."""
+
+
+@dataclass(frozen=True)
+class Unparted:
+    """An intended joint whose two sides contact holds together, where the bodies follow from the function."""
+
+    joint: str
+    parts: tuple[PartName, ...]
+    """A shortest chain of parts from one side to the other, each of which touches the next and none of which the joint
+    may part from it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -428,6 +440,8 @@ class Kinematics:
     """With `[function] complete = true`: contact that constrains nothing, sorted by bodies."""
     membership: tuple[Membership, ...] = ()
     """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
+    unparted: tuple[Unparted, ...] = ()
+    """With `[function] complete = true`: joints whose sides contact holds together, sorted by name."""
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -38,13 +38,20 @@ def _finding(context: Context, c: Comparison) -> Finding:
     derived = _derived_type(c)
     return RULE.finding(
         [intended.name],
-        f"joint '{intended.name}' is {derived}, intended is {intended.type}{_consequence(c)}",
+        f"joint '{intended.name}' is {derived}, intended is {intended.type}{_consequence(c)}{_chain(context, c)}",
         found=derived + (f" about {direction(c.axis)}" if c.axis is not None else ""),
         intended=intended.type + (f" about {direction(intended.axis)}" if intended.axis is not None else ""),
         place=c.point if c.point is not None else intended.point,
         declared=intended,
         remedy=_remedy(c),
     )
+
+
+def _chain(context: Context, c: Comparison) -> str:
+    """Which parts hold the two sides together, where bodies follow from the function."""
+    chains = {one.joint: one.parts for one in context.kinematics.unparted}
+    parts = chains.get(c.intended.name, ())
+    return f"; contact that it may not part holds its sides together: {' ~ '.join(parts)}" if parts else ""
 
 
 def _derived_type(c: Comparison) -> str:

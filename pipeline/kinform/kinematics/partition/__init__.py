@@ -14,5 +14,6 @@ The method is a multiway cut as an integer program (Boykov, Veksler, Zabih 2001 
 """
 
 from kinform.kinematics.partition.bodies import Partition, partition
+from kinform.kinematics.partition.proposals import Proposal, propose, proposed_joints
 
-__all__ = ["Partition", "partition"]
+__all__ = ["Partition", "Proposal", "partition", "propose", "proposed_joints"]

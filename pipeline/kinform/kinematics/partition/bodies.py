@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import fcl
 import numpy as np
 
 from kinform.foundation.graphs.graph import shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
+from kinform.foundation.words import counted, quoted
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.graph import Graph, graph_of
 from kinform.kinematics.partition.labelling import Labelling, Margin, label_all, margins
+from kinform.kinematics.partition.standard_parts import StandardPart, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
+from kinform.model.surfaces import MeshSurfaces
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,8 @@ class Placed:
     """Parts that would go there with it."""
     either: bool = False
     """Whether the joints would let it be in that body as well."""
+    evidence: str = ""
+    """What holds it there, what was parted, and which standard part it is."""
 
     @property
     def unclear(self) -> bool:
@@ -62,8 +67,14 @@ class Partition:
         return tuple(p for _, p in sorted(self.placed.items()) if p.unclear)
 
 
-def partition(assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJoint]) -> Partition:
-    """The bodies that the intended joints ask for; every part of the assembly is in one.
+def partition(
+    assembly: Assembly,
+    contacts: Contacts,
+    joints: Sequence[IntendedJoint],
+    surfaces: Mapping[str, MeshSurfaces] | None = None,
+) -> Partition:
+    """The bodies that the intended joints ask for; every part of the assembly is in one. `surfaces` tell standard
+    parts, which is evidence for the reader and decides nothing.
 
     Groups and assumptions stand. The result does not depend on the order of parts or joints.
     """
@@ -81,6 +92,8 @@ def partition(assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJ
     graph = graph_of(assembly, contacts, moving, merger)
     labelling = label_all(graph.nodes, graph.seeds, graph.edges)
     placed = _placed(assembly, graph, labelling)
+    known = {} if surfaces is None else standard_parts(assembly, surfaces)
+    placed = {name: replace(p, evidence=_evidence(graph, placed, p, known.get(name))) for name, p in placed.items()}
     parts = tuple(
         tuple(sorted(name for name, p in placed.items() if p.body == label)) for label in range(len(graph.names))
     )
@@ -114,6 +127,27 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
         label = placed[near].body if near is not None else 0
         placed[name] = Placed(name, label, "nearest", 0.0, None, (), either=True)
     return placed
+
+
+def _evidence(graph: Graph, placed: Mapping[PartName, Placed], one: Placed, standard: StandardPart | None) -> str:
+    """As in "held by plate; parted from motor; screw: named 'bolt'"."""
+    inside: list[tuple[float, PartName]] = []
+    across: list[tuple[float, PartName]] = []
+    for pair in graph.pairs_of.get(one.part, ()):
+        other = pair[0] if pair[1] == one.part else pair[1]
+        parted = graph.prices.by_joint[pair]
+        hold = min(parted.values(), default=graph.prices.held[pair])
+        (inside if placed[other].body == one.body else across).append((-hold, other))
+    words = []
+    for side, what in ((inside, "held by"), (across, "parted from")):
+        names = [name for _, name in sorted(side)]
+        rest = len(names) - constants.NAMED_HOLDS
+        more = f" and {counted(rest, 'more part')}" if rest > 0 else ""
+        if names:
+            words.append(f"{what} {quoted(names[: constants.NAMED_HOLDS])}{more}")
+    if standard is not None:
+        words.append(f"{standard.kind}: {standard.evidence}")
+    return "; ".join(words)
 
 
 def _unparted(

@@ -43,6 +43,8 @@ EITHER = 25.0
 """Margin up to which a part may go either way: less than the price of a flange."""
 PARTED = 100.0
 """Price up to which contact is made to be parted: it does not say that two names stand for one body."""
+LOOK_AHEAD = 4
+"""Up to so many sets of joints that hang together all ways of joining their names are looked at."""
 TOUCH_WORTH = 0.5
 """Price of parting the pair that touches over the largest area of all, in proportion for others: what nothing else
 tells apart goes with the part that it touches most."""
@@ -54,8 +56,31 @@ PROPOSED = (100.0, 310.0, np.inf)
 """Greatest prices of parting a pair at which a joint is looked for where no function is: journals, faces round the axis
 and serrations; where that parts nothing, flats beside it, too; then all that the turn leaves free."""
 SUBSTANTIAL = 0.002
-"""Share of the assembly's volume that either side of a proposed joint has at least."""
+"""Share of the assembly's volume that either side of a proposed joint has at least. On 17 robots 96 of 96 proposals are
+true with it, 81 of 81 with 0.005, 105 of 121 with 0.001 (the false ones all on one hand)."""
 SAME_AXIS = np.radians(1.0)
 """rad: journals whose axes differ by less are on one axis."""
 SAME_AXIS_OFF = 0.02
 """The same of their distance, as a share of the smaller journal's reach."""
+NAMED = 6
+"""Of the parts that a proposed joint would move, so many are named."""
+BALL_AREA = 0.9
+"""Share of its area that is one sphere, of a ball."""
+ALL_ROUND = np.radians(300.0)
+"""rad: what of a cylinder is there at least where it tells what a part is."""
+TURNED = 0.9
+"""Share of its area that lies about one axis, across it or flat along it, of screws, nuts, washers and pins."""
+WASHER_HEIGHT = 0.3
+"""Height of a washer at most, as a share of its outer radius."""
+NUT_HEIGHT = 1.3
+"""Height of a nut at most, by its width across flats: beyond, it is a spacer."""
+HEAD = (1.25, 2.6)
+"""Radius of a screw's head by that of its shank: 1.5 to 2.2 in the standards."""
+SHANK = 1.0
+"""Length of a screw's shank at least, by its radius."""
+PIN_LENGTH = 2.0
+"""Length of a pin at least, by its radius."""
+HEXAGON = 0.02
+"""By how much the cosine between faces of a hexagon may be off."""
+NAMED_HOLDS = 3
+"""Of the parts that hold another in its body, or that it was parted from, so many are named."""

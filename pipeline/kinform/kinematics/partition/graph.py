@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,6 +35,15 @@ class Graph:
     named: tuple[tuple[PartName, PartName], ...]
     """A part on either side of each joint."""
     prices: Prices
+
+    @cached_property
+    def pairs_of(self) -> dict[PartName, list[PartPair]]:
+        """The pairs that touch, by part."""
+        out: dict[PartName, list[PartPair]] = {}
+        for pair in self.prices.by_joint:
+            for name in pair:
+                out.setdefault(name, []).append(pair)
+        return out
 
     @property
     def nodes(self) -> int:

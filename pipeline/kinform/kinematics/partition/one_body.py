@@ -3,8 +3,8 @@
 Two joints that share no named part leave it open whether they share a body. So contact is followed from what no joint
 may part down to what is dearer than a journal, as in Kruskal's spanning tree, and named parts that it joins are one
 body, unless joints hang them together already, directly or by way of others; what is left, a bearing's ring that was
-named, goes where the least is parted (`joined_by_cost`). Names that hang together stay apart, as legs that cross are drawn touching, too:
-that they touch is reported, and a group says that they are one.
+named, goes where the least is parted (`joined_by_cost`). Names that hang together stay apart, as legs that cross are
+drawn touching, too: that they touch is reported, and a group says that they are one.
 """
 
 from __future__ import annotations
@@ -51,38 +51,68 @@ def one_body(one: UnionFind, seeds: Mapping[int, int], holds: Sequence[Hold], jo
 def joined_by_cost(
     seeds: Mapping[int, int], edges: Sequence[Edge], joints: Sequence[Labels], together: Sequence[int]
 ) -> list[int]:
-    """The same of labels that only journals lie between: again and again the two that leave the least to be parted.
-    Those `together` are known to be one body.
+    """The same of labels that only journals lie between: those are joined that leave the least to be parted, all ways
+    looked at where these are few, else again and again the best two. Those `together` are known to be one body.
     """
-    count = len(together)
-    same, hanging = UnionFind(count), UnionFind(count)
-    nodes = max((node for edge in edges for node in edge.ends), default=-1) + 1
-    nodes = max(nodes, max(seeds, default=-1) + 1)
-    for label, other in enumerate(together):
-        same.union(label, other)
-        hanging.union(label, other)
-    for pair in joints:
-        hanging.union(*pair)
+    now = list(together)
+    search = _Search(seeds, edges, joints)
+    while True:
+        ways = search.ways(now)
+        if not ways:
+            return now
+        hanging = len(search.hanging(now))
+        deep = hanging <= constants.LOOK_AHEAD
+        cost, best = min((search.least(way) if deep else search.cost(way), way) for way in ways)
+        if cost >= search.cost(now):
+            return now
+        now = best
 
-    def cost(new: Sequence[int]) -> dict[Labels, float]:
-        current = [edge.relabelled(new) for edge in edges]
-        labels = label_all(nodes, {node: new[label] for node, label in seeds.items()}, current).labels
-        return _parted_between(labels, current)
 
-    while len({hanging.find(label) for label in range(count)}) > 1:
-        now = _least(same, count)
-        costs = cost(now)
-        tried = [
-            (sum(cost([first if label == second else label for label in now]).values()), first, second)
-            for first, second in sorted(costs)
-            if hanging.find(first) != hanging.find(second)
-        ]
-        if not tried or min(tried)[0] >= sum(costs.values()):
-            break
-        _, first, second = min(tried)
-        same.union(first, second)
-        hanging.union(first, second)
-    return _least(same, count)
+class _Search:
+    """Which labels to join, by what is left to be parted."""
+
+    def __init__(self, seeds: Mapping[int, int], edges: Sequence[Edge], joints: Sequence[Labels]) -> None:
+        self.seeds, self.edges, self.joints = seeds, edges, joints
+        self.nodes = 1 + max([*seeds, *(node for edge in edges for node in edge.ends)], default=-1)
+        self._parted: dict[tuple[int, ...], dict[Labels, float]] = {}
+
+    def hanging(self, now: Sequence[int]) -> list[set[int]]:
+        """Sets of labels that joints hang together."""
+        sets = UnionFind(len(now))
+        for label, other in enumerate(now):
+            sets.union(label, other)
+        for pair in self.joints:
+            sets.union(*pair)
+        out: dict[int, set[int]] = {}
+        for label in range(len(now)):
+            out.setdefault(sets.find(label), set()).add(now[label])
+        return list(out.values())
+
+    def parted(self, now: Sequence[int]) -> dict[Labels, float]:
+        """What is parted between every two labels, sorted, when those that are `now` one are."""
+        key = tuple(now)
+        if key not in self._parted:
+            current = [edge.relabelled(now) for edge in self.edges]
+            seeds = {node: now[label] for node, label in self.seeds.items()}
+            self._parted[key] = _parted_between(label_all(self.nodes, seeds, current).labels, current)
+        return self._parted[key]
+
+    def cost(self, now: Sequence[int]) -> float:
+        """All that is parted."""
+        return sum(self.parted(now).values())
+
+    def ways(self, now: Sequence[int]) -> list[list[int]]:
+        """Labels with two joined that touch, and that joints do not hang together."""
+        sets = self.hanging(now)
+        out = []
+        for first, second in sorted(self.parted(now)):
+            if not any({first, second} <= labels for labels in sets):
+                out.append([first if label == second else label for label in now])
+        return out
+
+    def least(self, now: Sequence[int]) -> float:
+        """The cost of the best that may follow."""
+        return min([self.cost(now), *(self.least(way) for way in self.ways(now))])
 
 
 def _parted_between(labels: Sequence[int | None], edges: Sequence[Edge]) -> dict[Labels, float]:

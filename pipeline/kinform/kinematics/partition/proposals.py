@@ -3,8 +3,8 @@
 Every axis on which journals lie is a candidate. Along it, pairs may part whose contact its turn leaves free and that
 go round it (`parting`), and no others: flats beside it, holes that line up and everything that it does not move hold.
 An axis is proposed where that leaves two substantial bodies on either side of it, by itself or, in loops, together
-with all other candidates. Two axes between the same two bodies hold each other: neither is proposed. Sliders are not
-looked for.
+with all other candidates. Two axes between the same two bodies hold each other: neither is proposed, nor is one that
+only screws, pins or balls turn about. Sliders are not looked for.
 """
 
 from __future__ import annotations
@@ -16,14 +16,16 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import canonical_sign
 from kinform.foundation.graphs.graph import UnionFind
+from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
+from kinform.kinematics.partition.standard_parts import standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
 from kinform.model.function import IntendedJoint
 from kinform.model.names import PartName
-
+from kinform.model.surfaces import MeshSurfaces
 
 Sides = tuple[tuple[PartName, ...], tuple[PartName, ...]]
 """The parts of two bodies."""
@@ -50,7 +52,7 @@ class Proposal:
         return first, second
 
 
-def propose(assembly: Assembly, contacts: Contacts) -> list[Proposal]:
+def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts) -> list[Proposal]:
     """Joints that may be meant, the largest smaller side first."""
     volume = volumes(assembly)
     parts = sorted(volume)
@@ -59,17 +61,25 @@ def propose(assembly: Assembly, contacts: Contacts) -> list[Proposal]:
     axes = _candidates(contacts.patches)
     free = [_freed(axis, pairs, hints, constants.PROPOSED[0]) for axis in axes]
     graph = _Parts(parts, sorted(pairs), volume)
+    fixings = set(standard_parts(assembly, surfaces))
+    screwed = [bool(cut) and all(fixings & set(pair) for pair in cut) for cut in free]
     found: dict[int, list[Sides]] = {}
     for most in constants.PROPOSED:
         for number, axis in enumerate(axes):
-            if free[number] and not found.get(number):
+            # a screw may be a pivot, but nothing that holds may be parted for that
+            if free[number] and not found.get(number) and not (screwed[number] and most > constants.PROPOSED[0]):
                 cut = free[number] if most == constants.PROPOSED[0] else _freed(axis, pairs, hints, most)
                 found[number] = graph.sides(free[number], cut)
     every = frozenset().union(*free)
     for number, cut in enumerate(free):
-        if not found.get(number):
+        if not found.get(number) and not screwed[number]:
             found[number] = graph.sides(cut, every)
-    ways = [(axes[number], sides) for number, several in sorted(found.items()) for sides in several]
+    ways = [
+        (axes[number], sides)
+        for number, several in sorted(found.items())
+        for sides in several
+        if not any(fixings.issuperset(side) for side in sides)
+    ]
     total = sum(volume.values())
     out = []
     for joint, sides in ways:
@@ -78,6 +88,26 @@ def propose(assembly: Assembly, contacts: Contacts) -> list[Proposal]:
             share = min(sum(volume[name] for name in side) for side in sides) / total
             out.append(Proposal(joint.type, joint.axis, joint.point, sides, share))
     return sorted(out, key=lambda one: (-one.share, one.sides))
+
+
+def proposed_joints(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
+) -> list[tuple[IntendedJoint, str]]:
+    """Joints that may be meant as a function states them, named joint_1, joint_2 …, each with what it would move."""
+    volume = volumes(assembly)
+    out = []
+    for number, one in enumerate(propose(assembly, surfaces, contacts), 1):
+        moving = sorted(one.sides[1])
+        rest = len(moving) - constants.NAMED
+        more = f" and {counted(rest, 'more part')}" if rest > 0 else ""
+        words = f"moves {counted(len(moving), 'part')}, {100 * one.share:.2g} % of the volume: "
+        words += f"{quoted(moving[: constants.NAMED])}{more}"
+        first, second = one.between(volume)
+        joint = IntendedJoint(
+            f"joint_{number}", (first, second), one.type, one.axis, None, one.point, None, None, "", None
+        )
+        out.append((joint, words))
+    return out
 
 
 def volumes(assembly: Assembly) -> dict[PartName, float]:

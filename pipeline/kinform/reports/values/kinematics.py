@@ -37,6 +37,7 @@ def body_values(design: Design) -> dict[str, Any]:
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "membership": [asdict(one) for one in kinematics.membership],
+        "unparted": [asdict(one) for one in kinematics.unparted],
     }
 
 

@@ -40,6 +40,7 @@ LAYOUT = Layout(
     Table("misaligned"),
     Table("asides"),
     Table("membership"),
+    Table("unparted"),
     Table("couplings", Table("meshings", field="meshing", owner="coupling")),
 )
 """The matrix and the mobility have groups of their own."""

@@ -1,0 +1,98 @@
+"""Machines of bolted stacks, bearings, pins and horns: bodies from their joints, whichever parts these name, and joints
+that are proposed where none is stated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from random_assemblies.draw import Draw
+from random_assemblies.machine_verdict import assembly_of, judge
+from random_assemblies.machines import machine
+from support.solids import box, part, rod
+
+from kinform import contacts, kinematics, surfaces
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics import propose
+from kinform.kinematics.partition.one_body import one_body
+from kinform.kinematics.partition.standard_parts import standard_parts
+
+SEEDS = [3, 4, 9, 11]
+
+
+@cache
+def touching(seed):
+    made = machine(Draw([seed]))
+    assembly = assembly_of(made, seed)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, assembly.tolerances) for p in assembly.parts}
+    return made, assembly, found, contacts.find(assembly, found)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_bodies_are_those_of_the_machine_whichever_parts_are_named(seed):
+    made, assembly, found, contact = touching(seed)
+    assert judge(made, kinematics.derive(assembly, found, contact)).exact
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_joint_that_is_proposed_is_one(seed):
+    _, assembly, found, contact = touching(seed)
+    ways = propose(replace(assembly, function=type(assembly.function)()), found, contact)
+    assert ways
+    for way in ways:
+        gaps = [way.point - joint.point for joint in assembly.function.joints]
+        off = [np.linalg.norm(gap - (gap @ way.axis) * way.axis) for gap in gaps]
+        nearest = assembly.function.joints[int(np.argmin(off))]
+        assert min(off) < 1e-6
+        assert abs(way.axis @ nearest.axis) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_judge_tells_a_part_in_another_body():
+    made, assembly, found, contact = touching(SEEDS[0])
+    K = kinematics.derive(assembly, found, contact)
+    first, second = K.bodies[:2]
+    moved = (replace(first, parts=first.parts[1:]), replace(second, parts=(*second.parts, first.parts[0])))
+    assert not judge(made, replace(K, bodies=(*moved, *K.bodies[2:]))).exact
+
+
+def test_names_that_firm_contact_joins_are_one_body_unless_joints_hang_them_together():
+    """Nodes 0–1–2–3 in a row; joints between labels (0, 1) and (2, 3)."""
+    seeds = {0: 0, 1: 1, 2: 2, 3: 3}
+    holds = [(20000.0, (1, 2)), (300.0, (0, 3)), (20000.0, (0, 1))]
+    assert one_body(UnionFind(4), seeds, holds, [(0, 1), (2, 3)]) == [0, 1, 1, 3]
+    assert one_body(UnionFind(4), seeds, [(40.0, (1, 2))], [(0, 1), (2, 3)]) == [0, 1, 2, 3]
+
+
+def shaped(**solids):
+    parts = [part(name, solid, np.eye(4)) for name, solid in solids.items()]
+    made = assembly_of(machine(Draw([0])), 0)
+    made = replace(made, parts=tuple(parts))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, made.tolerances) for p in parts}
+    return {name: one.kind for name, one in standard_parts(made, found).items()}
+
+
+def test_standard_parts_by_name():
+    names = {
+        "DIN 912 M3x10": "screw",
+        "iso_4032_m5": "nut",
+        "Unterlegscheibe_2": "washer",
+        "bearing screw": "screw",
+        "top/ISO 7089": "washer",
+        "螺丝 M3": "screw",
+        "vise_jaw": None,
+        "pinion": None,
+        "DIN rail": None,
+    }
+    solid = box(0, 10, 0, 20, 0, 30)
+    assert shaped(**dict.fromkeys(names, solid)) == {name: kind for name, kind in names.items() if kind}
+
+
+def test_standard_parts_by_shape_need_copies():
+    bolt = rod(1.5, 0, 10) + rod(2.75, 10, 13)
+    washer = rod(3.5, 0, 0.5) - rod(1.6, -1, 1)
+    three = {f"{name}{k}": solid for name, solid in (("a", bolt), ("b", washer)) for k in range(3)}
+    found = shaped(**three, wheel=rod(20, 0, 5) + rod(3, 5, 40), plate=box(0, 40, 0, 40, 0, 4) - rod(3, -1, 5))
+    assert found == {name: "screw" if name[0] == "a" else "washer" for name in three}
+    assert shaped(knob=bolt) == {}
