@@ -18,6 +18,7 @@ from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.design import Design
 from kinform.model.assembly import Assembly, MassOverride, Mesh, MeshHealth, Part
 from kinform.model.contacts import Contacts, Patch
+from kinform.model.descriptions import DescribedLink, StatedMass
 from kinform.model.findings import CheckReport
 from kinform.model.fingerprints import Fingerprints
 from kinform.model.function import Law
@@ -95,6 +96,16 @@ def by_type(hint: Any) -> st.SearchStrategy[Any]:
 def masses() -> st.SearchStrategy[MassOverride]:
     """Stated masses."""
     return of(MassOverride, inertia=array(3, 3))
+
+
+def stated_masses() -> st.SearchStrategy[StatedMass]:
+    """Inertials in the numbers of their file."""
+    return of(StatedMass, inertia=st.none() | array(6))
+
+
+def links() -> st.SearchStrategy[DescribedLink]:
+    """Links of descriptions."""
+    return of(DescribedLink, rotation=array(3, 3))
 
 
 @st.composite
@@ -246,6 +257,8 @@ def behaviours(draw: Any) -> Behaviour:
 
 
 SPECIAL: dict[Any, Any] = {
+    StatedMass: stated_masses,
+    DescribedLink: links,
     Law: laws, MassOverride: masses, Patch: patches, Contacts: contacts, Joint: joints, ConstraintMatrix: matrices,
     Behaviour: behaviours, Meshing: meshings, Mobility: mobilities, Redundancy: redundancies,
     Release: releases, MassProperties: mass_properties, Simulation: simulations,

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.consistency.comparisons.answers import answers
+from kinform.consistency.comparisons.answers import answer_counts, answers
 from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
+from kinform.reports.phrases import answers_line
 from kinform_cli.constants import MOST_WAYS
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import Lengths, degrees, ground_note, number, vector
@@ -55,8 +56,10 @@ def _intended(design: Design, lengths: Lengths) -> list[RenderableType]:
     """The answer to each intended joint."""
     if not design.assembly.function.joints:
         return []
-    rows = Rows("intended", "type", "answer", "because", title="\nIntended joints")
-    for one in answers(design):
+    given = answers(design)
+    title = f"\nIntended joints: {answers_line(answer_counts(given))}"
+    rows = Rows("intended", "type", "answer", "because", title=title)
+    for one in given:
         gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.unit}"
         rows.add(one.name, one.type, one.answer, one.free or one.blocked_by or gap)
     return [rows]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from kinform.consistency.comparisons.answers import answer_counts, answers
 from kinform.consistency.context import Context
 from kinform.consistency.control import Applied, apply, idle_ignore, is_selected, means, unused_entries
 from kinform.consistency.outcome import Outcome, decided, skipped
@@ -42,6 +43,7 @@ def check(design: Design) -> CheckReport:
         findings=tuple(sorted((f for run in applied.values() for f in run.findings), key=_order)),
         rules=tuple(rules),
         ignored=tuple(sorted((i for run in applied.values() for i in run.ignored), key=lambda i: _order(i.finding))),
+        answers=() if context.lacks("comparisons") else answer_counts(answers(context.design)),
     )
 
 

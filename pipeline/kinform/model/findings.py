@@ -62,6 +62,8 @@ class CheckReport:
     """Findings that are accepted, in the order of findings; they decide nothing."""
     gone: tuple[Annotated[tuple[str, tuple[str, ...]], columns("code", "subject")], ...] | None = None
     """Codes and subjects of a baseline that are not found any more; None where no baseline was compared."""
+    answers: tuple[Annotated[tuple[str, int], columns("answer", "joints")], ...] = ()
+    """How many intended joints geometry gives each answer to; empty where there are none, or nothing was derived."""
 
     @property
     def ran(self) -> int:

@@ -16,7 +16,7 @@ from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened
 from kinform.model.findings import CheckReport
 from kinform.reports import constants
-from kinform.reports.phrases import rule_counts, severity_counts, verdict_line
+from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_line
 
 _KINDS = ("warning", "not decided", "error")
 """What is told line by line, the worst last."""
@@ -185,6 +185,8 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
     why = " (-v says why)" if design.assembly.function.stated else " (no [function] is stated)"
     if skipped:
         yield f"skipped: {counted(skipped, 'rule')}{why}"
+    if report.answers:
+        yield f"intended joints: {answers_line(report.answers)}"
     if design.assembly.ground is None and design.kinematics is not None:
         ground = next((str(body.name) for body in design.kinematics.bodies if body.ground), None)
         if ground is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
 from kinform.foundation import words
 from kinform.foundation.words import counted, one_line
@@ -76,3 +77,12 @@ def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
     if report.inconclusive:
         return "not verified: " + counted(report.inconclusive, "rule") + " could not decide"
     return "consistent"
+
+
+def answers_line(counts: Sequence[tuple[str, int]]) -> str:
+    """ "5 agree, 1 not held, undecided 2 of 8 (25 %)": the share of undecided ones is told in any case."""
+    told = dict(counts)
+    every = sum(told.values())
+    undecided = told.pop("undecided", 0)
+    words = [f"{count} {'agree' if answer == 'agrees' else answer}" for answer, count in told.items()]
+    return ", ".join([*words, f"undecided {undecided} of {every} ({100.0 * undecided / every:.0f} %)"])

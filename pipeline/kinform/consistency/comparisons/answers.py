@@ -48,6 +48,12 @@ class Answer:
     """Between the boxes of the two bodies, where they do not touch; 0 where the boxes meet."""
 
 
+def answer_counts(given: Sequence[Answer]) -> tuple[tuple[str, int], ...]:
+    """How many joints have each answer, in the order of `ANSWERS`, without those that none has."""
+    counts = [(answer, sum(one.answer == answer for one in given)) for answer in ANSWERS]
+    return tuple((answer, count) for answer, count in counts if count)
+
+
 def answer_of(assembly: Assembly, c: Comparison) -> Answer:
     """The answer to the intended joint of a comparison."""
     kind, free, blocked = _kind(assembly.tolerances, c)

@@ -121,13 +121,12 @@ def _of_inertia(body: Weighed) -> Ranked | None:
 
 
 def _even(body: Weighed) -> float:
-    """Half the trace (kg·m²) of the inertia about the stated centre that the mass has, spread evenly."""
+    """Half the trace (kg·m²) of the inertia about its own centre that the mass has, spread evenly."""
     solid = body.solid
     if solid is not None:
-        offset = solid.centroid - body.centre
-        return body.mass * (0.5 * float(np.trace(solid.inertia)) / solid.volume + float(offset @ offset))
+        return 0.5 * body.mass * float(np.trace(solid.inertia)) / solid.volume
     assert body.hull is not None
-    away = body.hull.corners - body.centre
+    away = body.hull.corners - body.hull.corners.mean(axis=0)
     return 0.6 * body.mass * float((away * away).sum(axis=1).mean())  # a full ball has 3/5 of its radius squared
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from kinform.consistency.comparisons.answers import answers
+from kinform.consistency.comparisons.answers import Answer, answer_counts, answers
 from kinform.design import Design
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
@@ -17,10 +18,12 @@ def joint_values(design: Design) -> dict[str, Any]:
     """Bodies and joints, and how they come apart."""
     kinematics = design.ranged or _kinematics(design)
     computed = ranged(design)
+    given = answers(design)
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
         "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
-        "intended": [asdict(answer) for answer in answers(design)],
+        "intended": [asdict(answer) for answer in given],
+        "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
         "asides": [asdict(aside) for aside in kinematics.asides],
         "mobility": mobility_counts(kinematics.mobility),
         "separations": [
@@ -29,6 +32,11 @@ def joint_values(design: Design) -> dict[str, Any]:
         ],
         "separations_reason": kinematics.separations_reason or None,
     }
+
+
+def _share(given: Sequence[Answer]) -> float | None:
+    """Of the undecided among the answers; null without any."""
+    return sum(one.answer == "undecided" for one in given) / len(given) if given else None
 
 
 def body_values(design: Design) -> dict[str, Any]:

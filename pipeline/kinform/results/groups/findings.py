@@ -8,7 +8,9 @@ from kinform.design import Design
 from kinform.model.findings import CheckReport
 from kinform.results.layout import Layout, Table
 
-LAYOUT = Layout(CheckReport, Table("findings"), Table("rules"), Table("ignored"), Table("gone"))
+LAYOUT = Layout(
+    CheckReport, Table("findings"), Table("rules"), Table("ignored"), Table("gone"), Table("answers", if_any=True)
+)
 
 
 def write(group: h5py.Group, design: Design) -> None:

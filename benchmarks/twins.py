@@ -1,0 +1,284 @@
+"""What a rule says of a robot in which one number was broken: `python benchmarks/twins.py ROBOTS [--only so101 …]`.
+
+ROBOTS holds public repositories by owner+name, checked out, such as `TheRobotStudio+SO-ARM100/`; a robot that is not
+there is left out. Of each, twins are made below a temporary folder: the same URDF with one number broken. A twin is
+right where it has findings (errors and warnings) of the expected rule about the broken thing that the robot has not,
+and of no other rule. One line a twin; the exit code is 1 where one is not right.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lxml import etree
+
+import kinform
+from kinform.consistency.comparisons.answers import answers
+from kinform.consistency.comparisons.sides import sides_of
+from kinform.design import Design
+from kinform.form.descriptions.meshes import MeshFiles
+from kinform.model.findings import Finding
+
+ROBOTS = {
+    "so101": "TheRobotStudio+SO-ARM100/Simulation/SO101/so101_new_calib.urdf",
+    "duck_bdx": "apirrone+Open_Duck_Mini/mini_bdx/robots/bdx/robot.urdf",
+    "toddler_active": "hshi74+toddlerbot/toddlerbot/descriptions/assemblies/toddlerbot_active/toddlerbot_active.urdf",
+}
+AXIS_OFF = 0.003
+"""m."""
+
+Break = Callable[["Twin"], tuple[str, str] | None]
+"""Breaks a number; the code that is expected and the name that it is about, or None where the robot has no place."""
+
+
+@dataclass
+class Twin:
+    """The XML of a robot to be broken, and what is known of the whole one."""
+
+    root: Any
+    whole: Design
+
+    def link(self, name: str) -> Any:
+        """The element of a link."""
+        return next(e for e in self.root.iter("link") if e.get("name") == name)
+
+    def joint(self, name: str) -> Any:
+        """The element of a joint."""
+        return next(e for e in self.root.iter("joint") if e.get("name") == name)
+
+    def heaviest(self) -> Any:
+        """The link that has mesh, collision geometry and the largest mass."""
+        links = [e for e in self.root.iter("link") if e.find("inertial") is not None and e.find("visual") is not None]
+        return max(links, key=lambda e: float(e.find("inertial/mass").get("value")))
+
+    def agreeing(self) -> Iterator[str]:
+        """Joints that contact confirms."""
+        held = {answer.name for answer in answers(self.whole) if answer.answer == "agrees"}
+        turning = {joint.name for joint in self.whole.assembly.function.joints if joint.type == "revolute"}
+        return (e.get("name") for e in self.root.iter("joint") if e.get("name") in held & turning)
+
+
+def _scale(element: Any, key: str, factor: float) -> None:
+    element.set(key, repr(float(element.get(key) or 0.0) * factor))
+
+
+def _numbers(element: Any, key: str) -> np.ndarray:
+    return np.array([float(v) for v in (element.get(key) or "0 0 0").split()])
+
+
+def _put(element: Any, key: str, values: np.ndarray) -> None:
+    element.set(key, " ".join(repr(float(v)) for v in values))
+
+
+def axis_off(twin: Twin) -> tuple[str, str] | None:
+    """A joint 3 mm beside its axis, and everything on it back where it was."""
+    name = next(twin.agreeing(), None)
+    if name is None:
+        return None
+    joint = twin.joint(name)
+    axis = _numbers(joint.find("axis"), "xyz")
+    across = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
+    across *= AXIS_OFF / np.linalg.norm(across)  # in the frame of the child
+    origin = joint.find("origin")
+    roll, pitch, yaw = _numbers(origin, "rpy")
+    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    R = np.array([[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                  [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], [-sp, cp * sr, cp * cr]])  # fmt: skip
+    _put(origin, "xyz", _numbers(origin, "xyz") + R @ across)
+    child = joint.find("child").get("link")
+    below = [
+        e for e in twin.root.iter("joint") if e.find("parent") is not None and e.find("parent").get("link") == child
+    ]
+    inside = twin.link(child).xpath("visual|collision|inertial")
+    for element in (*below, *inside):
+        place = element.find("origin")
+        if place is None:
+            place = etree.SubElement(element, "origin")
+        _put(place, "xyz", _numbers(place, "xyz") - across)
+    return "KF404", name
+
+
+def inertia_in_gram_millimetres(twin: Twin) -> tuple[str, str] | None:
+    """Inertias of a link in g·mm²."""
+    link = twin.heaviest()
+    for key in link.find("inertial/inertia").keys():  # noqa: SIM118 - an element, not a dict
+        _scale(link.find("inertial/inertia"), key, 1e9)
+    return "KF123", link.get("name")
+
+
+def mass_in_grams(twin: Twin) -> tuple[str, str] | None:
+    """Mass and inertia of a link in grams."""
+    link = twin.heaviest()
+    _scale(link.find("inertial/mass"), "value", 1e3)
+    for key in link.find("inertial/inertia").keys():  # noqa: SIM118
+        _scale(link.find("inertial/inertia"), key, 1e3)
+    return "KF123", link.get("name")
+
+
+def mesh_in_millimetres(twin: Twin) -> tuple[str, str] | None:
+    """The meshes of a link a thousand times too large."""
+    link = twin.heaviest()
+    for mesh in link.xpath("visual/geometry/mesh|collision/geometry/mesh"):
+        scale = _numbers(mesh, "scale") if mesh.get("scale") else np.ones(3)
+        _put(mesh, "scale", 1e3 * scale)
+    return "KF110", link.get("name")
+
+
+def limit_too_wide(twin: Twin) -> tuple[str, str] | None:
+    """A limit 30° beyond the end that the parts leave."""
+    known = {finding.subject[0] for finding in twin.whole.report.findings if finding.code == "KF412"}
+    run = twin.whole.simulation
+    derived = {a.joint: a.name for a in answers(twin.whole) if a.answer in ("agrees", "not held", "no contact")}
+    for reach in () if run is None or run.ranges is None else run.ranges:
+        name = derived.get(reach.joint)
+        limit = None if name is None else twin.joint(name).find("limit")
+        ends = [end.value for end in (reach.lower, reach.upper) if end is not None and end.status == "found"]
+        if limit is not None and name not in known and ends and max(map(abs, ends)) < math.radians(150.0):
+            wide = max(map(abs, ends)) + math.radians(30.0)
+            limit.set("lower", repr(-wide))
+            limit.set("upper", repr(wide))
+            return "KF412", str(name)
+    return None
+
+
+def limits_exchanged(twin: Twin) -> tuple[str, str] | None:
+    """The limits of a joint the wrong way round."""
+    for joint in twin.root.iter("joint"):
+        limit = joint.find("limit")
+        if joint.get("type") == "revolute" and limit is not None and limit.get("lower") != limit.get("upper"):
+            lower, upper = limit.get("lower"), limit.get("upper")
+            limit.set("lower", upper)
+            limit.set("upper", lower)
+            return "KF415", joint.get("name")
+    return None
+
+
+def centre_in_millimetres(twin: Twin) -> tuple[str, str] | None:
+    """The centre of mass of a link 0.5 m away."""
+    link = twin.heaviest()
+    origin = link.find("inertial/origin")
+    _put(origin, "xyz", _numbers(origin, "xyz") + [0.5, 0.0, 0.0])
+    return "KF124", link.get("name")
+
+
+def inertia_impossible(twin: Twin) -> tuple[str, str] | None:
+    """A moment of inertia of a link that is larger than the sum of the others."""
+    link = twin.heaviest()
+    inertia = link.find("inertial/inertia")
+    inertia.set("ixx", repr(2.5 * (float(inertia.get("iyy")) + float(inertia.get("izz")))))
+    return "KF121", link.get("name")
+
+
+def collision_small(twin: Twin) -> tuple[str, str] | None:
+    """The collision geometry of a link a small box at its centre of mass."""
+    link = twin.heaviest()
+    for collision in link.findall("collision"):
+        link.remove(collision)
+    made = etree.SubElement(link, "collision")
+    made.append(etree.fromstring(etree.tostring(link.find("inertial/origin"))))
+    etree.SubElement(etree.SubElement(made, "geometry"), "box").set("size", "0.01 0.01 0.01")
+    return "KF130", link.get("name")
+
+
+def collision_missing(twin: Twin) -> tuple[str, str] | None:
+    """A collision mesh that is not there."""
+    link = twin.heaviest()
+    made = etree.SubElement(etree.SubElement(etree.SubElement(link, "collision"), "geometry"), "mesh")
+    made.set("filename", "gone.stl")
+    return "KF131", "gone.stl"
+
+
+def not_mirrored(twin: Twin) -> tuple[str, str] | None:
+    """A right link with the centre of mass of the left one, as far to the wrong side."""
+    for description in twin.whole.assembly.descriptions:
+        sides = sides_of(description)
+        for pair in () if sides is None else sides.pairs:
+            origin = twin.link(pair.right.name).find("inertial/origin")
+            shift = pair.right.rotation.T @ (sides.mirror.A @ [0.0, 1.0, 0.0])
+            if origin is not None and sides.agrees(pair):
+                _put(origin, "xyz", _numbers(origin, "xyz") + 0.012 * shift)
+                return "KF132", pair.right.name
+    return None
+
+
+BREAKS: tuple[Break, ...] = (
+    axis_off, inertia_in_gram_millimetres, mass_in_grams, mesh_in_millimetres, limit_too_wide, limits_exchanged,
+    centre_in_millimetres, inertia_impossible, collision_small, collision_missing, not_mirrored,
+)  # fmt: skip
+
+
+def absolute(root: Any, path: Path) -> None:
+    """Meshes by their full paths, so that the twin may lie anywhere."""
+    files = MeshFiles(path.resolve(), {})
+    for mesh in root.iter("mesh"):
+        found = files.find(mesh.get("filename") or "")
+        if found.path is not None:
+            mesh.set("filename", str(found.path.resolve()))
+
+
+def told(design: Design) -> set[tuple[str, tuple[str, ...]]]:
+    """Errors and warnings, by rule and what they are about."""
+    findings: tuple[Finding, ...] = design.report.findings
+    return {(f.code, f.subject) for f in findings if f.severity != "note"}
+
+
+def twins_of(name: str, path: Path, folder: Path, only: list[str]) -> bool:
+    """Make, run and tell all twins of one robot; whether all are right."""
+    parser = etree.XMLParser(remove_comments=True, recover=True)
+    text = etree.parse(str(path), parser)
+    absolute(text.getroot(), path)
+    source = folder / "robot.urdf"
+    source.write_bytes(etree.tostring(text))
+    output = folder / "robot.h5"
+    whole = kinform.run(source, output, allow_outside=True, ranges=True).design
+    before, good = told(whole), True
+    for make in BREAKS:
+        if only and make.__name__ not in only:
+            continue
+        twin = Twin(etree.fromstring(etree.tostring(text)), whole)
+        expected = make(twin)
+        if expected is None:
+            print(f"{name:15} {make.__name__:28} no place for it")
+            continue
+        source.write_bytes(etree.tostring(twin.root))
+        after = told(kinform.run(source, output, allow_outside=True, ranges=True).design)
+        new = after - before
+        code, subject = expected
+        about = any(c == code and any(subject in word for word in s) for c, s in new)
+        others = sorted({c for c, _ in new} - {code})
+        good &= about and not others
+        print(f"{name:15} {make.__name__:28} {code} {'told' if about else 'NOT TOLD'} of {subject}"
+              + (f"; ALSO {', '.join(others)}" if others else ""), flush=True)  # fmt: skip
+    return good
+
+
+def main() -> int:
+    """Command line."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("robots", type=Path)
+    options.add_argument("--only", nargs="*", default=[], help="robots")
+    options.add_argument("--breaks", nargs="*", default=[], help="names of what is broken")
+    asked = options.parse_args()
+    good = True
+    for name, place in ROBOTS.items():
+        path = asked.robots / place
+        if asked.only and name not in asked.only:
+            continue
+        if not path.is_file():
+            print(f"{name:15} is not there: left out")
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            good &= twins_of(name, path, Path(folder), asked.breaks)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
