@@ -49,6 +49,8 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
     lines += textwrap.wrap(f"{severity_counts(report)}; {rule_counts(report)}", width, subsequent_indent="  ")
     lines += _notes(report, width)
     lines += _assumed(report, design, width)
+    if report.answers:
+        lines += textwrap.wrap(f"intended joints: {answers_line(report.answers)}", width, subsequent_indent="  ")
     chosen, rest = _worst(_items(report))
     if rest:
         told = []
@@ -185,8 +187,6 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
     why = " (-v says why)" if design.assembly.function.stated else " (no [function] is stated)"
     if skipped:
         yield f"skipped: {counted(skipped, 'rule')}{why}"
-    if report.answers:
-        yield f"intended joints: {answers_line(report.answers)}"
     if design.assembly.ground is None and design.kinematics is not None:
         ground = next((str(body.name) for body in design.kinematics.bodies if body.ground), None)
         if ground is not None:

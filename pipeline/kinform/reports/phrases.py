@@ -80,9 +80,10 @@ def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
 
 
 def answers_line(counts: Sequence[tuple[str, int]]) -> str:
-    """ "5 agree, 1 not held, undecided 2 of 8 (25 %)": the share of undecided ones is told in any case."""
+    """ "5 agree, 1 not held, 2 undecided (25 %)": how many are undecided is told in any case."""
     told = dict(counts)
     every = sum(told.values())
     undecided = told.pop("undecided", 0)
     words = [f"{count} {'agree' if answer == 'agrees' else answer}" for answer, count in told.items()]
-    return ", ".join([*words, f"undecided {undecided} of {every} ({100.0 * undecided / every:.0f} %)"])
+    share = f"{undecided} undecided ({100.0 * undecided / every:.0f} %)" if undecided else "none undecided"
+    return ", ".join([*words, share])
