@@ -55,3 +55,23 @@ def whole_design(
             reading=reading,
         )
     return outcome.design
+
+
+def looked_at(source: Path) -> Design:
+    """The design in a results file, as it is; of a manifest, description or scene every stage, and nothing is kept.
+
+    Raises as `whole_design`.
+    """
+    from kinform.form.sources import AS_IT_IS
+    from kinform_cli.options import cores
+
+    if source.suffix.lower() in RESULTS or not is_design(source):
+        return files.read(source)
+    return whole_design(
+        [source], units=None, reading=AS_IT_IS, allow_outside=False, jobs=cores(None), as_it_is=True
+    )  # fmt: skip
+
+
+def is_design(source: Path) -> bool:
+    """Whether the name is that of a manifest, a robot description, or a CAD or scene file."""
+    return source.suffix.lower() in (".toml", *files.DESCRIPTIONS, *files.SCENES)

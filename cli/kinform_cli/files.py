@@ -259,6 +259,12 @@ def is_manifest(sources: Sequence[Path], units: str | None) -> bool:
             file=next(source for source in sources if source.suffix.lower() in (".h5", ".hdf5")),
             remedy="look into it with `kinform show`, or verify it with `kinform check`",
         )
+    from kinform.form.sources import unread
+
+    for source in sources:
+        foreign = unread(source)
+        if foreign is not None:
+            raise refuse(foreign[0], file=source, remedy=foreign[1])
     if len(sources) > 1:
         raise refuse(
             "several inputs that are not all meshes",

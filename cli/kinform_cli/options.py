@@ -237,6 +237,10 @@ Sources = Annotated[
     ),
 ]
 Results = Annotated[Path, argument("F.h5", "Results file to read.")]
+LookedAt = Annotated[
+    Path,
+    argument("F.h5", "Results file; of a manifest, robot description or scene all is computed, and not kept."),
+]
 Output = Annotated[Path, option("--output -o", "F.h5", "Results file to write; may be the one that is read.")]
 AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Accept meshes outside the manifest's folder.")]
 Geometry = Annotated[

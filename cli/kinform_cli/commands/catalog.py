@@ -10,6 +10,8 @@ import typer
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
+from kinform_cli.designs import is_design
+from kinform_cli.errors import refuse
 from kinform_cli.options import Command, Group, PrintedTable, TableFormat, argument, examples, option
 from kinform_cli.text import command
 
@@ -47,6 +49,10 @@ def add(
     The catalog is made where there is none; a design that it has is read again.
     """
     files.check_text_output(file, inputs=sources)
+    for source in sources:
+        if source.is_file() and is_design(source):
+            first = command("kinform", "run", source, "-o", source.with_suffix(".h5"))
+            raise refuse("a catalog is of results", file=source, remedy=f"first {first}, then name that")
     from kinform import catalog
 
     old = catalog.read(file) if file.exists() else catalog.Catalog()

@@ -11,14 +11,15 @@ import typer
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
+from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
 from kinform_cli.gate import Gate, next_look
 from kinform_cli.options import (
     FailOn,
     FindingsFormat,
+    LookedAt,
     ManifestFolder,
     PrintedFindings,
-    Results,
     Severity,
     Verbose,
     examples,
@@ -45,7 +46,7 @@ EXAMPLES = examples(
 
 
 def check(
-    source: Results,
+    source: LookedAt,
     output: Annotated[
         Path | None,
         option("--output -o", "F.h5", "Also write the findings to a results file; may be the one that is read."),
@@ -75,7 +76,7 @@ def check(
     from kinform import results, stages
     from kinform.consistency import adopt
 
-    design = files.read(source)
+    design = looked_at(source)
     if output is not None:
         files.warn_if_not_whole(output)
     with files.needing(source), Working("check"):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinform_cli import console, files
+from kinform_cli.designs import looked_at
 from kinform_cli.options import Tolerances, argument, examples, option
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 EXAMPLES = examples(
     "kinform diff before.h5 after.h5",
     "kinform diff before.h5 after.h5 --tolerance 0.1mm --tolerance 1%",
-    "kinform diff before.h5 after.h5 --report change.html    # before and after in one view",
+    "kinform diff before.h5 after.h5 --report change.html    # as one page",
     "kinform diff before.h5 after.h5 --format md > change.md",
 )
 
@@ -32,8 +33,8 @@ class DiffFormat(StrEnum):
 
 
 def diff(
-    before: Annotated[Path, argument("A.h5", "Results file before.")],
-    after: Annotated[Path, argument("B.h5", "Results file after.")],
+    before: Annotated[Path, argument("A.h5", "Results file before; or a manifest, robot description or scene.")],
+    after: Annotated[Path, argument("B.h5", "Results file after; the same.")],
     format: Annotated[DiffFormat, typer.Option("--format", "-f", help="json: SI and radians.")] = DiffFormat.full,
     tolerances: Tolerances = None,
     report: Annotated[
@@ -51,7 +52,7 @@ def diff(
 
     if report is not None:
         files.check_page(report, inputs=[before, after])
-    old, new = files.read(before), files.read(after)
+    old, new = looked_at(before), looked_at(after)
     result = changes.compare_designs(old, new, within)
     if report is not None:
         files.write_text(report, changes.diff_page(result, old, new, (before.name, after.name)))

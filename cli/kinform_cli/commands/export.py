@@ -11,8 +11,9 @@ import typer
 
 from kinform.foundation.words import counted
 from kinform_cli import console, files
+from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
-from kinform_cli.options import Results, examples, option
+from kinform_cli.options import LookedAt, examples, option
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -48,7 +49,7 @@ class Target(StrEnum):
 
 
 def export(
-    source: Results,
+    source: LookedAt,
     to: Annotated[Target, typer.Option("--to", show_default=False, help="Format to write.")],
     output: Annotated[Path, option("--output -o", "DIR", "Folder to write into; made if missing.")],
     strict: Annotated[
@@ -66,7 +67,7 @@ def export(
     """
     if output.exists() and not output.is_dir():
         raise refuse("this is a file, not a folder", file=output, remedy="name a folder with -o")
-    design = files.read(source)
+    design = looked_at(source)
     from kinform import exports
     from kinform.errors import InputError, Problem
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from kinform_cli import console, files
+from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
-from kinform_cli.options import PrintedTable, Results, TableFormat, argument, examples, option
+from kinform_cli.options import LookedAt, PrintedTable, TableFormat, argument, examples, option
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -32,7 +33,7 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def query(
-    source: Results,
+    source: LookedAt,
     a: Annotated[str | None, argument("A", "Part, group or body.")] = None,
     b: Annotated[str | None, argument("B", "Part, group or body that moves relative to A.")] = None,
     turn: Annotated[
@@ -84,7 +85,7 @@ def query(
 
 
 def _design(source: Path) -> Design:
-    design = files.read(source)
+    design = looked_at(source)
     from kinform.errors import StageError
 
     with files.needing(source):

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinform_cli import console, files
+from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
-from kinform_cli.options import PrintedTable, Results, TableFormat, argument, examples, option
+from kinform_cli.options import LookedAt, PrintedTable, TableFormat, argument, examples, option
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -41,7 +42,7 @@ class Topic(StrEnum):
 
 
 def show(
-    source: Results,
+    source: LookedAt,
     topic: Annotated[Topic | None, argument("TOPIC", "What to show; without it an overview.")] = None,
     format: PrintedTable = TableFormat.table,
     joint: Annotated[
@@ -61,7 +62,7 @@ def show(
     if graph is not None:
         _draw(source, topic, graph)
         return
-    design = files.read(source)
+    design = looked_at(source)
     from kinform import reports
     from kinform_cli.views import topics
 
@@ -101,7 +102,7 @@ def _draw(source: Path, topic: Topic | None, path: Path) -> None:
     if path.suffix not in (".svg", ".dot"):
         raise typer.BadParameter(f"{path.name!r} ends neither in .svg nor in .dot", param_hint="--graph")
     files.check_text_output(path, inputs=[source])
-    design = files.read(source)
+    design = looked_at(source)
     from kinform.errors import StageError
     from kinform.exports.graph.drawing import graph_dot, graph_svg
 

@@ -38,6 +38,15 @@ _FORMATS: Mapping[str, str] = {
 _LOOSE = (".ply", ".off")
 """Suffixes of formats without a unit of length."""
 
+_UNREAD: Mapping[str, str] = {
+    ".igs": "IGES", ".iges": "IGES", ".brep": "BREP", ".fcstd": "FreeCAD", ".sldprt": "SolidWorks",
+    ".sldasm": "SolidWorks", ".f3d": "Fusion", ".f3z": "Fusion", ".ipt": "Inventor", ".iam": "Inventor",
+    ".catpart": "CATIA", ".catproduct": "CATIA", ".prt": "NX or Creo", ".asm": "NX or Creo", ".x_t": "Parasolid",
+    ".x_b": "Parasolid", ".jt": "JT", ".3dm": "Rhino", ".blend": "Blender", ".fbx": "FBX", ".usd": "USD",
+    ".usda": "USD", ".usdz": "USD", ".dxf": "DXF", ".dwg": "DWG", ".stpz": "zipped STEP", ".scad": "OpenSCAD",
+}  # fmt: skip
+"""Formats of designs that are not read, by suffix."""
+
 GEOMETRIES = ("visual", "collision")
 """Which geometry of a description its parts are."""
 
@@ -102,6 +111,12 @@ def is_scene(path: Path) -> bool:
 def states_units(path: Path) -> bool:
     """Whether a description or an assembly file has its own unit of length; else it is a mesh as well."""
     return is_source(path) and path.suffix.lower() not in _LOOSE
+
+
+def unread(path: Path) -> tuple[str, str] | None:
+    """What is wrong with a file of a format of designs that is not read, and the remedy; None for other files."""
+    format = _UNREAD.get(path.suffix.lower())
+    return None if format is None else (f"is {format}, which is not read", "export STEP, GLB or 3MF from its program")
 
 
 def source_tables(source: Source) -> SourceTables | None:

@@ -24,7 +24,7 @@ from kinform.form.readers.function import FunctionReader
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
-from kinform.form.sources import AS_IT_IS, Reading
+from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
@@ -57,7 +57,7 @@ def load_with_contents(
     """
     path = Path(path)
     if not path.is_file():
-        fault = f"the manifest {no_file(path)}"
+        fault = f"{'the file' if is_source(path) else 'the manifest'} {no_file(path)}"
         raise InputError([Problem(fault, str(path), None, "name a manifest (TOML); see kinform init")])
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})

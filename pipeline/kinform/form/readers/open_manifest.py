@@ -22,7 +22,7 @@ from kinform.form.readers.toml_lines import LineTable
 from kinform.form.readers.toml_lines import Path as KeyPath
 from kinform.form.readers.toml_text import TomlError, read_toml
 from kinform.form.sources import Source as SourceFile
-from kinform.form.sources import SourceTables, is_scene, is_source, source_tables
+from kinform.form.sources import SourceTables, is_scene, is_source, source_tables, unread
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.texts import TextError, read_text
 from kinform.foundation.units import UNITS, metres_per
@@ -135,6 +135,10 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
         tables = _from_source(path, file, path.parent, None, files, problems)
         parsed = None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
         return None if tables is None or parsed is None else _of_source(parsed, tables)
+    foreign = unread(path)
+    if foreign is not None:
+        problems.add(foreign[0], file, None, foreign[1])
+        return None
     try:
         text = read_text(path, MANIFEST_BYTES, "a manifest")
         raw = read_toml(text)
@@ -142,7 +146,9 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
         problems.add(error.message, file, None, error.remedy or "name a manifest (TOML)")
         return None
     except TomlError as error:
-        problems.add(error.message, file, error.line, error.remedy)
+        other = f"; if it is no manifest: {path.suffix} is not read, export STEP, GLB or 3MF"
+        remedy = error.remedy + ("" if path.suffix.lower() in (".toml", "") else other)
+        problems.add(error.message, file, error.line, remedy)
         return None
     lines = LineTable(text)
     stated = raw["assembly"].get("from") if isinstance(raw.get("assembly"), dict) else None
