@@ -217,3 +217,23 @@ def test_of_many_warnings_on_a_description_the_first_are_told_and_the_others_nam
     assert set(told[3].subject) == {f"{letter}{k}" for letter in "ab" for k in range(3, 9)}
     assert len(apply(rule, decided(warnings), CheckSettings(profile="design")).findings) == 9
     assert len(apply(rule, decided(warnings[:6]), description).findings) == 6
+
+
+SDF = """<sdf version="1.9"><model name="m">
+<link name="base"><inertial><mass>1</mass><inertia><ixx>{ixx}</ixx><iyy>0.002</iyy><izz>0.002</izz></inertia></inertial>
+<visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry></visual></link>
+<link name="arm"><pose>0 0 0.1 0 0 0</pose><visual name="v"><geometry><box><size>0.1 0.1 0.1</size></box></geometry>
+</visual></link>
+<joint name="j" type="revolute"><parent>base</parent><child>arm</child><axis><xyz>0 0 1</xyz>
+<limit><lower>{lower}</lower><upper>1</upper></limit></axis></joint>
+</model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("ixx", "lower", "code"), [(0.002, -1, None), (0.02, -1, "KF121"), (0.002, 2, "KF415")]
+)  # fmt: skip
+def test_the_numbers_of_an_sdf_are_looked_at_too(tmp_path, ixx, lower, code):
+    (tmp_path / "m.sdf").write_text(SDF.format(ixx=ixx, lower=lower))
+    context = Context(Design(form.load(tmp_path / "m.sdf")))
+    found = [f.code for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
+    assert found == ([] if code is None else [code])

@@ -17,7 +17,7 @@ from kinform.form.constants import AXIS_LENGTH
 from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place
-from kinform.form.descriptions.robot import Link, Ratio, Robot, RobotJoint
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models
@@ -193,7 +193,15 @@ class _Reader:
             damping=_bound(values.number(dynamics, "damping", 0.0)) if one else None,
             stiffness=_bound(values.number(dynamics, "spring_stiffness", 0.0)) if one else None,
             rest=values.finite(dynamics, "spring_reference", 0.0) if one else 0.0,
+            limits=self._limits(limit, stated) if one else None,
         )  # fmt: skip
+
+    def _limits(self, limit: Element | None, stated: str) -> Limits:
+        """The limits of a joint, word for word; SDF needs none."""
+        named = [limit is not None and self.xml.child(limit, tag) is not None for tag in ("lower", "upper")]
+        lower, upper = (self.values.number(limit, tag, 0.0) for tag in ("lower", "upper"))
+        known = all(named) and stated != "continuous" and math.isfinite(lower) and math.isfinite(upper)
+        return Limits(stated, False, (lower, upper) if known else None)
 
     def _frame_of(self, model: Model, element: Element) -> Array | None:
         """The pose (4, 4) of a joint, which is relative to its child unless it says otherwise."""

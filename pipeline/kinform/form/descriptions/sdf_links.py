@@ -7,7 +7,7 @@ from pathlib import Path
 from kinform.form.descriptions.elements import Element, tag_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
-from kinform.form.descriptions.robot import Inertial, Link, Shape, Solid
+from kinform.form.descriptions.robot import Inertial, Link, Shape, Solid, Stated
 from kinform.form.descriptions.sdf_frames import Frames
 from kinform.form.descriptions.sdf_models import Model
 from kinform.form.descriptions.sdf_values import Values
@@ -51,7 +51,17 @@ class Links:
         )
         inertial = self.xml.child(element, "inertial")
         stated = None if inertial is None else self._inertial(inertial, name, X)
-        return Link(name, X, self.xml.at(element), visual, collision, stated)
+        written = None if inertial is None else self._stated(inertial)
+        return Link(name, X, self.xml.at(element), visual, collision, stated, written)
+
+    def _stated(self, element: Element) -> Stated | None:
+        """What an inertial says, word for word; None without a mass."""
+        numbers = self.xml.child(element, "inertia")
+        if self.xml.child(element, "mass") is None or (element.get("auto") or "").strip().lower() in ("1", "true"):
+            return None
+        keys = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
+        six = None if numbers is None else tuple(self.values.finite(numbers, key, default) for key, default in keys)
+        return Stated(self.values.finite(element, "mass", 1.0), six, self.xml.at(element))
 
     def _posed(self, element: Element, model: Model, X_FL: Array) -> Array | None:
         """The pose (4, 4) in F of what is in a link."""
