@@ -119,9 +119,9 @@ def option(flags: str, metavar: str | None, help: str, **settings: Any) -> Any:
     return typer.Option(*flags.split(), metavar=metavar, show_default=False, help=help, **settings)
 
 
-def argument(metavar: str, help: str) -> Any:
+def argument(metavar: str, help: str, **settings: Any) -> Any:
     """An argument; its help says in words what holds without it."""
-    return typer.Argument(metavar=metavar, show_default=False, help=help)
+    return typer.Argument(metavar=metavar, show_default=False, help=help, **settings)
 
 
 class GeometryKind(StrEnum):

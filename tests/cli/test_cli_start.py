@@ -117,7 +117,7 @@ def test_without_arguments_it_helps_and_is_not_a_success(capsys: pytest.CaptureF
         (["query", "a.h5", "a", "b", "--turn", "z@0,0"], "--turn"),
         (["query", "a.h5", "a", "b", "--slide", "0,0,0"], "--slide"),
         (["query", "a.h5", "a", "b", "--slide", "0,nan,1"], "--slide"),
-        (["report", "a.h5"], "--output"),
+        (["report", "a.h5", "--notes"], "--notes"),
     ],
     ids=" ".join,
 )

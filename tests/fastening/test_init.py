@@ -89,6 +89,14 @@ def test_a_unit_that_is_hard_to_believe_is_said_at_once_and_nothing_is_proposed(
     assert "## " not in (folder / "tiny.toml").read_text()
 
 
+def test_millimetres_that_are_read_as_metres_are_said_too(begun):
+    folder, _ = begun
+    ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "m", "-o", "large.toml")
+    assert ran.returncode == 0
+    assert "warning: doubtful: in m the assembly is" in ran.stderr
+    assert '"mm"' in ran.stderr
+
+
 def test_the_manifest_alone_goes_to_stdout(begun):
     folder, _ = begun
     ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "mm")

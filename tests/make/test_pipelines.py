@@ -90,9 +90,12 @@ def test_the_hook_is_the_gate(tmp_path):
     entry = [sys.executable, "-m", "kinform_cli", *shlex.split(hook["entry"])[1:]]
     manifest = tmp_path / "design" / "planar_block.toml"
     codes = []
+    # as the head of the file shows it, where nothing was built yet
+    shown = re.search(r"args: \[([^\]]+)\]", (ROOT / ".pre-commit-hooks.yaml").read_text())[1].split(", ")
+    arguments = [word.replace("designs/arm.toml", "design/planar_block.toml") for word in shown]
     for _ in range(2):
         ran = subprocess.run(
-            [*entry, "design/planar_block.toml", "-o", "r.h5"],
+            [*entry, *arguments],
             cwd=tmp_path,
             capture_output=True,
             text=True,
@@ -103,3 +106,10 @@ def test_the_hook_is_the_gate(tmp_path):
     assert codes == [0, 1]
     assert re.search(hook["files"], "parts/camera.stl")
     assert hook["pass_filenames"] == "false"
+
+
+@pytest.mark.parametrize("path", CI, ids=lambda path: path.name)
+def test_an_example_installs_from_the_repository(path):
+    installs = re.findall(r"pip install (.*)", path.read_text())
+    assert installs == ['"git+$KINFORM"']
+    assert re.search(r"^\s+KINFORM: https://\S+\.git@\S+$", path.read_text(), re.MULTILINE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from kinform_cli import console
+from kinform_cli import completion, console
 from kinform_cli.options import argument, examples
 from kinform_cli.text import wrapped
 
@@ -13,7 +13,12 @@ EXAMPLES = examples("kinform explain", "kinform explain KF203", "kinform explain
 
 def explain(
     code: Annotated[
-        str | None, argument("CODE", "Code or name of a rule, or how codes begin; without it all are listed.")
+        str | None,
+        argument(
+            "CODE",
+            "Code or name of a rule, or how codes begin; without it all are listed.",
+            autocompletion=completion.codes,
+        ),
     ] = None,
 ) -> None:
     """Explain a finding by its code: what it means, why it matters, what to do."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinform_cli import console, files
+from kinform_cli import completion, console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
 from kinform_cli.options import LookedAt, PrintedTable, TableFormat, argument, examples, option
@@ -34,8 +34,10 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 def query(
     source: LookedAt,
-    a: Annotated[str | None, argument("A", "Part, group or body.")] = None,
-    b: Annotated[str | None, argument("B", "Part, group or body that moves relative to A.")] = None,
+    a: Annotated[str | None, argument("A", "Part, group or body.", autocompletion=completion.parts)] = None,
+    b: Annotated[
+        str | None, argument("B", "Part, group or body that moves relative to A.", autocompletion=completion.parts)
+    ] = None,
     turn: Annotated[
         str | None,
         option(

@@ -29,10 +29,10 @@ from kinform_cli.progress import Working
 
 EXAMPLES = examples(
     "kinform report arm.h5",
-    "kinform report arm.toml --open                       # runs it, and opens the page in the browser",
+    "kinform report arm.toml --open              # runs it, and opens the page",
     "kinform report robot.urdf -o robot.html",
-    "kinform report arm.h5 -o arm.html --png out          # also PNG and summary.md",
-    "kinform report arm.h5 -o arm.html --png out --notes  # notes pictured too",
+    "kinform report arm.h5 --png out             # also PNG and summary.md",
+    "kinform report arm.h5 --png out --notes     # notes pictured too",
 )
 
 

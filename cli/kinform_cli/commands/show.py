@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinform_cli import console, files
+from kinform_cli import completion, console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
 from kinform_cli.options import LookedAt, PrintedTable, TableFormat, argument, examples, option
@@ -47,7 +47,12 @@ def show(
     format: PrintedTable = TableFormat.table,
     joint: Annotated[
         str | None,
-        option("--joint", "NAME", "With joints: all the evidence of this joint, and what would make it another."),
+        option(
+            "--joint",
+            "NAME",
+            "With joints: all the evidence of this joint, and what would make it another.",
+            autocompletion=completion.joints,
+        ),
     ] = None,
     graph: Annotated[
         Path | None,

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 EXAMPLES = examples(
     "kinform watch arm.toml -o arm.h5",
     "kinform watch arm.toml -o arm.h5 --fail-on warning",
-    "kinform watch arm.toml -o arm.h5 --report --open    # the page, which follows every save",
+    "kinform watch arm.toml -o arm.h5 --report --open    # and the page",
     "kinform watch arm.toml -o arm.h5 --max-runs 1    # once",
 )
 

@@ -116,7 +116,11 @@ def _with_moments(robot: Robot, lost: list[str]) -> Robot:
     for k, link in enumerate(robot.links):
         if k and link.mass is None:
             link = replace(link, mass=GRAIN, inertia=GRAIN * np.eye(3))
-            lost.append(f"{link.name}: a body without mass, which MuJoCo refuses; it has {GRAIN:g} kg")
+            told, more = f"{link.name}: its mass is not known", f"which MuJoCo refuses; it has {GRAIN:g} kg"
+            if told in lost:
+                lost[lost.index(told)] = f"{told}, {more}"
+            else:
+                lost.append(f"{link.name}: a body without mass, {more}")
         elif k:
             least = float(np.linalg.eigvalsh(link.inertia)[0])
             if least < LEAST_MOMENT:

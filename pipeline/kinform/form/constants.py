@@ -80,6 +80,9 @@ SMALLEST_ASSEMBLY = 1e-3
 LARGEST_ASSEMBLY = 100.0
 """Diagonal (m) above which a unit is doubted."""
 
+MISTAKEN_METRES = 20.0
+"""Diagonal (m) from which on metres are doubted: machines of that size are drawn in mm, and in mm it is 20 mm."""
+
 USUAL_ASSEMBLY = (0.01, 10.0)
 """Diagonals (m) between which another unit is proposed."""
 

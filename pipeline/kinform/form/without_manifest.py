@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import LARGEST_ASSEMBLY, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY
+from kinform.form.constants import LARGEST_ASSEMBLY, MISTAKEN_METRES, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY
 from kinform.form.files import read_raw
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
@@ -150,7 +150,9 @@ def doubts(assembly: Assembly) -> list[str]:
     units = assembly.units
     corners = np.concatenate([np.array(p.mesh.placed_box(p.X_WP)) for p in assembly.parts if p.mesh is not None])
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
-    if SMALLEST_ASSEMBLY <= size <= LARGEST_ASSEMBLY:
+    # what measures some tens of metres may be, but as often millimetres were taken for them
+    mistaken = units == "m" and size >= MISTAKEN_METRES
+    if SMALLEST_ASSEMBLY <= size <= LARGEST_ASSEMBLY and not mistaken:
         return []
     least, most = USUAL_ASSEMBLY
     better = [u for u in UNITS if least <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= most]
