@@ -281,9 +281,16 @@ def sdf() -> list[bytes]:
     return [SDF.encode()]
 
 
+REPLICAS = """<mujoco><worldbody><body name="a"><geom size="0.1"/>
+<replicate count="3" offset="0.1 0 0" euler="0 0 30" sep="-"><body name="b"><joint name="j"/><geom size="0.1"/>
+<replicate count="2" offset="0 1 0"><geom name="g" type="box" size="1 1 1"/></replicate></body></replicate>
+</body></worldbody></mujoco>
+"""
+
+
 def mjcf() -> list[bytes]:
     """A model of three bodies."""
-    return [MJCF.encode()]
+    return [MJCF.encode(), REPLICAS.encode()]
 
 
 def xacro() -> list[bytes]:

@@ -138,3 +138,42 @@ def test_included_files_have_lines_of_their_own(tmp_path):
     (tmp_path / "more.xml").write_text('<mujoco>\n<include file="arm.xml"/></mujoco>')
     with pytest.raises(InputError, match="includes itself"):
         form.load(path)
+
+
+REPLICAS = """<mujoco><compiler angle="{angle}" eulerseq="{sequence}"/><worldbody><body name="base">
+<geom name="hub" size="0.1"/>
+<replicate count="11" offset="0.1 0.02 0" euler="{a} {b} {c}" sep="-">
+  <body name="arm" pos="0.3 0 0.1" euler="{a} 0 0"><joint name="turn" axis="0 1 1"/>
+    <geom name="bar" size="0.01 0.2" type="capsule"/>
+    <replicate count="2" offset="0 0 0.4"><body name="tip"><joint name="slide" type="slide" axis="1 0 0"/>
+      <geom type="box" size="0.1 0.2 0.3"/></body></replicate></body>
+</replicate></body></worldbody></mujoco>
+"""
+
+
+@pytest.mark.parametrize(("angle", "sequence", "unit"), [("degree", "xyz", 1.0), ("radian", "ZYX", np.pi / 180.0)])
+def test_replicas_are_where_mujoco_has_them_with_its_names(tmp_path, angle, sequence, unit):
+    mujoco = pytest.importorskip("mujoco")
+    angles = {"a": 10.0 * unit, "b": 20.0 * unit, "c": 30.0 * unit}
+    path = write(tmp_path, REPLICAS.format(angle=angle, sequence=sequence, **angles))
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    assembly = form.load(path)
+    joints = {j.name: j for j in assembly.function.joints if j.type != "fixed"}
+    assert sorted(joints) == sorted(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, k) for k in range(model.njnt))
+    for name, joint in joints.items():
+        k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
+        assert np.allclose(joint.axis, data.xaxis[k], atol=1e-12)
+        assert joint.point is None or np.allclose(joint.point, data.xanchor[k], atol=1e-12)
+    assert {g.name for g in assembly.groups} == {
+        mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, k) for k in range(1, model.nbody)
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("count", ["0", "-3", "1e9", "nan"])
+def test_counts_of_replicas_that_cannot_be_are_told(tmp_path, count):
+    said = REPLICAS.format(angle="degree", sequence="xyz", a=1, b=2, c=3).replace('count="11"', f'count="{count}"')
+    with pytest.raises(InputError) as caught:
+        form.load(write(tmp_path, said))
+    assert caught.value.problems[0].line == 3

@@ -6,7 +6,7 @@ go through stick bodies. Pairs of `<connect>` make a hinge. What is not carried 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.mjcf_closures import closures, ratios
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes, from_z, mesh_assets
+from kinform.form.descriptions.mjcf_replicas import Replicas
 from kinform.form.descriptions.poses import place, pose
 from kinform.form.descriptions.robot import Inertial, Limits, Link, Robot, RobotJoint, Shape, Solid, Stated
 from kinform.form.descriptions.tree import Count, distinct
@@ -44,13 +45,14 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
         return None
     includes = Includes(path, xml, meshes)
     includes.expand(root)
+    changed = Replicas(xml, Compiler.of(xml, root)).expand(root) or bool(includes.files)
     robot = _Reader(xml, meshes, root).robot(root, path.stem, tuple(includes.files))
-    return None if robot is None else replace(robot, format="mjcf", text=_whole(root, data, includes.files))
+    return None if robot is None else replace(robot, format="mjcf", text=_whole(root, data, changed))
 
 
-def _whole(root: Element, data: bytes, included: Sequence[Path]) -> str:
-    """The text, with everything that it includes."""
-    if not included:
+def _whole(root: Element, data: bytes, changed: bool) -> str:
+    """The text, with everything that it includes and replicates."""
+    if not changed:
         return xml_text(data)
     for element in root.iter():
         element.attrib.pop(FILE, None)
