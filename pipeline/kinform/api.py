@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from kinform.design import Design
 from kinform.errors import Problem, ResultsError, StageError
+from kinform.foundation.tabled import Tabled, rows_of
 
 if TYPE_CHECKING:
     from kinform.behaviour import Behaviour
@@ -52,11 +54,15 @@ Item = TypeVar("Item", bound=_HasName, covariant=True)
 Result = TypeVar("Result")
 
 
-class Named(Mapping[str, Item], Generic[Item]):
-    """Things by name, in a fixed order; iterating gives the names, `.values()` the things."""
+class Named(Mapping[str, Item], Tabled, Generic[Item]):
+    """Things by name, in a fixed order; iterating gives the names, `.values()` the things. A notebook shows a table,
+    and `.to_frame()` gives it to pandas."""
 
-    def __init__(self, what: str, items: tuple[Item, ...], describe: Callable[[Item], str]):
+    def __init__(
+        self, what: str, items: tuple[Item, ...], describe: Callable[[Item], str], columns: tuple[str, ...] = ("name",)
+    ):
         self._what = what
+        self.columns = columns
         self._items = {item.name: item for item in items}
         self._describe = describe
 
@@ -73,11 +79,40 @@ class Named(Mapping[str, Item], Generic[Item]):
     def __len__(self) -> int:
         return len(self._items)
 
+    def rows(self) -> list[list[Any]]:
+        """A row a thing; SI and radians."""
+        return rows_of(self._items.values(), self.columns)
+
     def __repr__(self) -> str:
         width = max(map(len, self._items), default=0)
         return "\n".join(
             [f"{self._what} ({len(self)}):", *(f"  {k:<{width}}  {self._describe(v)}" for k, v in self._items.items())]
         )
+
+
+class Findings(tuple["Finding", ...], Tabled):
+    """Findings in their order, as a tuple that a notebook shows as a table."""
+
+    columns = ("code", "severity", "subject", "message", "found", "intended", "remedy")
+
+    def rows(self) -> list[list[Any]]:
+        """A row a finding."""
+        return rows_of(self, self.columns)
+
+
+class View:
+    """A page in a frame of its own, which a notebook shows."""
+
+    def __init__(self, html: str, height: int):
+        self._html = html
+        self._height = height
+
+    def __repr__(self) -> str:
+        return f"View({len(self._html)} characters of HTML)"
+
+    def _repr_html_(self) -> str:
+        source = escape(self._html, quote=True)
+        return f'<iframe srcdoc="{source}" style="width:100%;height:{self._height}px;border:0"></iframe>'
 
 
 class Results:
@@ -106,19 +141,22 @@ class Results:
     @property
     def parts(self) -> Named[Part]:
         """Parts with their meshes and poses, by name."""
-        return Named("part", self.design.assembly.parts, _describe_part)
+        columns = ("name", "material", "density", "solid", "units")
+        return Named("part", self.design.assembly.parts, _describe_part, columns)
 
     @property
     def bodies(self) -> Named[Body]:
         """Parts that move as one, by name."""
         bodies = _computed(self.design.kinematics, "bodies", "joints").bodies
-        return Named("body", bodies, lambda body: ", ".join(body.parts) + (" (ground)" if body.ground else ""))
+        columns = ("name", "parts", "ground")
+        return Named("body", bodies, lambda body: ", ".join(body.parts) + (" (ground)" if body.ground else ""), columns)
 
     @property
     def joints(self) -> Named[Joint]:
         """Joints between bodies, by name: type, axis, point, freedoms, status, evidence."""
         joints = _computed(self.design.kinematics, "joints", "joints").joints
-        return Named("joint", joints, lambda joint: f"{joint.type} ({joint.status})")
+        columns = ("name", "bodies", "type", "status", "freedoms", "axis", "point")
+        return Named("joint", joints, lambda joint: f"{joint.type} ({joint.status})", columns)
 
     @property
     def mobility(self) -> Mobility:
@@ -128,12 +166,12 @@ class Results:
     @property
     def mass(self) -> Named[MassProperties]:
         """Mass properties of the bodies, by name (kg, m, kg·m², world axes)."""
-        return Named("body", _computed(self.design.mass, "mass", "mass").bodies, _describe_mass)
+        return Named("body", _computed(self.design.mass, "mass", "mass").bodies, _describe_mass, _MASS)
 
     @property
     def part_mass(self) -> Named[MassProperties]:
         """Mass properties of the parts, by name."""
-        return Named("part", _computed(self.design.mass, "mass", "mass").parts, _describe_mass)
+        return Named("part", _computed(self.design.mass, "mass", "mass").parts, _describe_mass, _MASS)
 
     @property
     def behaviour(self) -> Behaviour:
@@ -146,9 +184,37 @@ class Results:
         return _computed(self.design.simulation, "simulation", "simulate")
 
     @property
-    def findings(self) -> tuple[Finding, ...]:
+    def findings(self) -> Findings:
         """What is inconsistent, sorted by code and subject."""
-        return self.report.findings
+        return Findings(self.report.findings)
+
+    @property
+    def verdict(self) -> str:
+        """As in "consistent", "inconsistent" or "not verified: 2 rules could not decide"."""
+        from kinform.reports.phrases import verdict_line
+
+        return verdict_line(self.report)
+
+    def page(self) -> str:
+        """The page of `kinform report`, as HTML."""
+        from kinform.reports.page import page_html
+
+        return page_html(self.design)
+
+    def view(self, height: int = 640) -> View:
+        """The page with its 3D view, as high as that (px), to be shown in the cell of a notebook."""
+        return View(self.page(), height)
+
+    def _repr_html_(self) -> str:
+        """Verdict, joints and findings."""
+        design = self.design
+        shown = [f"<p><b>{escape(design.assembly.name)}</b>: {len(design.assembly.parts)} parts"]
+        shown[0] += f"; {escape(self.verdict)}</p>" if design.report is not None else "</p>"
+        if design.kinematics is not None:
+            shown.append(self.joints._repr_html_())
+        if design.report is not None and design.report.findings:
+            shown.append(self.findings._repr_html_())
+        return "".join(shown)
 
     @property
     def report(self) -> CheckReport:
@@ -230,6 +296,9 @@ class Outcome(Results):
 
         reused = ("surfaces", "contacts", "joints", "mass", "simulation", "findings")
         return cls(read, reused, account="nothing changed: everything is reused", gist=gist)
+
+
+_MASS = ("name", "mass", "centre_of_mass", "principal_moments", "reason")
 
 
 def _describe_part(part: Part) -> str:
