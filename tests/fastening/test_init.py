@@ -6,9 +6,10 @@ import json
 import re
 import tomllib
 
+import numpy as np
 import pytest
 from support.command_line import ran_here
-from support.solids import box, save
+from support.solids import box, rod, save
 from support.suggestions import CORNERS, drilled
 
 
@@ -116,3 +117,31 @@ def test_show_lists_suggestions_with_evidence_and_confidence(begun):
         (['a "quoted" plate', "servo_body"], "holes", "fair", True),
         (["bracket", "servo"], "pocket", "fair", True),
     ]
+
+
+def test_joints_are_proposed_that_can_be_taken_over(tmp_path):
+    """A plate on a pivot, screwed to another: one joint, and nothing about the screws."""
+    base = box(-30, 30, -30, 30, -10, 0) + rod(5, -1, 30, 48)
+    low = box(-10, 60, -10, 10, 0, 6) - rod(5.02, -1, 7, 48) - rod(2, -1, 7, 24).translate((40, 0, 0))
+    screw = rod(1.98, 0, 6, 24) + rod(3.5, 6, 9, 24)
+    for name, solid in {"base": base, "low": low, "screw": screw.translate((40, 0, 0))}.items():
+        save(solid, tmp_path / f"{name}.stl")
+    done = kinform(tmp_path, "init", "base.stl", "low.stl", "screw.stl", "--units", "mm", "-o", "arm.toml")
+    assert done.returncode == 0, done.stderr
+    assert "1 joint proposed as comments" in done.stdout + done.stderr
+    text = (tmp_path / "arm.toml").read_text()
+    assert "moves 2 parts" in text and "'low' and 'screw'" in text
+    wanted = r"^# (\[function\]|complete = |\[\[function\.joint\]\]|name = \"joint|type = |between = |axis = |point = )"
+    (tmp_path / "arm.toml").write_text(re.sub(wanted, r"\1", text, flags=re.MULTILINE))
+    stated = tomllib.loads((tmp_path / "arm.toml").read_text())["function"]
+    (one,) = stated["joint"]
+    assert (one["type"], set(one["between"])) == ("revolute", {"base", "low"})
+    assert np.allclose(one["axis"], [0, 0, 1], atol=1e-6)
+    assert np.allclose(one["point"][:2], 0.0, atol=1e-3)
+    done = kinform(tmp_path, "run", "arm.toml", "-o", "arm.h5")
+    assert done.returncode == 0, done.stdout + done.stderr
+    bodies = json.loads(kinform(tmp_path, "show", "arm.h5", "bodies", "--format", "json").stdout)
+    assert sorted(body["parts"] for body in bodies["bodies"]) == [["base"], ["low", "screw"]]
+    (screwed,) = (one for one in bodies["membership"] if one["part"] == "screw")
+    assert screwed["evidence"].startswith("held by 'low'")
+    assert screwed["evidence"].endswith("screw: named 'screw'")

@@ -193,12 +193,21 @@ class Contact:
             if opposed[rows].any() or float(patch.weights.sum()) < constants.OPPOSED_AREA * total:
                 continue
             off = self._off(joint, k)
-            journal |= patch.kind in ROUND and (off < constants.JOURNAL_OFF or self._coaxial(joint, k))
+            journal |= self._journal(joint, k)
             farthest = max(farthest, off)
         round_it = farthest < constants.FACE_OFF
         if journal and round_it:
             return constants.JOURNAL
         return constants.FACE_ROUND if journal or round_it else constants.FLAT_BESIDE
+
+    def journal(self, joint: IntendedJoint) -> bool:
+        """Whether any of it goes round the joint's axis, or its centre."""
+        return any(self._journal(joint, k) for k in range(len(self.patches)))
+
+    def _journal(self, joint: IntendedJoint, k: int) -> bool:
+        """Whether patch k does."""
+        round_ = self.patches[k].kind in ROUND
+        return round_ and (self._off(joint, k) < constants.JOURNAL_OFF or self._coaxial(joint, k))
 
     def _coaxial(self, joint: IntendedJoint, k: int) -> bool:
         """Whether patch k lies on a surface of revolution about the joint's axis, or on a sphere about its centre."""

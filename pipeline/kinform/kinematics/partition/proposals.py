@@ -19,7 +19,7 @@ from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
 from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
-from kinform.kinematics.partition.standard_parts import standard_parts
+from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly
 from kinform.model.contacts import Contacts, Patch
@@ -61,24 +61,27 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
     axes = _candidates(contacts.patches)
     free = [_freed(axis, pairs, hints, constants.PROPOSED[0]) for axis in axes]
     graph = _Parts(parts, sorted(pairs), volume)
-    fixings = set(standard_parts(assembly, surfaces))
-    screwed = [bool(cut) and all(fixings & set(pair) for pair in cut) for cut in free]
+    standard = standard_parts(assembly, surfaces)
+    holders = {name for name, one in standard.items() if one.kind in HOLDERS}
+    journals = [frozenset(p for p in cut if pairs[p].journal(axis)) for axis, cut in zip(axes, free, strict=True)]
+    screwed = [all(holders & set(pair) for pair in own) for own in journals]
+    borne = [{name for pair in own for name in pair} for own in journals]
     found: dict[int, list[Sides]] = {}
     for most in constants.PROPOSED:
         for number, axis in enumerate(axes):
             # a screw may be a pivot, but nothing that holds may be parted for that
-            if free[number] and not found.get(number) and not (screwed[number] and most > constants.PROPOSED[0]):
+            if journals[number] and not found.get(number) and not (screwed[number] and most > constants.PROPOSED[0]):
                 cut = free[number] if most == constants.PROPOSED[0] else _freed(axis, pairs, hints, most)
                 found[number] = graph.sides(free[number], cut)
     every = frozenset().union(*free)
-    for number, cut in enumerate(free):
+    for number in range(len(axes)):
         if not found.get(number) and not screwed[number]:
-            found[number] = graph.sides(cut, every)
+            found[number] = graph.sides(free[number], every)
     ways = [
         (axes[number], sides)
         for number, several in sorted(found.items())
         for sides in several
-        if not any(fixings.issuperset(side) for side in sides)
+        if all(borne[number] & set(side) and not standard.keys() >= set(side) for side in sides)
     ]
     total = sum(volume.values())
     out = []
@@ -176,7 +179,7 @@ class _Parts:
 
     def sides(self, own: frozenset[PartPair], cut: frozenset[PartPair]) -> list[Sides]:
         """The pairs of bodies that pairs of a joint (`own`) lie between once all of `cut` is parted, the larger one
-        first. What is small lies between the others."""
+        first. What is small, or a ring, lies between the others."""
         number = {name: k for k, name in enumerate(self.parts)}
         sets = UnionFind(len(self.parts))
         for pair in self.pairs:
@@ -193,7 +196,13 @@ class _Parts:
             if first != second:
                 near.setdefault(first, set()).add(second)
                 near.setdefault(second, set()).add(first)
-        large = sorted((root for root in near if size[root] >= least), key=lambda root: (-size[root], root))
+
+        def between(root: int) -> bool:
+            """Whether it is small, or a single part between larger ones: a ring, a bush, a pin."""
+            single = len(members[root]) == 1 and len(near[root]) > 1
+            return size[root] < least or (single and all(size[other] > size[root] for other in near[root]))
+
+        large = sorted((root for root in near if not between(root)), key=lambda root: (-size[root], root))
         out = []
         for k, one in enumerate(large):
             reached, waiting = {one}, [one]
@@ -201,7 +210,7 @@ class _Parts:
                 for other in near[waiting.pop()]:
                     if other not in reached:
                         reached.add(other)
-                        if size[other] < least:
+                        if between(other):
                             waiting.append(other)
             out += [(tuple(members[one]), tuple(members[other])) for other in large[k + 1 :] if other in reached]
         return out

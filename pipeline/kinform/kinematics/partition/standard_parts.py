@@ -54,8 +54,8 @@ STANDARDS = {
 """Numbers of standards, by kind."""
 _KIND_OF = {word: kind for kind, words in WORDS.items() for word in words.split()}
 _KIND_OF_NUMBER = {number: kind for kind, numbers in STANDARDS.items() for number in numbers.split()}
-FASTENERS = ("screw", "nut", "washer", "pin", "rivet", "circlip")
-"""Kinds that hold other parts together."""
+HOLDERS = ("screw", "nut", "washer", "rivet", "circlip")
+"""Kinds that hold other parts together; pins may be pivots."""
 
 
 @dataclass(frozen=True)
