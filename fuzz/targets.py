@@ -150,7 +150,29 @@ def _results(data: bytes) -> None:
     from kinform import results
 
     (_FOLDER / "r.h5").write_bytes(edits.edited(seeds.results_images(), data))
-    results.read(_FOLDER / "r.h5")
+    _use(results.read(_FOLDER / "r.h5"))
+
+
+def _use(design) -> None:
+    """What the commands do with a design that was read."""
+    from kinform import reports
+    from kinform.catalog import entry_of
+    from kinform.changes import snapshot, write_lock
+    from kinform.errors import StageError
+    from kinform.exports import export
+    from kinform.results.file import to_bytes
+
+    to_bytes(design)
+    steps = (
+        lambda: reports.summary_json(design, None),
+        lambda: write_lock(snapshot(design)) if design.kinematics is not None else None,
+        lambda: entry_of(design, "r.h5", "0" * 64),
+        lambda: export(design, "mjcf"),
+        lambda: export(design, "dot"),
+    )
+    for step in steps:
+        with contextlib.suppress(StageError):
+            step()
 
 
 def _source(suffix: str) -> Callable[[bytes], None]:

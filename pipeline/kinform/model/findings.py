@@ -8,6 +8,7 @@ from typing import Annotated
 from kinform.model.quantities import columns
 
 SEVERITIES = ("note", "warning", "error")
+OUTCOMES = ("passed", "failed", "inconclusive", "skipped", "ignored")
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from kinform.design import Design
 from kinform.errors import ResultsError
 from kinform.model.fingerprints import Fingerprints
 from kinform.results import constants
+from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
 from kinform.results.opening import DAMAGE, RECOMPUTE, SCHEMA, NotWholeError, check_replaceable, opened
 from kinform.results.replacement import check_target, refuse, replace_file
@@ -126,8 +127,11 @@ class Earlier:
 
     def _read(self, name: str) -> Any:
         """What a group holds; None where it is not there."""
+        if name not in self._file:
+            return None
         try:
-            return _codec(name).read(self._file[name]) if name in self._file else None
+            check_group(self._file, name)
+            return _codec(name).read(self._file[name])
         except _NONSENSE as error:
             raise self._damaged(error) from error
 
@@ -138,6 +142,7 @@ class Earlier:
     def assembly(self) -> Assembly:
         """As written; KeyError is damage, for every results file has one."""
         try:
+            check_group(self._file, "assembly")
             return assembly.read(self._file["assembly"])
         except _NONSENSE as error:
             raise self._damaged(error) from error

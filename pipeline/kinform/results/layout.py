@@ -32,6 +32,7 @@ import numpy as np
 from kinform.model.arrays import freeze
 from kinform.results.records import Hint, columns_of, defaults, hint, hints, record_maker, record_values
 from kinform.results.table import (
+    DatasetError,
     integer,
     read_array,
     read_columns,
@@ -107,8 +108,16 @@ class Row:
 
     def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
         columns = columns_of(hint(cls), frozenset(hints(cls)), self.fields)
-        for row, more in zip(rows, read_rows(group, self.dataset, columns, defaults(cls)), strict=True):
+        found = read_rows(group, self.dataset, columns, defaults(cls))
+        _check_count(group, self.dataset, len(found), len(rows))
+        for row, more in zip(rows, found, strict=True):
             row |= more
+
+
+def _check_count(group: h5py.Group, dataset: str, found: int, expected: int) -> None:
+    """Raise DatasetError where a dataset has not as many rows or items as there are records."""
+    if found != expected:
+        raise DatasetError(f"{group.name}/{dataset}", f"has {found} rows; expected {expected}")
 
 
 @dataclass(frozen=True)
@@ -178,16 +187,19 @@ class Table:
             _read_all(self._holders, group, made_of, inner)
         make = record_maker(owned.record)
         lists: list[list[Any]] = [[] for _ in rows]
+        wrong = next((place for place in owners if not 0 <= place < len(rows)), None)
+        if wrong is not None:
+            fault = f"has a row of owner {wrong}, of {len(rows)}"
+            raise DatasetError(f"{group.name}/{self.dataset}", fault)
         for place, row in zip(owners, inner, strict=True):
             lists[place].append(make(**row))
         for row, items in zip(rows, lists, strict=True):
-            row[self._field] = tuple(items) if owned.several else _only(items)
+            row[self._field] = tuple(items) if owned.several else _only(group, self.dataset, items)
 
 
-def _only(items: Sequence[Any]) -> Any:
-    """The one item, or None; ValueError where there are several."""
-    if len(items) > 1:
-        raise ValueError(f"{len(items)} rows where one is expected")
+def _only(group: h5py.Group, dataset: str, items: Sequence[Any]) -> Any:
+    """The one item, or None; DatasetError where there are several."""
+    _check_count(group, dataset, len(items), min(len(items), 1))
     return items[0] if items else None
 
 
@@ -208,7 +220,9 @@ class Ragged:
 
     def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
         of_tuples = hints(cls)[self.fields[0]].item is not None
-        for row, array in zip(rows, read_ragged(group, self.dataset), strict=True):
+        arrays = read_ragged(group, self.dataset)
+        _check_count(group, self.dataset, len(arrays), len(rows))
+        for row, array in zip(rows, arrays, strict=True):
             row[self.fields[0]] = tuple(array.tolist()) if of_tuples else array
 
 
@@ -241,7 +255,7 @@ class Texts:
 
     def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
         items = read_texts(group, self.dataset)
-        rows[0][self.dataset] = _only(items) if hints(cls)[self.dataset].type is str else items
+        rows[0][self.dataset] = _only(group, self.dataset, items) if hints(cls)[self.dataset].type is str else items
 
 
 class WholeColumns:

@@ -115,7 +115,7 @@ def record_maker(record: Hint) -> Callable[..., Any]:
 def _column(name: str, said: Hint) -> Column:
     """The column, or columns, of one field."""
     if said.type is str:
-        return text(name)
+        return text(name, optional=said.optional)
     if said.type is bool:
         return flag(name, optional=said.optional)
     if said.type is int:
@@ -123,11 +123,11 @@ def _column(name: str, said: Hint) -> Column:
     if typing.get_origin(said.type) is dict:
         return values(name)
     if said.item is not None and said.item.type in (str, int):
-        return texts(name)
+        return texts(name, said.item.type)
     if said.type is float and said.unit is not None:
-        return real(name, said.unit)
+        return real(name, said.unit, optional=said.optional)
     if said.number is np.float64 and said.unit is not None and said.columns is not None:
-        return numbers(name, said.unit, _labels(name, said.columns.labels), said.columns.shape)
+        return numbers(name, said.unit, _labels(name, said.columns.labels), said.columns.shape, optional=said.optional)
     if typing.get_origin(said.type) is tuple and said.columns is not None:
         return _tuple_column(name, said, said.columns.labels)
     if is_dataclass(said.type):

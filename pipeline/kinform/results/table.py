@@ -34,6 +34,13 @@ _MISSING_NUMBER = 0x7FF8_0000_0000_0000 | 1954
 (_MISSING,) = struct.unpack("<d", struct.pack("<Q", _MISSING_NUMBER))
 
 
+class DatasetError(ValueError):
+    """A dataset is not what results hold; the message names it."""
+
+    def __init__(self, dataset: str, fault: str):
+        super().__init__(f"{dataset.lstrip('/')} {fault}")
+
+
 @dataclass(frozen=True)
 class Column:
     """One field of a record, and the column or columns that hold it."""
@@ -49,6 +56,8 @@ class Column:
     """The field of all records → one list or array a label."""
     join: Callable[[Sequence[NDArray[Any]]], list[Any]]
     """The arrays → the field of all records."""
+    optional: bool = True
+    """Whether a record may be without it."""
 
 
 def stored_text(value: str | None) -> str:
@@ -64,14 +73,20 @@ def _has_surrogates(value: str) -> bool:
     return any("\ud800" <= character <= "\udfff" for character in value)
 
 
-def _read_texts(stored: NDArray[Any]) -> list[str | None]:
+def read_texts_of(stored: NDArray[Any]) -> list[str | None]:
+    """The texts that a dataset holds; None: no text."""
     texts = [v.decode() if isinstance(v, bytes) else v for v in stored.tolist()]
     return [_text_of(text) if text.startswith(_NOTHING) else text for text in texts]
 
 
 def _text_of(stored: str) -> str | None:
     """The text that was stored as one that begins with ␀."""
-    return None if stored == _NOTHING else str(json.loads(stored[1:]))
+    if stored == _NOTHING:
+        return None
+    text = json.loads(stored[1:])
+    if not isinstance(text, str):
+        raise ValueError(f"{stored!r} stands for no text")
+    return text
 
 
 def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
@@ -80,12 +95,12 @@ def _write_reals(values: Sequence[float | None]) -> NDArray[np.float64]:
 
 def _read_reals(stored: NDArray[np.float64]) -> list[float | None]:
     values: list[float | None] = stored.tolist()
-    for i in np.flatnonzero(_missing(stored)).tolist():
+    for i in np.flatnonzero(missing(stored)).tolist():
         values[i] = None
     return values
 
 
-def _missing(stored: NDArray[np.float64]) -> NDArray[np.bool_]:
+def missing(stored: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which numbers of an array say that there is none."""
     bits = np.ascontiguousarray(stored, dtype="<f8").view("<u8")
     return np.asarray(bits == _MISSING_NUMBER)
@@ -99,7 +114,10 @@ def _write_counts(values: Sequence[int | None]) -> list[int]:
 
 
 def _read_counts(stored: NDArray[np.int64]) -> list[int | None]:
-    return [None if value == -1 else value for value in stored.tolist()]
+    values: list[int | None] = stored.tolist()
+    if any(value is not None and value < -1 for value in values):
+        raise ValueError(f"{min(stored.tolist())} is no count")
+    return [None if value == -1 else value for value in values]
 
 
 def _write_json(value: Any) -> str:
@@ -113,14 +131,16 @@ def _each(function: Callable[[Any], Any], values: Sequence[Any]) -> list[Any]:
     return [results[value] if value in results else results.setdefault(value, function(value)) for value in values]
 
 
-def _scalar(field: str, dtype: Any, unit: str, write: Callable[..., Any], read: Callable[..., list[Any]]) -> Column:
+def _scalar(
+    field: str, dtype: Any, unit: str, write: Callable[..., Any], read: Callable[..., list[Any]], optional: bool = True
+) -> Column:
     """One column for one value, from what writes and what reads all of them."""
-    return Column(field, (field,), (dtype,), (unit,), lambda v: (write(v),), lambda s: read(s[0]))
+    return Column(field, (field,), (dtype,), (unit,), lambda v: (write(v),), lambda s: read(s[0]), optional)
 
 
-def text(field: str) -> Column:
+def text(field: str, *, optional: bool = True) -> Column:
     """A text, or None."""
-    return _scalar(field, TEXT, "", lambda v: [stored_text(x) for x in v], _read_texts)
+    return _scalar(field, TEXT, "", lambda v: [stored_text(x) for x in v], read_texts_of, optional)
 
 
 def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
@@ -130,9 +150,9 @@ def integer(field: str, unit: str = "1", *, optional: bool = False) -> Column:
     return _scalar(field, "<i8", unit, lambda v: [int(x) for x in v], lambda s: s.tolist())
 
 
-def real(field: str, unit: str) -> Column:
+def real(field: str, unit: str, *, optional: bool = True) -> Column:
     """A float, or None."""
-    return _scalar(field, "<f8", unit, _write_reals, _read_reals)
+    return _scalar(field, "<f8", unit, _write_reals, _read_reals, optional)
 
 
 def flag(field: str, *, optional: bool = False) -> Column:
@@ -143,19 +163,27 @@ def flag(field: str, *, optional: bool = False) -> Column:
     return _scalar(field, np.bool_, "1", lambda v: [bool(x) for x in v], lambda s: s.tolist())
 
 
-def texts(field: str) -> Column:
+def texts(field: str, kind: type = str) -> Column:
     """A tuple of texts, or of integers, as a JSON list."""
     return _scalar(
         field, TEXT, "",
         lambda v: _each(lambda x: _write_json(list(x)), [tuple(x) for x in v]),
-        lambda s: _each(lambda x: tuple(json.loads(x)), s.tolist()),
+        lambda s: _each(lambda x: tuple(_json(x, list, kind)), s.tolist()),
     )  # fmt: skip
+
+
+def _json(stored: bytes | str, kind: type[list[Any]] | type[dict[Any, Any]], of: type = object) -> Any:
+    """What a text says as JSON. Raises ValueError where it is of another kind, or its items are."""
+    value = json.loads(stored)
+    if not isinstance(value, kind) or not all(isinstance(item, of) for item in value):
+        raise ValueError(f"{stored!r} is no {kind.__name__} of {of.__name__}")
+    return value
 
 
 def values(field: str) -> Column:
     """A dict of free-form values, as JSON."""
     return _scalar(
-        field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [json.loads(x) for x in s.tolist()]
+        field, TEXT, "", lambda v: [_write_json(x) for x in v], lambda s: [_json(x, dict) for x in s.tolist()]
     )
 
 
@@ -181,14 +209,19 @@ def inline(
     def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
         held = [c.join(stored[start:end]) for c, start, end in zip(inner, ends[:-1], ends[1:], strict=True)]
         rows = [list(row) for row in zip(*held, strict=True)]
+        needed = [not column.optional for column in inner]
+        for row in rows:
+            lacking = any(need and value is None for need, value in zip(needed, row, strict=True))
+            if lacking and not (optional and all(value is None for value in row)):
+                raise ValueError(f"{field} is there in part")
         return [None if optional and all(value is None for value in row) else make(row) for row in rows]
 
     dtypes = tuple(dtype for column in inner for dtype in column.dtypes)
     units = tuple(unit for column in inner for unit in column.units)
-    return Column(field, tuple(labels), dtypes, units, split, join)
+    return Column(field, tuple(labels), dtypes, units, split, join, optional)
 
 
-def numbers(field: str, unit: str, labels: Sequence[str], shape: tuple[int, ...]) -> Column:
+def numbers(field: str, unit: str, labels: Sequence[str], shape: tuple[int, ...], *, optional: bool = True) -> Column:
     """An array of this shape, or None: a column a number, row by row."""
     none = np.full(shape, _MISSING)
 
@@ -202,11 +235,14 @@ def numbers(field: str, unit: str, labels: Sequence[str], shape: tuple[int, ...]
     def join(stored: Sequence[NDArray[Any]]) -> list[Any]:
         table = freeze(np.stack(stored, axis=1).astype(np.float64).reshape(-1, *shape))
         arrays: list[Any] = list(table)
-        for i in np.flatnonzero(_missing(stored[0])).tolist():
+        lacking = np.stack([missing(column) for column in stored])
+        if (lacking != lacking[0]).any():
+            raise ValueError(f"{field} is there in part")
+        for i in np.flatnonzero(lacking[0]).tolist():
             arrays[i] = None
         return arrays
 
-    return Column(field, tuple(labels), ("<f8",) * len(labels), (unit,) * len(labels), split, join)
+    return Column(field, tuple(labels), ("<f8",) * len(labels), (unit,) * len(labels), split, join, optional)
 
 
 def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str, Any]]) -> None:
@@ -221,7 +257,26 @@ def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str,
 
 def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = None) -> Any:
     """The table as a structured array: all of it, or only these columns."""
-    return group[name][()] if labels is None else group[name].fields(list(labels))[()]
+    dataset = _dataset(group, name)
+    if dataset.ndim != 1 or not dataset.dtype.names:
+        raise DatasetError(dataset.name, "is no table")
+    _check_labels(dataset.name, dataset.dtype, labels or ())
+    return dataset[()] if labels is None else dataset.fields(list(labels))[()]
+
+
+def _dataset(group: h5py.Group, name: str) -> h5py.Dataset:
+    """A dataset of a group. Raises DatasetError where there is none of that name."""
+    dataset = group.get(name)
+    if not isinstance(dataset, h5py.Dataset):
+        raise DatasetError(f"{group.name}/{name}", "is not there")
+    return dataset
+
+
+def _check_labels(name: str, dtype: np.dtype[Any], labels: Sequence[str]) -> None:
+    given = dtype.names or ()
+    lacking = next((label for label in labels if label not in given), None)
+    if lacking is not None:
+        raise DatasetError(name, f"has no column {lacking!r}")
 
 
 def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], fields: Sequence[Sequence[Any]]) -> None:
@@ -246,8 +301,28 @@ def read_rows(
     fields = [column.field for column in columns]
     if not fields:
         return [{} for _ in table]
-    held = [column.join([table[label] for label in column.labels]) for column in columns]
+    place = f"{group.name}/{name}"
+    held = [_values(place, table, column) for column in columns]
     return [dict(zip(fields, row, strict=True)) for row in zip(*held, strict=True)]
+
+
+def _values(name: str, table: NDArray[Any], column: Column) -> list[Any]:
+    """What a column holds, of all rows. Raises DatasetError where its kind, or a value, is none of its own."""
+    _check_labels(name, table.dtype, column.labels)
+    for label, dtype in zip(column.labels, column.dtypes, strict=True):
+        if table.dtype[label].kind != np.dtype(dtype).kind:
+            fault = f"is of the kind {table.dtype[label]}; expected {np.dtype(dtype)}"
+            raise DatasetError(f"{name}.{label}", fault)
+    try:
+        held = column.join([table[label] for label in column.labels])
+    except DatasetError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise DatasetError(f"{name}.{column.labels[0]}", f"makes no sense: {error}") from error
+    if not column.optional and any(value is None for value in held):
+        place = next(k for k, value in enumerate(held) if value is None)
+        raise DatasetError(f"{name}.{column.labels[0]}", f"lacks a value in row {place}")
+    return held
 
 
 def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dtype: str = "<f8") -> h5py.Dataset:
@@ -260,7 +335,10 @@ def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dt
 
 def read_array(group: h5py.Group, name: str) -> NDArray[Any]:
     """One array, read-only."""
-    return freeze(np.asarray(group[name][()]))
+    dataset = _dataset(group, name)
+    if dataset.dtype.names or dataset.dtype.kind not in "fiub":
+        raise DatasetError(dataset.name, "holds no numbers")
+    return freeze(np.asarray(dataset[()]))
 
 
 def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
@@ -274,7 +352,13 @@ def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
 
 def read_texts(group: h5py.Group, name: str) -> tuple[Any, ...]:
     """The texts that `write_texts` wrote."""
-    return tuple(_read_texts(group[name][()]))
+    dataset = _dataset(group, name)
+    if dataset.ndim != 1 or dataset.dtype.kind != "O":
+        raise DatasetError(dataset.name, "holds no texts")
+    texts = read_texts_of(dataset[()])
+    if any(text is None for text in texts):
+        raise DatasetError(dataset.name, "lacks a text")
+    return tuple(texts)
 
 
 def write_ragged(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import h5py
 
@@ -18,7 +19,8 @@ class _Drives:
     dataset, fields = "drives", ("drives",)
     of_drive = columns_of(hint(Drive), frozenset({"law"}))
     named = (("type", text("law_type")), ("file", text("law_file")))
-    numbers = columns_of(hint(Law), frozenset({"type", "file", "times", "values"}))
+    of_law = columns_of(hint(Law), frozenset({"type", "file", "times", "values"}))
+    numbers = tuple(replace(column, optional=True) for column in of_law)  # a drive may have no law
     columns = (*of_drive, named[0][1], named[1][1], *numbers)
     points = (Ragged("law_times", "times"), Ragged("law_values", "values"))
 
