@@ -168,8 +168,11 @@ that "1.5708" states is kept as it is: it differs by more than forward kinematic
 INCLUDES = 32
 """Files in files in files that a description may include: more are a loop that no check of names has seen."""
 
-REPLICAS_MOST = 200_000
-"""Elements that `<replicate>` makes, at most: twice the parts that a design may have."""
+REPLICAS_MOST = 20_000
+"""Elements that `<replicate>` makes, at most: what is made of more are ropes and grains, not machines."""
+
+PRIMITIVES_KEPT = 256
+"""Meshes of primitive solids that are kept for parts of the same shape: a sphere takes 0.1 s to make."""
 
 ROUND_FACETS = 96
 """Facets round a primitive cylinder, sphere or capsule: its vertices are exact, a fit of them gives the exact radius,

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
-from kinform.form.constants import ROUND_FACETS
+from kinform.form.constants import PRIMITIVES_KEPT, ROUND_FACETS
 from kinform.form.manifest.parts import BoxShape, CapsuleShape, CylinderShape, EllipsoidShape, ShapeTable
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import RawMesh
@@ -15,7 +16,13 @@ from kinform.model.assembly import Mesh
 
 
 def primitive(shape: ShapeTable, metres: float) -> Mesh:
-    """The mesh of a shape whose lengths are in units of `metres`."""
+    """The mesh of a shape whose lengths are in units of `metres`; of equal shapes the same one."""
+    return _mesh(type(shape), shape.model_dump_json(), metres)
+
+
+@lru_cache(maxsize=PRIMITIVES_KEPT)
+def _mesh(kind: type[ShapeTable], said: str, metres: float) -> Mesh:
+    shape: ShapeTable = kind.model_validate_json(said)
     if isinstance(shape, BoxShape):
         raw = _box(np.array(shape.size))
     elif isinstance(shape, CylinderShape):
