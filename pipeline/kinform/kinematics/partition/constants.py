@@ -62,8 +62,6 @@ SAME_AXIS = np.radians(1.0)
 """rad: journals whose axes differ by less are on one axis."""
 SAME_AXIS_OFF = 0.02
 """The same of their distance, as a share of the smaller journal's reach."""
-NAMED = 6
-"""Of the parts that a proposed joint would move, so many are named."""
 BALL_AREA = 0.9
 """Share of its area that is one sphere, of a ball."""
 ALL_ROUND = np.radians(300.0)

@@ -101,10 +101,8 @@ def proposed_joints(
     out = []
     for number, one in enumerate(propose(assembly, surfaces, contacts), 1):
         moving = sorted(one.sides[1])
-        rest = len(moving) - constants.NAMED
-        more = f" and {counted(rest, 'more part')}" if rest > 0 else ""
         words = f"moves {counted(len(moving), 'part')}, {100 * one.share:.2g} % of the volume: "
-        words += f"{quoted(moving[: constants.NAMED])}{more}"
+        words += quoted(moving)
         first, second = one.between(volume)
         joint = IntendedJoint(
             f"joint_{number}", (first, second), one.type, one.axis, None, one.point, None, None, "", None
