@@ -11,6 +11,8 @@ from support.patches import Z, cylinder, patch, plane, ring, sphere
 
 from kinform.kinematics.pair.decision import decide
 from kinform.kinematics.pair.evidence import gather
+from kinform.kinematics.pair.lower_pairs import JointForm
+from kinform.kinematics.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.model.tolerances import Tolerances
 
 X, Y = np.eye(3)[0], np.eye(3)[1]
@@ -112,3 +114,15 @@ def test_the_gaps_of_unknown_facets_say_how_far_off_their_axis_may_be():
 
 def test_a_ball_in_a_socket_stays_sure():
     assert decision([sphere(cap=0.3)], size=0.05).status == "determined"
+
+
+def test_an_axis_is_known_no_better_than_patches_that_disagree_say():
+    """A small ring that is said to be exact, and journals that lie 0.02 rad off it: the axis is not known to 1e-6."""
+    tilted = np.array([np.sin(0.02), 0.0, np.cos(0.02)])
+    small = replace(ring((0, 0, 0.01), inner=0.0049, outer=0.005), uncertainty=(1e-6, 1e-6))
+    journals = [replace(cylinder(axis=tilted), uncertainty=(0.05, 1e-5))]
+    evidence = gather([(k, p, False) for k, p in enumerate([small, *journals])], Tolerances(), 5e-4, 0.0)
+    for axis, least in ((tilted, 0.0199), (Z, 0.9e-6)):
+        form = JointForm("revolute", axis, np.zeros(3))
+        assert joint_uncertainty(evidence.items, form)[0] == pytest.approx(1e-6)
+        assert least <= disagreement(evidence.items, form) <= max(1.02 * least, 1.2e-6)

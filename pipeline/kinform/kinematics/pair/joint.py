@@ -14,7 +14,7 @@ from kinform.kinematics.pair.evidence import COAXIAL, Evidence, Item
 from kinform.kinematics.pair.hypotheses import motion_words
 from kinform.kinematics.pair.lower_pairs import JointForm
 from kinform.kinematics.pair.stops import ROLES
-from kinform.kinematics.pair.uncertainty import joint_uncertainty
+from kinform.kinematics.pair.uncertainty import disagreement, joint_uncertainty
 from kinform.kinematics.wording import motions_in_words
 from kinform.model.arrays import Array
 from kinform.model.kinematics import FREEDOMS, Blocker, Joint, Reading
@@ -95,7 +95,7 @@ def joint_from_decision(bodies: tuple[BodyName, BodyName], evidence: Evidence, d
         blockers=blockers,
         singular_values=decision.singular_values,
         motion=motions_in_words(decision.basis, frame),
-        axis_uncertainty=direction,
+        axis_uncertainty=max(direction, disagreement(kept, form)),
         point_uncertainty=place,
     )
     if decision.other is None:

@@ -32,6 +32,21 @@ def joint_uncertainty(items: Sequence[Item], form: JointForm) -> tuple[float, fl
     return direction, place
 
 
+def disagreement(items: Sequence[Item], form: JointForm) -> float:
+    """rad: how far a joint's axis is from the patch that says its direction best, its own uncertainty included.
+
+    Where patches disagree beyond what each is known to, as on coarse meshes, the axis is known no better than that.
+    """
+    out = []
+    for item in items:
+        angle = _angle(item, form)
+        if angle is not None and form.axis is not None:
+            sine = float(np.linalg.norm(cross(item.patch.axis, form.axis)))
+            cosine = abs(float(item.patch.axis @ form.axis))
+            out.append(max(angle, min(sine, cosine)))
+    return min(out, default=0.0)
+
+
 def uncertainty_doubt(items: Sequence[Item], form: JointForm, length: float) -> str:
     """Why the axis or the place is known too badly for a joint, in words; empty where it is not.
 

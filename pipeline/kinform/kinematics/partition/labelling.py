@@ -52,8 +52,14 @@ class Labelling:
     """Whether the integer programs were solved to the end."""
 
 
-def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> Labelling:
-    """Labels of all nodes that make the sum of the prices least; `seeds` have theirs."""
+Solved = dict[object, tuple[dict[int, int], bool]]
+"""Labels of regions, by all that decides them."""
+
+
+def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge], solved: Solved | None = None) -> Labelling:
+    """Labels of all nodes that make the sum of the prices least; `seeds` have theirs. What was `solved` is not solved
+    again."""
+    solved = {} if solved is None else solved
     labels: list[int | None] = [seeds.get(node) for node in range(nodes)]
     proven = True
     around: dict[int, list[int]] = {}
@@ -71,11 +77,24 @@ def label_all(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> La
             for node in members:
                 labels[node] = candidates[0]
             continue
-        found, sure = _solve(members, candidates, near, seeds)
+        key = _question(members, candidates, near, seeds)
+        if key not in solved:
+            solved[key] = _solve(members, candidates, near, seeds)
+        found, sure = solved[key]
         proven &= sure
         for node, label in found.items():
             labels[node] = label
     return Labelling(tuple(labels), proven)
+
+
+def _question(
+    members: Sequence[int], candidates: Sequence[int], edges: Sequence[Edge], seeds: Mapping[int, int]
+) -> object:
+    """All that decides the labels of a region."""
+    among = set(candidates)
+    ends = ((edge.ends, edge.broken, *(seeds.get(node) for node in edge.ends)) for edge in edges)
+    tables = (tuple(sorted(item for item in edge.parted.items() if among.issuperset(item[0]))) for edge in edges)
+    return tuple(members), tuple(candidates), tuple(zip(ends, tables, strict=True))
 
 
 def regions(nodes: int, seeds: Mapping[int, int], edges: Sequence[Edge]) -> list[list[int]]:

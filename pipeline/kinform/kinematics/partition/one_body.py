@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.labelling import Edge, Labels, label_all
+from kinform.kinematics.partition.labelling import Edge, Labels, Solved, label_all
 
 Hold = tuple[float, tuple[int, int]]
 """What parting two nodes that touch costs at least, by whichever joint."""
@@ -74,6 +74,7 @@ class _Search:
     def __init__(self, seeds: Mapping[int, int], edges: Sequence[Edge], joints: Sequence[Labels]) -> None:
         self.seeds, self.edges, self.joints = seeds, edges, joints
         self.nodes = 1 + max([*seeds, *(node for edge in edges for node in edge.ends)], default=-1)
+        self._solved: Solved = {}
         self._parted: dict[tuple[int, ...], dict[Labels, float]] = {}
 
     def hanging(self, now: Sequence[int]) -> list[set[int]]:
@@ -94,7 +95,7 @@ class _Search:
         if key not in self._parted:
             current = [edge.relabelled(now) for edge in self.edges]
             seeds = {node: now[label] for node, label in self.seeds.items()}
-            self._parted[key] = _parted_between(label_all(self.nodes, seeds, current).labels, current)
+            self._parted[key] = _parted_between(label_all(self.nodes, seeds, current, self._solved).labels, current)
         return self._parted[key]
 
     def cost(self, now: Sequence[int]) -> float:

@@ -79,13 +79,12 @@ def prices(
     """The price of parting every pair of parts that touch, by every joint that may."""
     hints = hints_of(suggestions)
     by_joint, held = {}, {}
+    asked = [(number, motions) for number, motions in enumerate(twists) if motions is not None and len(motions)]
     for pair, contact in contact_of_pairs(patches).items():
         hint = hints.get(pair, 0.0)
         costs = {}
-        for number, (joint, motions) in enumerate(zip(joints, twists, strict=True)):
-            if motions is None or not len(motions):
-                continue
-            cost = contact.price(joint, motions)
+        for number, motions in contact.in_question(asked):
+            cost = contact.price(joints[number], motions)
             if cost is not None:
                 costs[number] = cost + hint
         by_joint[pair] = costs
@@ -140,14 +139,26 @@ class Contact:
             arm = arm - (arm @ joint.axis) * joint.axis
         return float(np.linalg.norm(arm)) <= 0.5 * float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
+    def in_question(self, asked: Sequence[tuple[int, Array]]) -> list[tuple[int, Array]]:
+        """The joints, by number and motions, whose first motion next to none of it opposes; all where it has facets of
+        no known surface, as serrations do not count."""
+        if not asked or any(patch.kind in ("freeform", "other") for patch in self.patches):
+            return list(asked)
+        first = np.array([motions[0] for _, motions in asked])
+        share = self._opposed(first) @ self.weights
+        limit = constants.OPPOSED_AREA * float(self.weights.sum())
+        return [one for one, area in zip(asked, share, strict=True) if area <= limit * (1.0 + 1e-9)]
+
+    def _opposed(self, motions: Array) -> Flags:
+        """(k, n) whether each of k motions (k, 6) presses on each point or leaves it."""
+        speeds = motions[:, None, 3:] + cross(motions[:, None, :3], self.points[None])
+        pace = np.linalg.norm(speeds, axis=2)
+        slow = constants.SLOW * pace.max(axis=1, initial=0.0, keepdims=True)
+        return np.asarray(np.abs(np.einsum("kij,ij->ki", speeds, self.normals)) > constants.OPPOSED * pace + slow)
+
     def price(self, joint: IntendedJoint, motions: Array) -> float | None:
         """What it costs to part them by this joint, whose motions these are; None where it may not."""
-        opposed = np.zeros(len(self.points), dtype=bool)
-        for motion in motions:
-            speeds = motion[3:] + cross(motion[:3], self.points)
-            pace = np.linalg.norm(speeds, axis=1)
-            slow = constants.SLOW * float(pace.max(initial=0.0))
-            opposed |= np.abs(np.einsum("ij,ij->i", speeds, self.normals)) > constants.OPPOSED * pace + slow
+        opposed = np.asarray(self._opposed(motions).any(axis=0))
         total = float(self.weights.sum())
         if total <= 0.0:
             return None
