@@ -14,7 +14,7 @@ import urllib.request
 
 import pytest
 from support.browser import Browser, program
-from support.command_line import environment
+from support.command_line import environment, listening
 from support.places import FIXTURES
 
 from kinform_cli.errors import refuse
@@ -69,7 +69,7 @@ def watching(tmp_path):
     command = [sys.executable, "-m", "kinform_cli", "watch", manifest, "-o", tmp_path / "a.h5", "--report"]
     process = subprocess.Popen(
         [*map(str, command), "--period", "0.05"], env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-        text=True,
+        text=True, preexec_fn=listening,
     )  # fmt: skip
     lines = []
     address = None

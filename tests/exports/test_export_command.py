@@ -90,8 +90,17 @@ def test_usage_and_places_are_checked(stored, tmp_path, capsys):
     assert main(["export", source, "--to", "dot", "-o", str(tmp_path / "file")]) == 2
     assert "not a folder" in capsys.readouterr().err
     assert (tmp_path / "file").read_text() == "precious"
-    assert main(["export", str(SEEKER), "--to", "dot", "-o", str(tmp_path / "x")]) == 2
-    assert "kinform import" in capsys.readouterr().err
+    assert main(["export", str(tmp_path / "file"), "--to", "dot", "-o", str(tmp_path / "x")]) == 2
+    assert "file" in capsys.readouterr().err
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_manifest_gives_what_its_results_give(stored, tmp_path):
+    """Whatever is missing is run first, as `report` does."""
+    for source, folder in ((stored(SEEKER), "from_results"), (str(SEEKER), "from_manifest")):
+        assert main(["export", source, "--to", "dot", "-o", str(tmp_path / folder)]) == 0
+    (one,), (other,) = ((tmp_path / name).iterdir() for name in ("from_results", "from_manifest"))
+    assert (one.name, one.read_bytes()) == (other.name, other.read_bytes())
 
 
 def test_before_joints_are_derived_it_says_what_to_run(tmp_path, capsys):
