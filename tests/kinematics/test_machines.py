@@ -41,11 +41,14 @@ def test_every_joint_that_is_proposed_is_one(seed):
     _, assembly, found, contact = touching(seed)
     ways = propose(replace(assembly, function=type(assembly.function)()), found, contact)
     assert ways or seed == 11  # whose only joint is that of a horn: no journal
+    seen = set()
     for way in ways:
         gaps = [way.point - joint.point for joint in assembly.function.joints]
         off = [np.linalg.norm(gap - (gap @ way.axis) * way.axis) for gap in gaps]
         nearest = assembly.function.joints[int(np.argmin(off))]
         assert min(off) < 1e-6
+        assert nearest.name not in seen
+        seen.add(nearest.name)
         assert abs(way.axis @ nearest.axis) == pytest.approx(1.0, abs=1e-6)
 
 

@@ -84,11 +84,13 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
         if all(borne[number] & set(side) and not standard.keys() >= set(side) for side in sides)
     ]
     total = sum(volume.values())
+    shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides in ways]
     out = []
-    for joint, sides in ways:
-        if not any(other is not joint and graph.alike(sides, theirs) for other, theirs in ways):
+    for (joint, sides), share in zip(ways, shares, strict=True):
+        largest = max(its for (other, _), its in zip(ways, shares, strict=True) if other is joint)
+        twice = any(other is not joint and graph.alike(sides, theirs) for other, theirs in ways)
+        if not twice and share >= constants.BESIDE * largest:
             assert joint.point is not None
-            share = min(sum(volume[name] for name in side) for side in sides) / total
             out.append(Proposal(joint.type, joint.axis, joint.point, sides, share))
     return sorted(out, key=lambda one: (-one.share, one.sides))
 
@@ -197,8 +199,8 @@ class _Parts:
 
         def between(root: int) -> bool:
             """Whether it is small, or a single part between larger ones: a ring, a bush, a pin."""
-            single = len(members[root]) == 1 and len(near[root]) > 1
-            return size[root] < least or (single and all(size[other] > size[root] for other in near[root]))
+            larger = sum(size[other] > size[root] for other in near[root])
+            return size[root] < least or (len(members[root]) == 1 and larger > 1)
 
         large = sorted((root for root in near if not between(root)), key=lambda root: (-size[root], root))
         out = []
