@@ -37,7 +37,7 @@ def derive_design(tmp_path_factory):
 
     def derive(manifest: Path):
         if manifest not in known:
-            shared = "PYTEST_XDIST_WORKER" in os.environ and manifest.is_relative_to(FIXTURES)
+            shared = manifest.is_relative_to(FIXTURES)
             known[manifest] = (
                 once(common(tmp_path_factory), str(manifest), lambda: made(manifest)) if shared else made(manifest)
             )

@@ -6,9 +6,11 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.once import common
 from support.places import FIXTURES, ROOT
 
 SENSITIVE = ("tests/simulation", "tests/kinematics", "tests/surfaces", "tests/fixtures", "tests/mass", "tests/docs")
@@ -47,7 +49,9 @@ def settings_of(name: str) -> dict[str, str]:
     if not able(*PROCESSORS[name]):
         pytest.skip(f"this processor has not what OpenBLAS uses for {name}: {', '.join(PROCESSORS[name])}")
     reduced = dispatched() if name in ("Nehalem", "Zen") else ""
-    return {**os.environ, "OPENBLAS_CORETYPE": name, "NPY_DISABLE_CPU_FEATURES": reduced, "OPENBLAS_NUM_THREADS": "1"}
+    # a session of its own, not a worker of this one
+    own = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+    return {**own, "OPENBLAS_CORETYPE": name, "NPY_DISABLE_CPU_FEATURES": reduced, "OPENBLAS_NUM_THREADS": "1"}
 
 
 def run_python(name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -87,3 +91,12 @@ def test_numpy_can_be_told_to_leave_its_newer_code():
 
     assert set(dispatched().split()) <= set(core.__cpu_dispatch__)
     assert np.show_config("dicts")["Build Dependencies"]["blas"]["name"].endswith("openblas")
+
+
+def test_a_session_begun_by_a_worker_keeps_what_it_computes_to_itself(tmp_path, monkeypatch):
+    """Else it takes what sessions before it computed, on another processor or with another kinform."""
+    monkeypatch.setenv("PYTEST_XDIST_WORKER", "gw1")
+    for own, expected in (("pytest-7", "pytest-7"), ("pytest-7/popen-gw1", "pytest-7")):
+        factory = SimpleNamespace(getbasetemp=lambda own=own: tmp_path / own)
+        assert common(factory) == tmp_path / expected
+    assert not [key for key in settings_of("Nehalem") if key.startswith("PYTEST_")]

@@ -8,7 +8,6 @@ from __future__ import annotations
 import dataclasses
 import fcntl
 import hashlib
-import os
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -18,9 +17,10 @@ import numpy as np
 
 
 def common(tmp_path_factory: Any) -> Path:
-    """The folder of this session that all its workers have in common."""
+    """The folder of this session that all its workers have in common. A worker is known by its own folder in it, not
+    by its environment: a session that a test begins inherits that, and above its folder are those of other sessions."""
     folder = tmp_path_factory.getbasetemp()
-    return folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+    return folder.parent if folder.name.startswith("popen-") else folder
 
 
 def once(folder: Path, name: str, make: Callable[[], Any]) -> Any:
