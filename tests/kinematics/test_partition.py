@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -147,3 +148,20 @@ def test_what_touches_nothing_goes_with_the_nearest_and_says_so():
     assert found.placed["lonely"].how == "nearest"
     assert found.placed["lonely"].body == found.placed["base"].body
     assert "lonely" in {one.part for one in found.unclear}
+
+
+@pytest.mark.parametrize(("named", "guessed"), [("low", False), ("high", True)])
+def test_bodies_guessed_from_several_names_are_unclear_where_contact_still_holds_across(named, guessed):
+    """A lever on the arm stands on the base, too: either it is one with the base, or what was taken for one arm is
+    two. Where both joints name the same part of the arm, nothing of it was guessed."""
+    solids = stack()
+    solids["high"] += rod(3, 11, 20, 40).translate((45, 0, 0))
+    lever = box(20, 50, -30, -15, 0, 18) + box(37, 53, -15, 8, 12, 18) - rod(3.02, 11, 20, 40).translate((45, 0, 0))
+    joints = (ARM, joint("swing", (named, "lever"), point=(45, 0, 0)))
+    whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in (solids | {"lever": lever}).items()))
+    stated = Function(joints=tuple(moved(one, np.eye(4), 1e-3) for one in joints), complete=("",))
+    whole = replace(whole, function=stated)
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    placed = partition(whole, contacts.find(whole, found), stated.joints).placed
+    assert placed["low"].body == placed["high"].body != placed["base"].body
+    assert all(placed[name].either for name in ("base", "low", "high", "lever")) == guessed

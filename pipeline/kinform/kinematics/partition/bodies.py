@@ -92,6 +92,8 @@ def partition(
     graph = graph_of(assembly, contacts, moving, merger)
     labelling = label_all(graph.nodes, graph.seeds, graph.edges)
     placed = _placed(assembly, graph, labelling)
+    doubtful = _doubtful(graph, labelling)
+    placed = {name: replace(p, either=p.either or p.body in doubtful) for name, p in placed.items()}
     known = {} if surfaces is None else standard_parts(assembly, surfaces)
     placed = {name: replace(p, evidence=_evidence(graph, placed, p, known.get(name))) for name, p in placed.items()}
     parts = tuple(
@@ -127,6 +129,17 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
         label = placed[near].body if near is not None else 0
         placed[name] = Placed(name, label, "nearest", 0.0, None, (), either=True)
     return placed
+
+
+def _doubtful(graph: Graph, labelling: Labelling) -> set[int]:
+    """Bodies that were guessed from parts with different names, where contact that was parted may as well say that
+    they are others: all of them then, with those that it lies between."""
+    out: set[int] = set()
+    for edge in graph.edges if graph.guessed else ():
+        first, second = (labelling.labels[end] for end in edge.ends)
+        if first is not None and second is not None and edge.price(first, second) > constants.HELD_ACROSS:
+            out |= {first, second, *graph.guessed}
+    return out
 
 
 def _evidence(graph: Graph, placed: Mapping[PartName, Placed], one: Placed, standard: StandardPart | None) -> str:

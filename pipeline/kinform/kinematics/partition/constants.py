@@ -43,6 +43,9 @@ EITHER = 25.0
 """Margin up to which a part may go either way: less than the price of a flange."""
 PARTED = 100.0
 """Price up to which contact is made to be parted: it does not say that two names stand for one body."""
+HELD_ACROSS = 250.0
+"""Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
+names are not sure."""
 LOOK_AHEAD = 4
 """Up to so many sets of joints that hang together all ways of joining their names are looked at."""
 TOUCH_WORTH = 0.5

@@ -35,6 +35,8 @@ class Graph:
     named: tuple[tuple[PartName, PartName], ...]
     """A part on either side of each joint."""
     prices: Prices
+    guessed: frozenset[int] = frozenset()
+    """Labels of bodies of which joints name several parts that only contact says to be one."""
 
     @cached_property
     def pairs_of(self) -> dict[PartName, list[PartPair]]:
@@ -90,6 +92,7 @@ def graph_of(assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJo
         tuple((new[a], new[b]) for a, b in sides),
         tuple((a, b) for a, b in named),
         costs,
+        guessed=frozenset(label for label in new if new.count(label) > 1),
     )
 
 
