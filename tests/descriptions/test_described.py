@@ -12,6 +12,7 @@ from kinform.consistency.context import Context
 from kinform.consistency.control import apply
 from kinform.consistency.outcome import decided
 from kinform.design import Design
+from kinform.errors import InputError
 from kinform.foundation.meshes.hulls import hull_of
 from kinform.model.checks import CheckSettings
 
@@ -137,6 +138,32 @@ def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_with
     assert (stray.code, stray.severity) == ("KF131", "note") and "meshes/stray.stl" in stray.message
     (tmp_path / "other.urdf").write_text('<mesh filename="meshes/stray.stl"/>')  # another of the package names it
     assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
+
+
+def test_a_visual_mesh_that_is_not_there_is_an_error_and_the_rest_is_judged(tmp_path):
+    """Without it nothing is said of the mass of its link; where no mesh is there nothing can be said at all."""
+    walker = Walker()
+    (tmp_path / "box.obj").write_text(box_obj())
+    mesh = '<visual><geometry><mesh filename="{}"/></geometry></visual>'
+    walker.links["torso"].more = mesh.format("gone.stl") + mesh.format("box.obj")
+    walker.links["torso"].inertia_factor = 1e9
+    missing = only(tmp_path, walker)
+    assert (missing.code, missing.severity, missing.line) == ("KF131", "error", 2)
+    assert "gone.stl of link 'torso'" in missing.message
+    assembly = form.load(tmp_path / "walker.urdf")
+    assert len(assembly.function.joints) == 4 and any("left out: gone.stl" in note for note in assembly.notes)
+    (tmp_path / "box.obj").unlink()
+    with pytest.raises(InputError) as caught:
+        form.load(tmp_path / "walker.urdf")
+    assert [(p.line, "does not exist" in p.message) for p in caught.value.problems] == [(2, True), (2, True)]
+
+
+def box_obj():
+    """A cube of 20 mm around the joint of the shin."""
+    corners = [(x, y, z) for x in (-0.01, 0.01) for y in (-0.01, 0.01) for z in (-0.01, 0.01)]
+    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c} {d}" for a, b, c, d in quads]
+    return "\n".join(lines) + "\n"
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,10 @@ class LooseMesh:
     line: int
     missing: bool
     """It is named, and not there; else it is there, and not named."""
+    link: str = ""
+    """That names it; "" where none does."""
+    left_out: bool = False
+    """It would be a part of that link, which stands without it; else it is of the geometry that is not read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,3 +123,8 @@ class Description:
     links: tuple[DescribedLink, ...] = field(default=())
     joints: tuple[DescribedJoint, ...] = field(default=())
     meshes: tuple[LooseMesh, ...] = field(default=())
+
+    @property
+    def incomplete(self) -> frozenset[str]:
+        """Links of whose parts some have no mesh: their geometry is not all of it."""
+        return frozenset(mesh.link for mesh in self.meshes if mesh.left_out)

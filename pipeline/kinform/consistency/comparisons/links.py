@@ -69,7 +69,8 @@ class Weighed:
 
 
 def weighed(assembly: Assembly) -> Iterator[Weighed]:
-    """Everything with a stated mass and a mesh, sorted by name within parts and groups."""
+    """Everything with a stated mass and all of its meshes, sorted by name within parts and groups."""
+    incomplete = {name for description in assembly.descriptions for name in description.incomplete}
     links = {link.name: link for description in assembly.descriptions for link in description.links}
     by_name = {part.name: part for part in assembly.parts}
     for part in assembly.parts:
@@ -79,7 +80,7 @@ def weighed(assembly: Assembly) -> Iterator[Weighed]:
             centre = R @ stated.centre_of_mass + p
             yield Weighed(part.name, stated.mass, centre, R @ stated.inertia @ R.T, (part,), part.source, None)
     for group in assembly.groups:
-        if group.override is not None:
+        if group.override is not None and group.name not in incomplete:
             inside = tuple(by_name[name] for name in group.parts)
             stated = group.override
             if any(part.mesh is not None for part in inside):

@@ -1,11 +1,12 @@
 """A robot description names a mesh that is not there, or leaves meshes beside its own unnamed.
 
-A visual mesh that is not there is wrong input and ends the reading; a mesh of the other kind (collision) that is not
-there is an error here. Mesh files in the folders of the description's meshes that neither it nor another text of its
-package names are one note.
+A mesh that is not there is an error. The link stands without it: stated masses, sides and collision geometry are not
+compared there, and a joint may be found not held for want of what is missing. Where none of the meshes is there,
+nothing can be judged, and the reading ends. Mesh files in the folders of the description's meshes that neither it nor
+another text of its package names are one note.
 
-Why it matters: a planner that cannot load a collision mesh sees no obstacle there. A file that nobody names is
-forgotten, or misspelt where it was meant.
+Why it matters: a simulator refuses the description, and a planner that cannot load a collision mesh sees no obstacle
+there. A file that nobody names is forgotten, or misspelt where it was meant.
 
 What to do: correct the file name, or add the file; remove what nobody uses.
 
@@ -19,6 +20,7 @@ from kinform.consistency.outcome import Outcome, decided
 from kinform.consistency.rule import Rule
 from kinform.foundation.words import counted, quoted
 from kinform.model.assembly import Source
+from kinform.model.descriptions import LooseMesh
 from kinform.model.findings import Finding
 
 
@@ -28,16 +30,7 @@ def check(context: Context) -> Outcome:
     for description in context.assembly.descriptions:
         for mesh in description.meshes:
             if mesh.missing:
-                findings.append(
-                    RULE.finding(
-                        [mesh.path],
-                        f"the mesh {mesh.path} does not exist: the link has no such collision geometry",
-                        found="no file",
-                        intended="a mesh",
-                        declared=Source(mesh.file, mesh.line),
-                        remedy="Correct the file name, or add the file.",
-                    )
-                )
+                findings.append(_missing(mesh))
         unnamed = [mesh.path for mesh in description.meshes if not mesh.missing]
         if unnamed:
             findings.append(
@@ -52,6 +45,18 @@ def check(context: Context) -> Outcome:
                 )
             )
     return decided(findings)
+
+
+def _missing(mesh: LooseMesh) -> Finding:
+    lost = "it is judged without it" if mesh.left_out else "it has no such collision geometry"
+    return RULE.finding(
+        [mesh.path],
+        f"the mesh {mesh.path} of link '{mesh.link}' does not exist: {lost}",
+        found="no file",
+        intended="a mesh",
+        declared=Source(mesh.file, mesh.line),
+        remedy="Correct the file name, or add the file.",
+    )
 
 
 RULE = Rule("KF131", "mesh-loose", "error", __doc__, check, needs=("descriptions",))

@@ -69,7 +69,7 @@ class _Judge:
             for link in (pair.left, pair.right):
                 parts = tuple(by_name[name] for name in link.parts if name in by_name)
                 shape = Weighed(link.name, 0.0, link.position, link.rotation, parts, Source(link.file), link)
-                self.looks[link.name] = look_of(shape)
+                self.looks[link.name] = None if link.name in description.incomplete else look_of(shape)
 
     def findings(self) -> Iterator[Finding]:
         """One for each kind of difference."""

@@ -7,7 +7,7 @@ rules ask about these, and an export writes back what was not touched.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,10 +23,15 @@ class Facts:
     others: Mapping[str, tuple[Shape, ...]]
     alike: frozenset[str]
     """Links whose geometry of both kinds is the same."""
+    absent: Mapping[str, tuple[Shape, ...]] = field(default_factory=dict)
+    """By link the shapes that would be parts, and whose meshes are not there."""
 
 
-def facts_of(robot: Robot, file: str, geometry: str, parts: Mapping[str, Sequence[str]]) -> Facts:
-    """The facts of a robot; `geometry` is what its parts are, and `parts` are their names by link."""
+def facts_of(
+    robot: Robot, file: str, geometry: str, parts: Mapping[str, Sequence[str]], absent: Mapping[str, tuple[Shape, ...]]
+) -> Facts:
+    """The facts of a robot; `geometry` is what its parts are, `parts` are their names by link, and `absent` the shapes
+    of links without files."""
     other = "collision" if geometry == "visual" else "visual"
     description = Description(
         file=file,
@@ -39,7 +44,7 @@ def facts_of(robot: Robot, file: str, geometry: str, parts: Mapping[str, Sequenc
     alike = frozenset(
         link.name for link in robot.links if set(map(_key, link.visual)) == set(map(_key, link.collision))
     )
-    return Facts(description, {link.name: link.shapes(other) for link in robot.links}, alike)
+    return Facts(description, {link.name: link.shapes(other) for link in robot.links}, alike, absent)
 
 
 def _key(shape: Shape) -> tuple[object, ...]:

@@ -58,15 +58,19 @@ class MeshFiles:
             path = root / rest
             if path.is_file():
                 return Found(path, root)
+        parts = rest.split("/")
         for base in _above(self.folder, PACKAGE_LEVELS):  # a package that was renamed, or copied without its folder
-            parts = rest.split("/")
             for k in range(len(parts)):
                 path = base.joinpath(*parts[k:])
                 if path.is_file():
                     return Found(path, base)
-        known = next(self._roots(name), None)
+        known = self.package(name)
         if known is not None:
-            return Found(None, message=f"package://{name}/{rest} does not exist", remedy=f"there is no {known / rest}")
+            return Found(known / rest, known)  # it is not there, which is told as of any other path
+        for base in _above(self.folder, PACKAGE_LEVELS):
+            for k in range(len(parts) - 2):  # two of its folders stand there, and the file does not
+                if base.joinpath(*parts[k:-1]).is_dir():
+                    return Found(base.joinpath(*parts[k:]), base)
         remedy = f"add --package {name}=FOLDER, or set ROS_PACKAGE_PATH"
         return Found(None, message=f"package://{name}/{rest} is not found: no folder {name} is known", remedy=remedy)
 

@@ -54,7 +54,7 @@ def tables(source: Source) -> SourceTables | None:
     writer = _Writer(source)
     writer.write(robot)
     folders = (*robot.folders, meshes.home)
-    facts = facts_of(robot, source.file, source.reading.geometry, writer.parts)
+    facts = facts_of(robot, source.file, source.reading.geometry, writer.parts, writer.absent)
     return SourceTables(writer.raw, Places(writer.places), (*robot.notes, *writer.notes), robot.files, folders,
                         facts=facts)  # fmt: skip
 
@@ -69,14 +69,17 @@ class _Writer:
         self.places: dict[tuple[str | int, ...], tuple[str | None, int]] = {}
         self.notes: list[str] = []
         self.parts: dict[str, list[str]] = {}
+        self.absent: dict[str, tuple[Shape, ...]] = {}
 
     def write(self, robot: Robot) -> None:
         """All of a robot."""
         self._put(robot.at, ("assembly",))
         self.raw["assembly"] = {"name": robot.name, "units": self.source.units or "m"}
         geometry = self.source.reading.geometry
+        self.absent = absent_shapes(robot, geometry)
+        self._note_absent()
         taken = {link.name for link in robot.links}
-        free, held = distinct(taken), {link.name for link in robot.links if link.shapes(geometry)}
+        free, held = distinct(taken), {link.name for link in robot.links if self._shapes(link, geometry)}
         for link in robot.links:
             self._link(link, geometry, free)
         if robot.root is not None and (robot.root in held or any(p["name"] == robot.root for p in self.raw["part"])):
@@ -113,8 +116,20 @@ class _Writer:
         tables.append(table)
         return table
 
+    def _shapes(self, link: Link, geometry: str) -> tuple[Shape, ...]:
+        """The shapes of a link that can be had."""
+        absent = self.absent.get(link.name, ())
+        return tuple(shape for shape in link.shapes(geometry) if shape not in absent)
+
+    def _note_absent(self) -> None:
+        shapes = [(name, shape) for name, shapes in self.absent.items() for shape in shapes]
+        if shapes:
+            files = first_names(dict.fromkeys(Path(str(shape.geometry)).name for _, shape in shapes))
+            links = first_names(dict.fromkeys(in_quotes(name) for name, _ in shapes))
+            self.notes.append(f"{self.source.file}: meshes that do not exist are left out: {files} (of {links})")
+
     def _link(self, link: Link, geometry: str, free: Any) -> None:
-        shapes = link.shapes(geometry)
+        shapes = self._shapes(link, geometry)
         if not shapes:
             part = self._add("part", link.at, {"name": link.name, **self._posed(link.X_FL)})
             self.parts[link.name] = [link.name]
@@ -202,6 +217,17 @@ class _Writer:
             return
         table = {"name": f"{word} of {joint.name}", "kind": kind, "joint": joint.name, "limit": limit}
         self._add("require", joint.at, table | {"when_run": True})
+
+
+def absent_shapes(robot: Robot, geometry: str) -> dict[str, tuple[Shape, ...]]:
+    """By link the shapes whose meshes are not there, where some others are: the robot is judged without them, which a
+    rule tells. Without any mesh there is nothing to judge: then each one is wrong input."""
+    shapes = {link.name: [s for s in link.shapes(geometry) if isinstance(s.geometry, Path)] for link in robot.links}
+    there = {s.geometry for own in shapes.values() for s in own if isinstance(s.geometry, Path) and s.geometry.exists()}
+    if not there:
+        return {}
+    absent = {name: tuple(s for s in own if s.geometry not in there) for name, own in shapes.items()}
+    return {name: own for name, own in absent.items() if own}
 
 
 def _label(link: Link, shape: Shape) -> str:

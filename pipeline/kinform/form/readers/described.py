@@ -16,7 +16,7 @@ from pydantic import TypeAdapter
 from kinform.form.constants import SIBLING_BYTES, SIBLINGS_MOST
 from kinform.form.descriptions.coverage import coverage_of
 from kinform.form.descriptions.facts import Facts
-from kinform.form.descriptions.robot import At, Shape, Solid
+from kinform.form.descriptions.robot import Shape, Solid
 from kinform.form.descriptions.tables import shape_table
 from kinform.form.files import DesignFiles, is_mesh
 from kinform.form.manifest.parts import ShapeTable
@@ -48,6 +48,9 @@ class _Describer:
     def description(self) -> Description:
         """All of it."""
         given, prefix = self.facts.description, self.scope.prefix
+        for name, shapes in self.facts.absent.items():
+            for shape in shapes:
+                self._note_missing(shape, name, left_out=True)
         links = tuple(self._link(link) for link in given.links)
         joints = tuple(self._joint(joint) for joint in given.joints)
         loose = (*sorted(self.missing.values(), key=lambda mesh: (mesh.line, mesh.path)), *self._unreferenced())
@@ -81,8 +84,9 @@ class _Describer:
         others = self.facts.others.get(link.name, ())
         if link.name in self.facts.alike:
             return None
-        placed = [(shape, points) for shape in others if (points := self._points(shape)) is not None]
-        if self.files.reading.geometry != "visual" or len(placed) < len(others):
+        placed = [(shape, points) for shape in others if (points := self._points(link.name, shape)) is not None]
+        whole = len(placed) == len(others) and link.name not in self.facts.absent
+        if self.files.reading.geometry != "visual" or not whole:
             return None
         visual = []
         for name in link.parts:
@@ -92,14 +96,14 @@ class _Describer:
                 visual.append((part.mesh.vertices @ local[:3, :3].T + local[:3, 3], part.mesh.faces))
         return coverage_of(visual, [points for _, points in placed]) if placed else None
 
-    def _points(self, shape: Shape) -> Array | None:
-        """Vertices (n, 3) m of a shape in the frame of the description; None where they cannot be had."""
+    def _points(self, link: str, shape: Shape) -> Array | None:
+        """Vertices (n, 3) m of a shape of a link in the frame of the description; None where they cannot be had."""
         X = shape.X_FG
         if isinstance(shape.geometry, Solid):
             points = primitive(_SHAPES.validate_python(shape_table(shape.geometry, 1.0)), 1.0).vertices
             return points @ X[:3, :3].T + X[:3, 3]
         if not shape.geometry.is_file():
-            self._note_missing(shape.geometry, shape.at)
+            self._note_missing(shape, link, left_out=False)
             return None
         try:
             raw = self.files.loose(shape.geometry)
@@ -110,9 +114,10 @@ class _Describer:
         points = raw.vertices * (shape.metres * np.array(shape.scale))
         return points @ X[:3, :3].T + X[:3, 3]
 
-    def _note_missing(self, path: Path, at: At) -> None:
-        key = (self.files.shown(path), at.line)
-        self.missing.setdefault(key, LooseMesh(key[0], at.file, at.line, True))
+    def _note_missing(self, shape: Shape, link: str, *, left_out: bool) -> None:
+        path, at = self.files.shown(Path(str(shape.geometry))), shape.at
+        loose = LooseMesh(path, at.file, at.line, True, self.scope.prefix + link, left_out)
+        self.missing.setdefault((path, at.line), loose)
 
     def _unreferenced(self) -> Iterable[LooseMesh]:
         """Mesh files in the folders of the description's own meshes that neither it nor a file beside it names."""
