@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 
+import manifold3d
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -15,6 +16,7 @@ from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.obj import parse_obj
 from kinform.form.meshes.raw import MeshError, RawMesh
 from kinform.form.meshes.stl import parse_ascii, parse_binary
+from kinform.foundation.meshes.boxes import bounds
 
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 SIDES = np.array([
@@ -162,3 +164,37 @@ def test_an_unknown_unit_and_an_unknown_suffix_are_told_together(tmp_path):
     with pytest.raises(InputError) as caught:
         load_meshes([tmp_path / "a.step"], units="mile")
     assert len(caught.value.problems) == 2
+
+
+@st.composite
+def closed_soups(draw):
+    """Faces over few vertices at whose edges as many run one way as the other: shells of four, some doubled, turned or
+    pinched at a vertex, pillows of two."""
+    count = draw(st.integers(4, 9))
+    faces = []
+    for _ in range(draw(st.integers(1, 4))):
+        a, b, c, d = draw(st.permutations(range(count)))[:4]
+        shell = draw(st.sampled_from([
+            [(a, b, c), (a, c, d), (a, d, b), (b, d, c)], [(a, b, c), (c, b, a)],
+        ]))  # fmt: skip
+        faces += shell
+    return np.random.default_rng(draw(st.integers(0, 99))).normal(size=(count, 3)), np.array(faces)
+
+
+@settings(max_examples=200, deadline=None)
+@given(closed_soups())
+def test_status_and_duplicates_are_those_of_manifold3d_and_of_a_count(mesh):
+    vertices, faces = mesh
+    health = built(vertices, faces, solid=False).health
+    alike = [tuple(sorted(face)) for face in faces.tolist()]
+    assert health.duplicate_facets == len(alike) - len(set(alike))
+    if not health.overused_edges:
+        asked = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64))).status().name
+        assert health.manifold_status == asked
+
+
+@pytest.mark.parametrize("count", [1, 63, 64, 65, 1000])
+def test_bounds_are_the_least_and_greatest_of_columns(count):
+    points = np.random.default_rng(count).normal(size=(count, 3)).astype(np.float32)
+    low, high = bounds(points)
+    assert np.array_equal(low, points.min(axis=0)) and np.array_equal(high, points.max(axis=0))

@@ -119,3 +119,5 @@ HULL_POINTS = 4096
 HULL_THICKNESS = 1e-7
 """Share of its size by which a flat set of points is thickened on each side, so that it has a hull: far below what any
 mesh is exact to."""
+ROWS_TOGETHER = 64
+"""Rows of an array that are looked at as one for the least and the greatest of its columns."""

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from kinform.form.constants import EPS32, FAR, FLAT, SLIVER, SMALLEST_MESH, WELD_SHARE, WELD_STEPS
 from kinform.form.meshes.raw import Fault, MeshError, RawMesh
 from kinform.form.meshes.weld import merge_close, merge_exact, used_only
+from kinform.foundation.algebra.vectors import cross, dot
+from kinform.foundation.meshes.boxes import bounds
 from kinform.foundation.meshes.edges import EdgeTable, edge_table
 from kinform.foundation.meshes.shells import shells_of
 from kinform.foundation.processes import Crash, in_own_process
@@ -36,10 +38,10 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
         raise MeshError([Fault("is empty: every facet is degenerate", "export the mesh again")])
     used, kept = used_only(vertices, kept)
     shape: Array = np.ascontiguousarray(used, dtype=np.float64)
-    diagonal = float(np.linalg.norm(np.ptp(shape, axis=0)))
+    diagonal = _diagonal(shape)
     if diagonal < SMALLEST_MESH:
         raise MeshError([Fault(f"is {diagonal:.2g} m across, less than an atom", "correct its units or its scale")])
-    if solid and _thickness(shape) <= max(FLAT * float(np.linalg.norm(np.ptp(shape, axis=0))), 0.0):
+    if solid and _thickness(shape) <= max(FLAT * diagonal, 0.0):
         raise MeshError([Fault(
             "has zero thickness: all its vertices lie in one plane",
             "export a closed solid, or state solid = false for a part that is surfaces only",
@@ -50,10 +52,14 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
         kept = np.ascontiguousarray(kept[:, ::-1])
     usual = EPS32 * float(np.abs(shape).max())
     known = np.float64(resolution).tobytes() if resolution > usual else b""
-    digest = hashlib.sha256(shape.tobytes() + kept.tobytes() + known).hexdigest()
+    digest = hashlib.sha256(shape.data)
+    digest.update(np.ascontiguousarray(kept).data)
+    digest.update(known)
     shape.setflags(write=False)
     kept.setflags(write=False)
-    return Mesh(shape, kept, health, path, body, digest, np.asarray(freeze(origin * metres)), max(resolution, usual))
+    return Mesh(
+        shape, kept, health, path, body, digest.hexdigest(), np.asarray(freeze(origin * metres)), max(resolution, usual)
+    )
 
 
 def far_origin(vertices: NDArray[np.floating]) -> Array:
@@ -63,7 +69,7 @@ def far_origin(vertices: NDArray[np.floating]) -> Array:
     """
     if not len(vertices):
         return np.zeros(3)
-    low, high = vertices.min(axis=0).astype(np.float64), vertices.max(axis=0).astype(np.float64)
+    low, high = (corner.astype(np.float64) for corner in bounds(vertices))
     middle, diagonal = 0.5 * low + 0.5 * high, float(np.linalg.norm(high - low))
     if not diagonal > 0.0:
         return np.zeros(3)
@@ -78,11 +84,16 @@ def _welded(raw: RawMesh, origin: Array, metres: float, weld: float | None) -> t
     faces = place[raw.faces]
     distance = weld
     if distance is None:
-        share = WELD_SHARE * float(np.linalg.norm(np.ptp(vertices, axis=0)))
-        distance = max(share, WELD_STEPS * raw.resolution * metres)
+        distance = max(WELD_SHARE * _diagonal(vertices), WELD_STEPS * raw.resolution * metres)
     leaders, close = merge_close(vertices, distance)
     welded: Array = vertices[leaders]
     return welded, close[faces], distance
+
+
+def _diagonal(vertices: Array) -> float:
+    """Of the box of the vertices (n, 3)."""
+    low, high = bounds(vertices)
+    return float(np.linalg.norm(high - low))
 
 
 def _collapsed(faces: Ints) -> NDArray[np.bool_]:
@@ -103,18 +114,18 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
     """The facts about a mesh of these vertices and faces, which were welded within the distance (m)."""
     corners = vertices[faces] - vertices.mean(axis=0)
     sides = [corners[:, k] - corners[:, k - 1] for k in range(3)]
-    doubled = np.cross(sides[1], sides[2])
-    longest = np.max([np.einsum("ij,ij->i", side, side) for side in sides], axis=0)
-    slivers = int(np.count_nonzero(np.einsum("ij,ij->i", doubled, doubled) <= SLIVER * longest**2))
-    duplicates = _duplicates(faces, len(vertices))
+    doubled = cross(sides[1], sides[2])
+    longest = np.maximum(np.maximum(*(dot(side, side) for side in sides[:2])), dot(sides[2], sides[2]))
+    slivers = int(np.count_nonzero(dot(doubled, doubled) <= SLIVER * longest**2))
+    duplicates = _duplicates(faces[_doubled(edges)], len(vertices))
     watertight = edges.open == 0 and edges.overused == 0
     return MeshHealth(
         facets=len(raw.faces),
         vertices=len(vertices),
         watertight=watertight,
         consistent_winding=bool(np.all(edges.balance[edges.counts % 2 == 0] == 0)),
-        manifold_status=_manifold_status(vertices, faces, edges),
-        volume=float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0),
+        manifold_status=_manifold_status(vertices, faces, edges, duplicates),
+        volume=float(np.einsum("ij,ij->", corners[:, 0], cross(corners[:, 1], corners[:, 2])) / 6.0),
         degenerate_facets=len(raw.faces) - len(faces) + slivers,
         duplicate_facets=duplicates,
         open_edges=edges.open,
@@ -122,6 +133,18 @@ def _health(vertices: Array, faces: Ints, edges: EdgeTable, raw: RawMesh, distan
         shells=int(shells_of(vertices, faces, edges).max()) + 1,
         weld=distance,
     )
+
+
+def _doubled(edges: EdgeTable) -> NDArray[np.bool_]:
+    """(F,) facets that may have the vertices of another: it meets them, and perhaps more, at all three edges."""
+    beside = np.full(len(edges.half_edges), -1)
+    two = edges.starts[edges.counts == 2]
+    first, second = edges.half_edges[two], edges.half_edges[two + 1]
+    beside[first], beside[second] = second // 3, first // 3
+    beside[edges.half_edges[np.repeat(edges.counts > 2, edges.counts)]] = -2
+    rows = beside.reshape(-1, 3)
+    alike: NDArray[np.bool_] = (rows[:, 0] == rows[:, 1]) & (rows[:, 1] == rows[:, 2]) & (rows[:, 0] != -1)
+    return np.asarray(alike | (rows == -2).any(axis=1))
 
 
 def _duplicates(faces: Ints, count: int) -> int:
@@ -138,15 +161,18 @@ def _duplicates(faces: Ints, count: int) -> int:
     return len(facets) - len(np.unique(np.stack([pair[facets], middle[facets]], axis=1), axis=0))
 
 
-def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable) -> str:
+def _manifold_status(vertices: Array, faces: Ints, edges: EdgeTable, duplicates: int) -> str:
     """What manifold3d says of the mesh, scaled to unit size.
 
     It pairs the half-edges of an edge that run against each other, and reads beyond its tables where they are not as
-    many one way as the other (3.5.4, signal 11): of such a mesh we say ourselves what it means to say. Where more than
-    two facets meet at an edge it takes them apart, at length: that is tried in a process of its own.
+    many one way as the other (3.5.4, signal 11): of such a mesh, and of one with two facets at every edge and none of
+    them twice, we say ourselves what it means to say. Where more than two facets meet at an edge it takes them apart,
+    at length: that is tried in a process of its own.
     """
     if (edges.balance != 0).any():
         return "NotManifold"
+    if not edges.overused and not duplicates:
+        return "NoError"
     size = float(np.ptp(vertices, axis=0).max()) or 1.0
     scaled = np.ascontiguousarray((vertices - vertices.mean(axis=0)) / size)
     corners = np.ascontiguousarray(faces.astype(np.uint64))

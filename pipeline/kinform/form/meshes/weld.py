@@ -39,14 +39,14 @@ def merge_exact(vertices: NDArray[np.floating]) -> tuple[Ints, Ints]:
     clean = np.ascontiguousarray(vertices) + vertices.dtype.type(0)
     word = np.uint32 if clean.dtype == np.float32 else np.uint64
     key = _hash(clean.view(word).astype(np.uint64))
-    first, place = _groups(key, np.argsort(key, kind="stable"))
+    first, place = _groups(key, np.argsort(key))
     if not np.array_equal(clean[first[place]], clean):
         # two different vertices share a hash: sort by coordinates instead
         order = np.lexsort(clean.T)
         _, rank = np.unique(clean[order], axis=0, return_inverse=True)
         key = np.empty(len(clean), dtype=np.uint64)
         key[order] = rank.ravel().astype(np.uint64)
-        first, place = _groups(key, np.argsort(key, kind="stable"))
+        first, place = _groups(key, np.argsort(key))
     return first, place
 
 
@@ -59,12 +59,12 @@ def _hash(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 def _groups(key: NDArray[np.uint64], order: Ints) -> tuple[Ints, Ints]:
-    """Equal keys are one group; groups are numbered by their first member."""
+    """Equal keys, in any order within the group, are one; groups are numbered by their first member."""
     ordered = key[order]
     new = np.empty(len(key), dtype=bool)
     new[:1] = True
     np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
-    first = order[new]
+    first = np.minimum.reduceat(order, np.flatnonzero(new)) if len(key) else order
     rank = np.argsort(first)
     number = np.empty_like(rank)
     number[rank] = np.arange(len(rank))

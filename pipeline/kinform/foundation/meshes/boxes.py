@@ -4,9 +4,24 @@ asking all of them."""
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinform.foundation import constants
 from kinform.model.arrays import Array, Ints
+
+
+def bounds(points: NDArray[np.floating]) -> tuple[Array, Array]:
+    """Least and greatest of each column (d,) of points (n, d), n > 0.
+
+    Rows are taken together to wide ones first: numpy goes through narrow ones a hundred times slower.
+    """
+    count, width = points.shape
+    wide = count // constants.ROWS_TOGETHER * constants.ROWS_TOGETHER
+    together = np.ascontiguousarray(points[:wide]).reshape(-1, constants.ROWS_TOGETHER * width)
+    rest = points[wide:]
+    low = np.concatenate([together.min(axis=0).reshape(-1, width), rest]) if wide else rest
+    high = np.concatenate([together.max(axis=0).reshape(-1, width), rest]) if wide else rest
+    return low.min(axis=0), high.max(axis=0)
 
 
 def box_corners(low: Array, high: Array, X: Array) -> Array:

@@ -9,6 +9,7 @@ at and then by facet.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -75,7 +76,7 @@ class EdgeTable:
         """Edges of more than two facets."""
         return int((self.counts > 2).sum())
 
-    @property
+    @cached_property
     def balance(self) -> Ints:
         """(E,) runs forward less runs backward; 0 on a shared edge whose facets agree."""
         direction = np.where(self.forward[self.half_edges], 1, -1)
