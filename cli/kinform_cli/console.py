@@ -1,8 +1,7 @@
 """Where the command writes: results to stdout; progress, summaries, warnings and errors to stderr.
 
-Knows about terminals, colour and closed pipes. On a terminal lines wrap to its width; off a terminal
-nothing is wrapped or cut, so that tables can be searched. Names that a user chose are never read as
-markup.
+Knows about terminals, colour and closed pipes. On a terminal lines wrap to its width, off a terminal to that which
+`COLUMNS` asks for, or 80. Names that a user chose are never read as markup.
 """
 
 from __future__ import annotations
@@ -11,11 +10,10 @@ import io
 import os
 import shutil
 import sys
-import textwrap
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
-from kinform_cli.constants import LEAST_WIDTH, UNBOUNDED, WIDTH
+from kinform_cli.constants import LEAST_WIDTH, WIDTH
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -46,7 +44,7 @@ def _console(stream: IO[str]) -> Console:
 
     return Patient(
         file=stream,
-        width=None if stream.isatty() else _asked_width() or UNBOUNDED,
+        width=None if stream.isatty() else _asked_width() or WIDTH,
         color_system=None if os.environ.get("NO_COLOR") else "auto",
         markup=False,
         highlight=False,
@@ -66,8 +64,10 @@ def decorated() -> bool:
 
 
 def columns() -> int:
-    """Of the terminal, and 80 where there is none: as wide as what is told in lines may be."""
-    return max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH) if sys.stdout.isatty() else WIDTH
+    """Of the terminal; where there is none those that `COLUMNS` asks for, or 80: what is told in lines is no wider."""
+    if not sys.stdout.isatty():
+        return _asked_width() or WIDTH
+    return max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH)
 
 
 def stderr() -> Console:
@@ -144,24 +144,10 @@ def give_up() -> None:
 def say(text: str | None) -> None:
     """One line on stderr about what was done; silent with --quiet, or where there is nothing to say."""
     if text is not None and not settings.quiet:
-        tell(_broken(text) if sys.stderr.isatty() else text)
+        from kinform_cli.text import hanging
 
-
-def _broken(text: str) -> str:
-    """The text with its lines broken between words where the terminal ends."""
-    width = max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH)
-    lines = []
-    for line in text.split("\n"):
-        margin = " " * (len(line) - len(line.lstrip()) + 2)
-        lines += textwrap.wrap(
-            line,
-            width,
-            subsequent_indent=margin,
-            break_long_words=False,
-            break_on_hyphens=False,
-            replace_whitespace=False,
-        ) or [""]
-    return "\n".join(lines)
+        width = max(shutil.get_terminal_size((WIDTH, 24)).columns, LEAST_WIDTH)
+        tell(hanging(text, width) if sys.stderr.isatty() else text)
 
 
 def warn(text: str) -> None:

@@ -9,11 +9,8 @@ GRACE = 1.5
 
 # console
 
-UNBOUNDED = 100_000
-"""Characters of a line off a terminal: columns take what they need there."""
-
 WIDTH = 80
-"""Columns of sentences where there is no terminal: what a pager or a log shows without cutting."""
+"""Columns where there is no terminal: what a pager or a log shows without cutting. `COLUMNS` asks for others."""
 
 LEAST_WIDTH = 40
 """Columns below which sentences are not broken further; a choice."""
@@ -26,6 +23,15 @@ GAP = 3
 INDENT = 4
 """Blanks before the facts of a block; a choice."""
 
+LEAST_NAME = 16
+"""Characters to which a name is shortened at most: of the two bodies of a joint seven each. A choice."""
+
+LEAST_TEXT = 24
+"""Columns below which a text is not wrapped in a table: about four words a line. A choice."""
+
+MOST_LINES = 4
+"""Lines that a text takes in a table at most; a row of which one takes more becomes a block. A choice."""
+
 # text
 
 FINE = 1e-5
@@ -33,6 +39,27 @@ FINE = 1e-5
 
 NO_LENGTH = 1e-9
 """Metres below which a length is written as zero: nobody makes a billionth of a metre."""
+
+ROUNDING = 1e-7
+"""Share of the largest part below which a length is rounding, and is written as zero: what single precision, in which
+meshes are stored, leaves of a coordinate."""
+
+NO_VALUE = 1e-9
+"""Below it a singular value, of scaled rows, is written as zero: it is rounding."""
+
+FEW, MANY = 0.01, 1e4
+"""A quantity is written in thousandths of its unit below, in thousands from there on: else it has leading zeros, or
+five digits before the point."""
+
+# views/evidence
+
+NO_TURN = 1e-7
+"""rad below which the uncertainty of an axis is not told: meshes in single precision do not say so much."""
+
+# views/mass
+
+HEAVY = 1.0
+"""kg: where something in a table weighs as much, masses are in kg, else in g."""
 
 # progress
 

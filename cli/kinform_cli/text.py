@@ -11,7 +11,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from kinform_cli.constants import FINE, NO_LENGTH
+from kinform.foundation import words
+from kinform_cli.constants import FEW, FINE, MANY, NO_LENGTH, NO_VALUE, ROUNDING
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -31,6 +32,18 @@ def wrapped(text: str, width: int) -> str:
     """The text with no line longer than `width`, unless one word is; what goes on keeps the margin of its line. Lines
     that follow each other in a paragraph are joined where one was too long."""
     return "\n\n".join(_paragraph(part, width) for part in text.rstrip("\n").split("\n\n")) + "\n"
+
+
+def hanging(text: str, width: int) -> str:
+    """The text with no line longer than `width`, unless one word is; what goes on is indented by two blanks more."""
+    lines = []
+    for line in text.split("\n"):
+        margin = " " * (len(line) - len(line.lstrip()) + 2)
+        lines += textwrap.wrap(
+            line, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False,
+            replace_whitespace=False,
+        ) or [""]  # fmt: skip
+    return "\n".join(lines)
 
 
 def _paragraph(text: str, width: int) -> str:
@@ -56,7 +69,29 @@ def number(value: float | None) -> str:
         return NONE
     if math.isinf(value):
         return "∞" if value > 0 else "-∞"
-    return f"{value + 0.0:.4g}"
+    return words.number(value + 0.0)
+
+
+def singular(value: float) -> str:
+    """A singular value, zero where it is rounding."""
+    return number(0.0 if abs(value) < NO_VALUE else value)
+
+
+def scaled(unit: str, most: float) -> tuple[str, float]:
+    """The unit with the prefix in which a value so large reads well, and how many of it are one of the unit: ("mN·m",
+    1000.0)."""
+    size = abs(most)
+    if not math.isfinite(size) or size == 0.0 or FEW <= size < MANY:
+        return unit, 1.0
+    if size >= MANY:
+        return f"k{unit}", 1e-3
+    return (f"m{unit}", 1e3) if size >= 1e-3 * FEW else (f"µ{unit}", 1e6)
+
+
+def quantity(value: float, unit: str) -> str:
+    """The value with its unit: "1.515 mN·m"."""
+    shown, factor = scaled(unit, value)
+    return f"{number(factor * value)} {shown}"
 
 
 def _rounded(value: float, decimals: int) -> str:
@@ -94,6 +129,8 @@ class Lengths:
     small_metres: float
     decimals: int
     """Of places."""
+    nothing: float = NO_LENGTH
+    """m: what is shorter is written as zero."""
 
     @staticmethod
     def of(assembly: Assembly) -> Lengths:
@@ -104,13 +141,14 @@ class Lengths:
         largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
         fine = FINE * (largest or 1.0) / metres
         small = "mm" if assembly.units in ("m", "cm") else assembly.units
-        return Lengths(assembly.units, metres, small, metres_per(small), math.ceil(-math.log10(fine)))
+        nothing = max(NO_LENGTH, ROUNDING * largest)
+        return Lengths(assembly.units, metres, small, metres_per(small), math.ceil(-math.log10(fine)), nothing)
 
     def length(self, metres: float | None) -> str:
-        """A gap, a depth, a pitch: to four digits, and nothing below a billionth of a metre."""
+        """A gap, a depth, a pitch: to four digits, and zero where it is rounding."""
         if metres is None or not math.isfinite(metres):
             return number(metres)
-        return number(0.0 if abs(metres) < NO_LENGTH else metres / self.small_metres)
+        return number(0.0 if abs(metres) < self.nothing else metres / self.small_metres)
 
     def place(self, metres: float) -> str:
         """A coordinate, to as many decimals as the parts call for."""

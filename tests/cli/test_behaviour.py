@@ -88,7 +88,7 @@ def test_the_simulation_shows_what_drives_give_and_what_was_assumed(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = " ".join(printed(capsys, "show", file, "simulation").split())
-    assert "peak power W" in text
+    assert "peak power" in text
     for words in (
         "[simulation] does not state: gravity (0, 0, -9.81) m/s²",
         "the dc motor on pitch/bearing does not state: inductance 0, gear 1",

@@ -133,7 +133,7 @@ def test_a_part_is_marked_as_ground_only_where_one_is_stated(derive_design):
 def test_a_narrow_terminal_gets_blocks_and_no_cut_names(on_a_terminal):
     lines = on_a_terminal("simulation", columns=50)
     assert max(map(len, lines)) <= 50
-    assert any(line.startswith("gimbal~payload N·m") for line in lines)
+    assert any(line.startswith("gimbal~payload mN·m") for line in lines)
 
 
 class TestSparks:

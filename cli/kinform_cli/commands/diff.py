@@ -11,6 +11,7 @@ import typer
 from kinform_cli import console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.options import Tolerances, argument, examples, option
+from kinform_cli.text import hanging
 
 if TYPE_CHECKING:
     from kinform.changes import Tolerance
@@ -57,7 +58,8 @@ def diff(
     if report is not None:
         files.write_text(report, changes.diff_page(result, old, new, (before.name, after.name)))
         console.say(f"{report}: to be opened in a browser")
-    console.emit(changes.render(result, format.value))
+    text = changes.render(result, format.value)
+    console.emit(hanging(text, console.columns()) if format is DiffFormat.full else text)
     raise typer.Exit(result.code)
 
 

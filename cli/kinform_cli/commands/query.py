@@ -179,7 +179,7 @@ def _data_intended(design: Design, answer: IntendedAnswer) -> dict[str, Any]:
 
 
 def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
-    from rich.console import Group
+    from kinform_cli.tables import stacked
 
     items: list[RenderableType] = [answer.text]
     if answer.blocked_by:
@@ -190,7 +190,7 @@ def _render(answer: QueryAnswer, lengths: Lengths) -> RenderableType:
         items.append(_contacts(title, elsewhere, lengths))
     if answer.assembly_blocked_by_joints:
         items.append(f"\nand by joints that are stated: {', '.join(answer.assembly_blocked_by_joints)}")
-    return Group(*items)
+    return stacked(*items)
 
 
 def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) -> RenderableType:
@@ -199,7 +199,7 @@ def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) ->
     unit = lengths.small
     numeric = ("patch", f"area {unit}²")
     headings = ("part", "part", "patch", "surface", numeric[1], f"at {lengths.unit}")
-    rows = Rows(*headings, title=title, right=numeric, keys=2)
+    rows = Rows(*headings, title=title, right=numeric, keys=2, names=["part"])
     for blocker in blockers:
         rows.add(
             *blocker.parts, str(blocker.patch), blocker.kind, lengths.area(blocker.area), lengths.point(blocker.place)
@@ -209,8 +209,9 @@ def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) ->
 
 def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> RenderableType:
     """The answer for each intended joint, and for what is not free the contacts that block it."""
-    from rich.console import Group
     from rich.text import Text
+
+    from kinform_cli.tables import stacked
 
     if not answers:
         return "no joints are intended: [function] states none"
@@ -228,7 +229,7 @@ def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> Ren
                 blocking = {b.patch: b for b in (*item.answer.blocked_by, *item.answer.assembly_blocked_by)}
                 if blocking:
                     items.append(_contacts("Blocked by", blocking.values(), lengths))
-    return Group(*items)
+    return stacked(*items)
 
 
 def _sense(item: IntendedMotion) -> str:

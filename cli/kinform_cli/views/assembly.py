@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rich.console import RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 from rich.tree import Tree
@@ -46,8 +46,23 @@ def _tree(assembly: Assembly) -> Tree:
             facts += f"; in {group_of[part.name]}"
         if assembly.ground is not None and assembly.ground in (part.name, group_of.get(part.name)):
             facts += " (ground)"
-        _branch(branches, folder, files).add(Text.assemble(leaf, (f"  {facts}", "dim")))
+        _branch(branches, folder, files).add(_Leaf(leaf, part.mesh.path if part.mesh is not None else "", facts))
     return tree
+
+
+class _Leaf:
+    """A part on one line: the folders of its file give way first, then the line is wrapped."""
+
+    def __init__(self, name: str, file: str, facts: str):
+        self._name, self._file, self._facts = name, file, facts
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """The line, or its pieces."""
+        room = options.max_width - len(self._name) - len(self._facts) - 4
+        file = self._file if len(self._file) <= room else f"…/{self._file.rpartition('/')[2]}"
+        file = file if "/" in self._file else self._file
+        known = [text for text in (file, self._facts) if text]
+        yield from stacked(Text.assemble(self._name, (f"  {', '.join(known)}", "dim"))).renderables
 
 
 def _groups(assembly: Assembly) -> Table:
@@ -75,8 +90,9 @@ def _describe(part: Part) -> str:
     if part.mesh is None:
         facts.append("stick body")
     else:
-        file = part.mesh.path if part.mesh.body is None else f"{part.mesh.path} ({part.mesh.body})"
-        facts += [file, counted(len(part.mesh.faces), "facet")]
+        if part.mesh.body is not None:
+            facts.append(f"body {part.mesh.body}")
+        facts += [counted(len(part.mesh.faces), "facet")]
         if not part.mesh.health.watertight:
             facts.append("not watertight")
         if not part.solid:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rich.console import Group, RenderableType
+from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.behaviour import (
@@ -35,7 +35,7 @@ from kinform.behaviour.components import kind_of
 from kinform.behaviour.signals import Constant, Ramp, Sine, Table
 from kinform.design import Design
 from kinform.foundation.words import counted
-from kinform_cli.tables import Rows
+from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number, vector
 
 
@@ -49,16 +49,19 @@ def render(design: Design) -> RenderableType:
     items: list[RenderableType] = [Text(f"Port model: {parts[0]}, {parts[1]}, {balance}", style="bold")]
     levels = counts(model.nested)
     if len(levels) > 1:
-        rows = Rows("system", "unknowns", "equations", title="\nLevels", right=("unknowns", "equations"))
+        rows = Rows(
+            "system", "unknowns", "equations", title="\nLevels", right=("unknowns", "equations"), names=["system"]
+        )
         for path, level in levels:
             rows.add(path or "the whole", str(level.unknowns), str(level.equations))
         items.append(rows)
-    rows = Rows("component", "kind", "parameters", "meets", title="\nComponents")
+    headings, texts = ("component", "kind", "parameters", "meets"), ("parameters", "meets")
+    rows = Rows(*headings, title="\nComponents", texts=texts)
     _add(rows, model.nested, "", lengths)
     items.append(rows)
     items += [f"not in the model: {subject}: {why}" for subject, why in model.failures]
     items += [f"not in the model, which dynamics needs: {subject}: {why}" for subject, why in model.forces_missing]
-    return Group(*items)
+    return stacked(*items)
 
 
 def _add(rows: Rows, system: System, path: str, lengths: Lengths) -> None:

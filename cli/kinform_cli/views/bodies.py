@@ -18,20 +18,24 @@ def render(design: Design) -> RenderableType:
     """One row a body, then, where bodies follow from the function, one a part that could be elsewhere."""
     kinematics = design.kinematics
     assert kinematics is not None
-    rows = Rows("body", "parts", "made one by", title=counted(len(kinematics.bodies), "body", "bodies"))
+    title = counted(len(kinematics.bodies), "body", "bodies")
+    rows = Rows("body", "parts", "made one by", title=title, names=["body"], texts=["parts", "made one by"])
+    single = [b for b in kinematics.bodies if (*map(str, b.parts),) == (str(b.name),) and not (b.merged or b.ground)]
     for body in kinematics.bodies:
-        rows.add(
-            body.name + (" (ground)" if body.ground else ""), ", ".join(body.parts), "; ".join(body.merged) or NONE
-        )
+        if body not in single:
+            ground = " (ground)" if body.ground else ""
+            rows.add(body.name + ground, ", ".join(body.parts), "; ".join(body.merged) or NONE)
+    alone = [f"\nof one part each: {', '.join(body.name for body in single)}"] if single else []
     unclear = sorted((one for one in kinematics.membership if one.either), key=lambda one: (one.margin, one.part))
     if not unclear:
-        return stacked(rows)
+        return stacked(rows, *alone)
     title = f"\n{counted(len(unclear), 'part')} that could be in another body, the least clear first"
-    more = Rows("part", "is in", "could be in", "by", "how clear", "evidence", title=title, right=["how clear"])
+    names, texts = ("part", "is in", "could be in"), ("by", "evidence")
+    more = Rows(*names, "by", "how clear", "evidence", title=title, right=["how clear"], names=names, texts=texts)
     for one in unclear:
         more.add(one.part, one.body, one.other or NONE, _HOW[one.how], _clear(one), one.evidence or NONE)
     legend = "how clear: by how much breaking the contacts of the other body would be dearer (a journal 40, a flat 300)"
-    return stacked(rows, more, Text(legend, style="dim"))
+    return stacked(rows, *alone, more, Text(legend, style="dim"))
 
 
 _HOW = {"held": "no joint parts it", "cut": "least contact parted", "nearest": "touches nothing: nearest"}

@@ -24,7 +24,17 @@ def render(entries: Sequence[Entry], states: Sequence[str], total: int) -> Rende
     """One row a design; `states` says what has become of its results file."""
     if not entries:
         return f"none of {counted(total, 'design')} does all of this"
-    rows = Rows("design", "joints", *_NUMBERS, "size m", "gate", "results", right=_NUMBERS)
+    rows = Rows(
+        "design",
+        "joints",
+        *_NUMBERS,
+        "size mm",
+        "gate",
+        "results",
+        right=_NUMBERS,
+        names=["design"],
+        texts=["joints", "gate"],
+    )
     for entry, state in zip(entries, states, strict=True):
         rows.add(
             entry.name,
@@ -32,7 +42,7 @@ def render(entries: Sequence[Entry], states: Sequence[str], total: int) -> Rende
             str(entry.effective),
             str(entry.loops),
             number(entry.mass),
-            NONE if entry.size is None else " × ".join(map(number, entry.size)),
+            NONE if entry.size is None else " × ".join(number(1e3 * side) for side in entry.size),
             _gate(entry),
             f"{entry.path} ({state})" if state else entry.path,
         )

@@ -19,7 +19,19 @@ def render(design: Design) -> RenderableType:
     many = counted(len(contacts.patches), "contact patch", "contact patches")
     title = f"{many} between {counted(pairs, 'pair')} of parts"
     numeric = (f"area {unit}²", f"gap {unit}", "#")
-    rows = Rows("#", "part", "part", "surface", *numeric[:2], "fit", title=title, right=numeric, keys=3, shared=(1, 2))
+    rows = Rows(
+        "#",
+        "part",
+        "part",
+        "surface",
+        *numeric[:2],
+        "fit",
+        title=title,
+        right=numeric,
+        keys=3,
+        shared=(1, 2),
+        names=["part"],
+    )
     for index, patch in enumerate(contacts.patches):
         kind = f"{patch.kind}, one side" if patch.one_sided else patch.kind
         rows.add(str(index), *patch.parts, kind, lengths.area(patch.area), lengths.length(patch.gap), patch.fit)
@@ -27,7 +39,9 @@ def render(design: Design) -> RenderableType:
     if contacts.interferences:
         sizes = (f"volume {unit}³", f"depth {unit}")
         title = "\nOverlapping solids"
-        overlaps = Rows("part", "part", *sizes, f"at {lengths.unit}", "kind", title=title, right=sizes, keys=2)
+        overlaps = Rows(
+            "part", "part", *sizes, f"at {lengths.unit}", "kind", title=title, right=sizes, keys=2, names=["part"]
+        )
         for overlap in contacts.interferences:
             overlaps.add(
                 *overlap.parts,
@@ -41,7 +55,9 @@ def render(design: Design) -> RenderableType:
         applied = "not applied; [fasteners] infer = true does"
         if design.assembly.infer_fasteners:
             applied = "applied, except where contact decides, or groups or stated joints keep apart"
-        hints = Rows("part", "part", "suggests", "confidence", "evidence", title=f"\nSuggestions ({applied})", keys=2)
+        title = f"\nSuggestions ({applied})"
+        headings = ("part", "part", "suggests", "confidence", "evidence")
+        hints = Rows(*headings, title=title, keys=2, names=["part"], texts=["evidence"])
         for hint in contacts.suggestions:
             hints.add(*hint.parts, "one body" if hint.fastens else "an axis", hint.confidence, hint.evidence)
         items.append(hints)

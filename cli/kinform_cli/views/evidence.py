@@ -10,8 +10,9 @@ from kinform.design import Design
 from kinform.foundation.words import angle, counted, length
 from kinform.kinematics import Insight, insight
 from kinform.model.kinematics import Joint, Release
+from kinform_cli.constants import NO_TURN
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, number, vector
+from kinform_cli.text import Lengths, singular, vector
 from kinform_cli.views.joints import blockers, sentence
 
 
@@ -41,10 +42,18 @@ def render(design: Design, name: str) -> RenderableType:
 def _uncertainty(joint: Joint, lengths: Lengths) -> list[str]:
     """How well the fits know its axis and place."""
     known = [
-        *([f"axis known to {angle(joint.axis_uncertainty, 2)}"] if joint.axis_uncertainty else []),
-        *([f"place to {length(joint.point_uncertainty, lengths.unit, 2)}"] if joint.point_uncertainty else []),
+        *([f"axis known to {angle(joint.axis_uncertainty, 2)}"] if joint.axis_uncertainty > NO_TURN else []),
+        *([f"place to {length(joint.point_uncertainty, lengths.unit, 2)}"] if _tells(joint, lengths) else []),
     ]
-    return [f"{', '.join(known)} (standard uncertainty, by the fits)"] if known else []
+    if known:
+        return [f"{', '.join(known)} (standard uncertainty, by the fits)"]
+    exact = joint.axis_uncertainty or joint.point_uncertainty
+    return ["axis and place are known as well as the meshes tell them"] if exact else []
+
+
+def _tells(joint: Joint, lengths: Lengths) -> bool:
+    """Whether the uncertainty of its place is more than rounding."""
+    return bool(joint.point_uncertainty and joint.point_uncertainty > lengths.nothing)
 
 
 def _patches(evidence: Insight, lengths: Lengths) -> Rows:
@@ -53,7 +62,7 @@ def _patches(evidence: Insight, lengths: Lengths) -> Rows:
     title = f"\n{counted(len(evidence.patches), 'patch', 'patches')}"
     numeric = (f"gap {unit}", f"area {unit}²", "weight", "rows")
     headings = ("patch", "kind", "part", "part", "surfaces", "fit", *numeric, "role")
-    rows = Rows(*headings, title=title, right=(*numeric, "patch"), keys=4)
+    rows = Rows(*headings, title=title, right=(*numeric, "patch"), keys=4, names=["part"])
     for item in evidence.patches:
         patch = item.patch
         kind = f"{patch.kind} (one side)" if patch.one_sided else patch.kind
@@ -70,10 +79,10 @@ def _values(evidence: Insight) -> list[RenderableType]:
     lines: list[RenderableType] = [Text("\nSingular values", style="bold")]
     if not evidence.samples or not all(value == value for value in joint.singular_values):
         return [*lines, "  none: contact does not decide this joint"]
-    lines.append(f"  {', '.join(number(float(value)) for value in joint.singular_values)}")
+    lines.append(f"  {', '.join(singular(float(value)) for value in joint.singular_values)}")
     lines.append(f"  from {counted(evidence.samples, 'sample')}; {counted(evidence.rows, 'row')} in J")
-    last = "none is free" if evidence.last_free is None else f"last free {number(evidence.last_free)}"
-    first = "none is held" if evidence.first_held is None else f"first held {number(evidence.first_held)}"
+    last = "none is free" if evidence.last_free is None else f"last free {singular(evidence.last_free)}"
+    first = "none is held" if evidence.first_held is None else f"first held {singular(evidence.first_held)}"
     lines.append(f"  {last}, {first}; free is below {evidence.free:g}, held above {evidence.held:g}, ambiguous between")
     return lines
 

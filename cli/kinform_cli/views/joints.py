@@ -15,7 +15,7 @@ from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform.reports.phrases import answers_line
 from kinform_cli.constants import MOST_WAYS
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, degrees, ground_note, number, vector
+from kinform_cli.text import Lengths, degrees, ground_note, singular, vector
 
 
 def render(design: Design) -> RenderableType:
@@ -26,7 +26,15 @@ def render(design: Design) -> RenderableType:
     run = design.simulation
     ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
     headings = ("name", "type", "axis", f"point {lengths.unit}", "free", "status")
-    rows = Rows(*headings, *(["range"] if ranges else []), "evidence", title=title, right=["free"])
+    rows = Rows(
+        *headings,
+        *(["range"] if ranges else []),
+        "evidence",
+        title=title,
+        right=["free"],
+        names=["name"],
+        texts=["evidence"],
+    )
     for joint in kinematics.joints:
         rows.add(
             joint.name,
@@ -58,9 +66,9 @@ def _intended(design: Design, lengths: Lengths) -> list[RenderableType]:
         return []
     given = answers(design)
     title = f"\nIntended joints: {answers_line(answer_counts(given))}"
-    rows = Rows("intended", "type", "answer", "because", title=title)
+    rows = Rows("intended", "type", "answer", "because", title=title, names=["intended"], texts=["because"])
     for one in given:
-        gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.unit}"
+        gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.small}"
         rows.add(one.name, one.type, one.answer, one.free or one.blocked_by or gap)
     return [rows]
 
@@ -128,7 +136,7 @@ def _leaving(kinematics: Kinematics) -> list[RenderableType]:
 def _doubt(joint: Joint, lengths: Lengths) -> list[RenderableType]:
     lines: list[RenderableType] = [Text(f"\n{joint.name} is {joint.status}: {joint.reason}")]
     if joint.status == "ambiguous":
-        lines.append(f"  singular values: {', '.join(number(float(value)) for value in joint.singular_values)}")
+        lines.append(f"  singular values: {', '.join(singular(float(value)) for value in joint.singular_values)}")
     return [*lines, *blockers(joint, lengths)]
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 
 from rich.console import RenderableType
 from rich.text import Text
 
 from kinform.design import Design
+from kinform.foundation import words
 from kinform.model.mass import MassProperties
+from kinform_cli.constants import HEAVY
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, Lengths, number
 
@@ -43,18 +46,24 @@ def render(design: Design) -> RenderableType:
 def _table(title: str, rows: Sequence[MassProperties], lengths: Lengths) -> RenderableType:
     if rows and all(row.mass is None for row in rows):
         return Text(f"{title}: none is known", style="bold")
-    grid = Rows(
-        "name", "mass kg", f"centre of mass {lengths.unit}", "principal moments kg·m²", "from", title=title,
-        right=["mass kg"],
-    )  # fmt: skip
+    mass_unit, grams = ("kg", 1.0) if _most(row.mass for row in rows) >= HEAVY else ("g", 1e3)
+    moment_unit, moments = words.moment_unit(_most(moment for row in rows for moment in row.principal_moments))
+    mass = f"mass {mass_unit}"
+    headings = ("name", mass, f"centre of mass {lengths.unit}", f"principal moments {moment_unit}", "from")
+    grid = Rows(*headings, title=title, right=[mass], names=["name"])
     for row in rows:
         weighed = row.mass is not None
         grid.add(
             row.name,
-            number(row.mass),
+            NONE if row.mass is None else number(grams * row.mass),
             lengths.point(row.centre_of_mass),
-            ", ".join(f"{moment:.3g}" for moment in row.principal_moments) if weighed else NONE,
+            ", ".join(words.number(moments * moment, 3) for moment in row.principal_moments) if weighed else NONE,
             (row.origin if weighed else NONE)
-            + (f" (±{100 * row.mass_bound:.2g} %)" if weighed and row.mass_bound > 0 else ""),
+            + (f" ±{100 * row.mass_bound:.2g} %" if weighed and row.mass_bound > 0 else ""),
         )
     return grid
+
+
+def _most(values: Iterable[float | None]) -> float:
+    """The greatest of those that are known."""
+    return max((value for value in values if value is not None and math.isfinite(value)), default=0.0)

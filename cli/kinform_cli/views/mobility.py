@@ -94,7 +94,8 @@ def _freedoms(design: Design) -> Rows:
     assert kinematics is not None
     lengths, motions = Lengths.of(design.assembly), Motions.of(kinematics)
     joints = {str(joint.name): joint for joint in kinematics.joints}
-    grid = Rows("freedom", "driven at", "moves", "follow", title="Freedoms")
+    texts = ("freedom", "moves", "follow")
+    grid = Rows("freedom", "driven at", "moves", "follow", title="Freedoms", names=["driven at"], texts=texts)
     for freedom in kinematics.mobility.named:
         rates = follower_rates(freedom, joints, lengths.unit, lengths.metres)
         grid.add(
@@ -113,7 +114,8 @@ def _freedoms(design: Design) -> Rows:
 def _redundancies(design: Design) -> Rows:
     """Where constraints hold nothing more."""
     assert design.kinematics is not None
-    grid = Rows("rows", "too many, and where", title="Redundant constraints", right=["rows"], keys=2)
+    where = "too many, and where"
+    grid = Rows("rows", where, title="Redundant constraints", right=["rows"], keys=2, texts=[where])
     for redundancy in design.kinematics.mobility.redundancies:
         within = " (contacts of one joint: not counted above)" if redundancy.kind == "pair" else ""
         grid.add(str(redundancy.rows), redundancy.text + within)

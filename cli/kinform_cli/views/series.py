@@ -17,13 +17,15 @@ from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.constants import REST, SAME_PEAK, SPARK_WIDTH
 from kinform_cli.tables import Rows
-from kinform_cli.text import Lengths, degrees, number
+from kinform_cli.text import Lengths, degrees, number, scaled
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 PLAIN = "_.:-=+*#"
 
 Series = tuple[str, NDArray[np.float64], bool]
 """(name, values (T,), whether they are angles)."""
+Measured = tuple[str, str, NDArray[np.float64]]
+"""(name, unit, values (T,) in it)."""
 
 
 def render(run: Simulation, lengths: Lengths) -> Rows | None:
@@ -32,7 +34,16 @@ def render(run: Simulation, lengths: Lengths) -> Rows | None:
     if len(run.time) < 2 or not series:
         return None
     end = number(float(run.time[-1]))
-    rows = Rows("series", "lowest", "at s", "highest", "at s", f"0 to {end} s", right=("lowest", "at s", "highest"))
+    rows = Rows(
+        "series",
+        "lowest",
+        "at s",
+        "highest",
+        "at s",
+        f"0 to {end} s",
+        right=("lowest", "at s", "highest"),
+        names=["series"],
+    )
     for name, values, angles in series:
         least, most = _extremes(values)
         rows.add(
@@ -55,7 +66,7 @@ def _extremes(values: NDArray[np.float64]) -> tuple[int, int]:
 
 def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
     """Positions, then what moves them, then energies; what is not known throughout is left out."""
-    efforts: list[Series] = []
+    efforts: list[Measured] = []
     columns = list(coordinates(run))
     rest = {
         unit: REST * np.nanmax(np.abs(run.joint_position[:, [c for *_, u, c in columns if u == unit]]), initial=0.0)
@@ -69,12 +80,12 @@ def _series(run: Simulation, lengths: Lengths) -> Iterator[Series]:
         yield label, values / lengths.metres if unit == "m" else values, angles
         effort = run.joint_effort[:, column]
         if np.isfinite(effort).any():
-            efforts.append((f"{name} {'N' if unit == 'm' else 'N·m'}", effort, False))
+            efforts.append((name, "N" if unit == "m" else "N·m", effort))
     yield from _beyond_rounding(efforts)
     yield from _reactions(run)
     if len(run.energy):
-        energies = [(name, run.energy[:, k], False) for k, name in enumerate(("kinetic J", "potential J"))]
-        yield from _beyond_rounding([series for series in energies if np.isfinite(series[1]).any()])
+        energies = [(name, "J", run.energy[:, k]) for k, name in enumerate(("kinetic", "potential"))]
+        yield from _beyond_rounding([item for item in energies if np.isfinite(item[2]).any()])
 
 
 def _reactions(run: Simulation) -> Iterator[Series]:
@@ -83,14 +94,22 @@ def _reactions(run: Simulation) -> Iterator[Series]:
     if len(wrenches) != len(run.time) or not np.isfinite(wrenches).all():
         return
     for k, name in enumerate(run.joint_names):
-        yield f"{name} |F| N", np.linalg.norm(wrenches[:, k, 3:], axis=1), False
-        yield f"{name} |τ| N·m", np.linalg.norm(wrenches[:, k, :3], axis=1), False
+        yield _in_words(f"{name} |F|", "N", np.linalg.norm(wrenches[:, k, 3:], axis=1))
+        yield _in_words(f"{name} |τ|", "N·m", np.linalg.norm(wrenches[:, k, :3], axis=1))
 
 
-def _beyond_rounding(series: list[Series]) -> list[Series]:
+def _beyond_rounding(measured: list[Measured]) -> Iterator[Series]:
     """Those that are more than rounding beside the greatest of them."""
-    most = max((float(np.nanmax(np.abs(values))) for _, values, _ in series), default=0.0)
-    return [item for item in series if float(np.nanmax(np.abs(item[1]))) > REST * most]
+    sizes = [float(np.nanmax(np.abs(values))) for *_, values in measured]
+    for item, size in zip(measured, sizes, strict=True):
+        if size > REST * max(sizes):
+            yield _in_words(*item)
+
+
+def _in_words(name: str, unit: str, values: NDArray[np.float64]) -> Series:
+    """The series in thousandths or thousands of its unit where that reads better."""
+    shown, factor = scaled(unit, float(np.nanmax(np.abs(values))))
+    return f"{name} {shown}", factor * values, False
 
 
 def _value(value: float, angles: bool) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from rich.console import RenderableType
 from rich.text import Text
@@ -13,10 +14,11 @@ from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.constants import BALANCED, REST
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, degrees, number
+from kinform_cli.text import Lengths, degrees, number, quantity
 from kinform_cli.views import series
 
 _NUMBERS = ("start", "end", "lowest", "highest", "fastest")
+_SHOWN: dict[str, Any] = {"names": ["joint"], "texts": ["stopped by"]}
 _COMPONENTS = ("τx", "τy", "τz", "Fx", "Fy", "Fz")
 
 
@@ -26,7 +28,7 @@ def render(design: Design) -> RenderableType:
     assert run is not None
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
-        rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS)
+        rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS, names=["joint"])
         for name, kind, unit, column in coordinates(run):
             values = run.joint_position[:, column]
             shown = [_value(unit, float(x), lengths) for x in (values[0], values[-1], values.min(), values.max())]
@@ -59,15 +61,15 @@ def _drives(run: Simulation) -> list[RenderableType]:
     if not run.drives:
         return []
     slides = dict(zip(run.joint_names, run.joint_types, strict=True))
-    columns = ("peak", "RMS", "peak power W", "work J")
-    rows = Rows("drive on", "kind", *columns, title="\ndrives", right=columns)
+    columns = ("peak", "RMS", "peak power", "work")
+    rows = Rows("drive on", "kind", *columns, title="\ndrives", right=columns, names=["drive on"])
     for use in run.drives:
         unit = "N" if slides.get(use.joint) == "prismatic" else "N·m"
-        efforts = (f"{number(value)} {unit}" for value in (use.peak, use.rms))
+        efforts = (quantity(value, unit) for value in (use.peak, use.rms))
         # what goes in and comes out again leaves rounding, which differs between machines
         rest = REST * use.peak_power * float(run.time[-1] - run.time[0])
         work = use.work if abs(use.work) > rest else 0.0
-        rows.add(use.joint, use.kind.replace("_", " "), *efforts, number(use.peak_power), number(work))
+        rows.add(use.joint, use.kind.replace("_", " "), *efforts, quantity(use.peak_power, "W"), quantity(work, "J"))
     return [rows]
 
 
@@ -76,7 +78,7 @@ def _gears(run: Simulation) -> list[RenderableType]:
     if not run.gear_names or not len(run.gear_effort):
         return []
     columns = ("peak on the first joint", "on the second", "between the teeth N")
-    rows = Rows("gear", *columns, title="\nefforts that gears pass on (N·m or N)", right=columns)
+    rows = Rows("gear", *columns, title="\nefforts that gears pass on (N·m or N)", right=columns, names=["gear"])
     for k, name in enumerate(run.gear_names):
         peaks = (*abs(run.gear_effort[:, k]).max(axis=0), abs(run.gear_force[:, k]).max())
         rows.add(name, *(number(float(peak)) if math.isfinite(peak) else "not known" for peak in peaks))
@@ -99,7 +101,7 @@ def _ranges(run: Simulation, lengths: Lengths) -> list[RenderableType]:
     """How far each joint goes to both sides, and what stops it."""
     if not run.ranges:
         return []
-    rows = Rows("joint", "from", "to", "stopped by", title="ranges until parts meet", right=("from", "to"))
+    rows = Rows("joint", "from", "to", "stopped by", title="ranges until parts meet", right=("from", "to"), **_SHOWN)
     reasons = []
     for item in run.ranges:
         unit = "m" if item.slides else "rad"
@@ -129,7 +131,7 @@ def _energy(run: Simulation) -> str:
     return (
         "energy: the balance holds to eight digits"
         if exact
-        else f"energy: the balance is off by up to {number(lost)} J"
+        else f"energy: the balance is off by up to {quantity(lost, 'J')}"
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinform.changes.behaviours import BodyMass, Snapshot
 from kinform.changes.change import Change, Measure, signed
-from kinform.foundation.words import number
+from kinform.foundation.words import mass, moment_unit, number
 
 
 def mass_changes(before: Snapshot, after: Snapshot, now: Mapping[str, str], measure: Measure) -> Iterator[Change]:
@@ -27,7 +27,7 @@ def _mass(old: BodyMass, new: BodyMass, measure: Measure) -> Iterator[Change]:
         message = "mass is no longer known" if new.mass is None else "mass is known now"
         yield Change("mass", subject, message, _kg(old.mass), _kg(new.mass))
     elif old.mass is not None and new.mass is not None and not measure.within.masses_agree(old.mass, new.mass):
-        message = f"mass {signed(new.mass - old.mass, _grams)}"
+        message = f"mass {signed(new.mass - old.mass, mass)}"
         yield Change("mass", subject, message, _kg(old.mass), _kg(new.mass), new.mass - old.mass, "kg")
     if old.centre_of_mass is not None and new.centre_of_mass is not None:
         away = float(np.linalg.norm(np.subtract(new.centre_of_mass, old.centre_of_mass)))
@@ -44,17 +44,14 @@ def _mass(old: BodyMass, new: BodyMass, measure: Measure) -> Iterator[Change]:
             worst = max(abs(now - was) for was, now in zip(one, two, strict=True))
             if worst > measure.within.share * largest:
                 message = f"{what} changed by up to {100.0 * worst / largest:.3g} %"
-                yield Change(kind, subject, message, _moments(one), _moments(two), worst, "kg·m²")
+                yield Change(kind, subject, message, _moments(one, largest), _moments(two, largest), worst, "kg·m²")
                 return
 
 
-def _grams(kilograms: float) -> str:
-    return f"{number(1e3 * kilograms)} g"
-
-
 def _kg(kilograms: float | None) -> str | None:
-    return None if kilograms is None else f"{number(kilograms, 6)} kg"
+    return None if kilograms is None else mass(kilograms, 6)
 
 
-def _moments(moments: Iterable[float]) -> str:
-    return "(" + ", ".join(number(x) for x in moments) + ") kg·m²"
+def _moments(moments: Iterable[float], largest: float) -> str:
+    unit, factor = moment_unit(largest)
+    return "(" + ", ".join(number(factor * x) for x in moments) + f") {unit}"

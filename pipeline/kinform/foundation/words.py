@@ -8,6 +8,15 @@ from collections.abc import Callable, Iterable, Sequence
 
 from kinform.foundation.units import METRES_PER_UNIT
 
+# not in `constants`, which costs the import of numpy
+
+LEAST_JOINT = 9
+"""Characters of the name of a joint below which its bodies are not shortened each by itself: both keep three."""
+
+GREAT_MOMENT, FINE_MOMENT = 1.0, 1e-3
+"""kg·m²: moments of inertia are shown in kg·m² where one is greater than the first, in kg·mm² where one is greater than
+the second, else in g·mm²; so they have no exponents. A choice."""
+
 
 def number(value: float, digits: int = 4) -> str:
     """The value with so many significant digits, without an exponent where that reads well."""
@@ -55,6 +64,13 @@ def volume(value: float, units: str) -> str:
 def mass(value: float, digits: int = 4) -> str:
     """A mass (kg): "12.5 g"."""
     return f"{number(1e3 * value, digits)} g" if abs(value) < 1.0 else f"{number(value, digits)} kg"
+
+
+def moment_unit(most: float) -> tuple[str, float]:
+    """The unit in which moments of inertia up to this one (kg·m²) read well, and how many of it are one kg·m²."""
+    if most > GREAT_MOMENT:
+        return "kg·m²", 1.0
+    return ("kg·mm²", 1e6) if most > FINE_MOMENT else ("g·mm²", 1e9)
 
 
 def angle(value: float, digits: int = 3) -> str:
@@ -106,6 +122,15 @@ def shortened(name: str, room: int) -> str:
         return name
     kept = max(room - 1, 2)
     return f"{name[: kept - kept // 2]}…{name[-(kept // 2) :]}"
+
+
+def shortened_ends(name: str, room: int) -> str:
+    """The name shortened in its middle; that of a joint between two bodies in both of theirs."""
+    first, between, second = name.partition("~")
+    if not between or len(name) <= room or room < LEAST_JOINT:
+        return shortened(name, room)
+    start = shortened(first, room - 1 - min((room - 1) // 2, len(second)))
+    return f"{start}~{shortened(second, room - 1 - len(start))}"
 
 
 def counted(count: int, noun: str, plural: str | None = None) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from kinform.design import Design
-from kinform.foundation.words import counted, one_line, shortened
+from kinform.foundation.words import counted, one_line, shortened, shortened_ends
 from kinform.model.findings import CheckReport
 from kinform.reports import constants
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_line
@@ -146,18 +146,7 @@ def _names(subject: Sequence[str], room: int) -> str:
     names = [one_line(name) for name in subject]
     share = (room - 2 * (len(names) - 1)) // len(names)
     whole = ", ".join(names)
-    return whole if len(whole) <= room else _cut(", ".join(_ends(name, share) for name in names), room)
-
-
-def _ends(name: str, room: int) -> str:
-    """The name shortened in its middle; that of a joint between two bodies in both of theirs."""
-    first, between, second = name.partition("~")
-    if not between or len(name) <= room or room < constants.LEAST_JOINT:
-        return shortened(name, room)
-    half = (room - 1) // 2
-    return (
-        f"{shortened(first, room - 1 - min(half, len(second)))}~{shortened(second, room - 1 - min(half, len(first)))}"
-    )
+    return whole if len(whole) <= room else _cut(", ".join(shortened_ends(name, share) for name in names), room)
 
 
 def _cut(text: str, room: int) -> str:

@@ -24,9 +24,6 @@ COMPARED = ("KF3", "KF4")
 LEAST_BESIDE = 12
 """Characters beside a rule below which a finding goes below it: two shortened names and what was found need so many."""
 
-LEAST_JOINT = 9
-"""Characters of the name of a joint below which its bodies are not shortened each by itself: both keep three."""
-
 BRIEF_NAME = 28
 """Characters of the name of the ground: with the rest of its line it fits in 80."""
 
