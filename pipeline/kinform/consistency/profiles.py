@@ -37,7 +37,7 @@ DESCRIPTION: Mapping[str, str] = {
 }
 """Severity of each rule's findings at most, where the profile is `description`."""
 
-SETTLED = frozenset({"KF204", "KF303", "KF402", "KF406", "KF901", "KF903", "KF904"})
+SETTLED = frozenset({"KF204", "KF303", "KF402", "KF403", "KF404", "KF406", "KF901", "KF903", "KF904"})
 """Rules whose doubts, in a description, are notes and leave nothing undecided: meshes that are for looking at do not
 say more."""
 

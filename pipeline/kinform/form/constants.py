@@ -171,6 +171,12 @@ INCLUDES = 32
 REPLICAS_MOST = 20_000
 """Elements that `<replicate>` makes, at most: what is made of more are ropes and grains, not machines."""
 
+ATTACHED_DEEP = 16
+"""Models in models in models that `<attach>` of an MJCF may name: arms have hands, and hands have fingers."""
+
+ATTACHED_MOST = 20_000
+"""Bodies that `<attach>` makes, at most, as for `<replicate>`: a few files that attach each other twice make 2ⁿ."""
+
 PRIMITIVES_KEPT = 256
 """Meshes of primitive solids that are kept for parts of the same shape: a sphere takes 0.1 s to make."""
 

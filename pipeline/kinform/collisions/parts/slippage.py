@@ -107,8 +107,10 @@ class OwnMotions:
 
 
 def _own_motions(surface: Surface) -> Array:
-    """(m, 6) twists that map the whole surface onto itself."""
+    """(m, 6) twists that map the whole surface onto itself; of a plane of facets without area none are known."""
     axis, point = surface.axis, surface.point
+    if surface.kind == "plane" and not axis.any():
+        return np.zeros((0, 6))
     slide = np.concatenate([np.zeros(3), axis])
     turn = np.concatenate([axis, cross(point, axis)])
     if surface.kind == "plane":

@@ -35,6 +35,10 @@ class MeshFiles:
         self.home = _home(self.folder)
         """The package of the description: it may name what lies below."""
 
+    def beside(self, description: Path) -> MeshFiles:
+        """The same for another description that this one names."""
+        return MeshFiles(description, self.packages, self._environment)
+
     def find(self, stated: str, folder: Path | None = None) -> Found:
         """The file that a description names; `folder` is where plain paths begin, else that of the description."""
         text = unquote(stated.strip()) if "://" in stated else stated.strip()

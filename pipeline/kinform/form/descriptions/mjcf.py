@@ -1,7 +1,8 @@
 """MJCF: bodies in bodies, as MuJoCo reads them. Bodies are links; a body without joint is fixed to the one around it.
 
 The frame F is the world's. The drawn pose is that of the file, where joints have their `ref`; several joints of a body
-go through stick bodies. Pairs of `<connect>` make a hinge. What is not carried is listed by name.
+go through stick bodies. Pairs of `<connect>` make a hinge. Models that are attached are read by their own files
+(`mjcf_attach`). What is not carried is listed by name.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ from lxml import etree
 
 from kinform.form.constants import AXIS_LENGTH
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of, xml_text
-from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.mjcf_attach import Budget, Content, Models, attached
 from kinform.form.descriptions.mjcf_closures import closures, ratios
-from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes, from_z, mesh_assets
+from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, Includes
 from kinform.form.descriptions.mjcf_replicas import Replicas
-from kinform.form.descriptions.poses import place, pose
-from kinform.form.descriptions.robot import Inertial, Limits, Link, Robot, RobotJoint, Shape, Solid, Stated
+from kinform.form.descriptions.mjcf_shapes import Shapes
+from kinform.form.descriptions.poses import place
+from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoint, Shape
 from kinform.form.descriptions.tree import Count, distinct
 from kinform.form.problems import Problems
 from kinform.foundation.meant import did_you_mean, in_quotes
@@ -36,18 +38,44 @@ _BODY = ("body", "joint", "freejoint", "geom", "inertial", "site", "camera", "li
 
 def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:
     """The robot of an MJCF text; None where nothing can be made of it, after noting why."""
-    root = parse_xml(data, file, problems)
-    if root is None:
+    budget = Budget((path.resolve(),))
+    reader, root, changed = _opened(path, data, Xml(file, problems), meshes, budget)
+    robot = None if reader is None else reader.robot(root, path.stem)
+    if robot is None:
         return None
-    xml = Xml(file, problems)
+    # what attached models say is in no text that could be written back
+    text = "" if budget.known else _whole(root, data, changed)
+    folders = tuple(sorted(set(robot.folders) | budget.folders))
+    return replace(robot, format="mjcf", text=text, files=tuple(budget.files), folders=folders)
+
+
+def _opened(
+    path: Path, data: bytes, xml: Xml, meshes: MeshFiles, budget: Budget
+) -> tuple[_Reader | None, Element, bool]:
+    """The reader of a text, its root, and whether includes or replicas were put in; no reader after noting why."""
+    root = parse_xml(data, xml.file, xml.problems)
+    if root is None:
+        return None, None, False
     if tag_of(root) != "mujoco":
         xml.complain(root, f"the root is <{tag_of(root)}>, and an MJCF has <mujoco>", "name an MJCF")
-        return None
+        return None, root, False
     includes = Includes(path, xml, meshes)
     includes.expand(root)
+    budget.files += includes.files
     changed = Replicas(xml, Compiler.of(xml, root)).expand(root) or bool(includes.files)
-    robot = _Reader(xml, meshes, root).robot(root, path.stem, tuple(includes.files))
-    return None if robot is None else replace(robot, format="mjcf", text=_whole(root, data, changed))
+    return _Reader(xml, meshes, root, path, budget), root, changed
+
+
+def _model(path: Path, xml: Xml, meshes: MeshFiles, budget: Budget) -> tuple[str, Content] | None:
+    """The name that a model gives itself, and what it holds."""
+    budget.files.append(path)
+    reader, root, _ = _opened(path, path.read_bytes(), xml, meshes, budget)
+    content = None if reader is None else reader.content(root)
+    if reader is None or content is None:
+        return None
+    budget.notes += reader.left.sentences(xml.file)
+    budget.folders |= reader.shapes.folders
+    return root.get("model") or path.stem, content
 
 
 def _whole(root: Element, data: bytes, changed: bool) -> str:
@@ -60,19 +88,39 @@ def _whole(root: Element, data: bytes, changed: bool) -> str:
 
 
 class _Reader:
-    def __init__(self, xml: Xml, meshes: MeshFiles, root: Element):
-        self.xml, self.meshes, self.left = xml, meshes, Count()
+    def __init__(self, xml: Xml, meshes: MeshFiles, root: Element, path: Path, budget: Budget):
+        self.xml, self.left, self.budget = xml, Count(), budget
         self.compiler = Compiler.of(xml, root)
         self.defaults = Defaults(xml, root)
-        self.assets = mesh_assets(xml, root, self.compiler, self.defaults)
+        self.shapes = Shapes(xml, root, meshes, self.compiler, self.defaults, self.left)
+        self.models = Models(xml, root, path, meshes, budget, _model)
         self.links: dict[str, Link] = {}
+        self.above: dict[str, str] = {}
         self.joints: dict[str, RobotJoint] = {}
+        self.loops: list[RobotJoint] = []
+        self.ratios: list[Ratio] = []
         self.sites: dict[str, tuple[str, Array]] = {}
-        self.folders: set[Path] = set()
         self.free_link, self.free_joint = distinct({WORLD}), distinct(set())
         self.efforts = dict(self._efforts(root))
 
-    def robot(self, root: Element, name: str, files: tuple[Path, ...]) -> Robot | None:
+    def robot(self, root: Element, name: str) -> Robot | None:
+        """All of the description; None after noting why there is none."""
+        if self.content(root) is None:
+            return None
+        self._leave_out_world(self.loops)
+        return Robot(
+            name=(root.get("model") or name).replace("/", "_") or name,
+            at=self.xml.at(root),
+            links=tuple(self.links.values()),
+            joints=(*self.joints.values(), *self.loops),
+            ratios=tuple(self.ratios),
+            root=WORLD if WORLD in self.links else next(iter(self.links), None),
+            notes=(*self.left.sentences(self.xml.file), *dict.fromkeys(self.budget.notes)),
+            folders=tuple(sorted(self.shapes.folders)),
+        )
+
+    def content(self, root: Element) -> Content | None:
+        """All that is in the world; None after noting that there is none."""
         xml = self.xml
         for child in xml.children(root):
             if tag_of(child) not in _QUIET:
@@ -84,19 +132,9 @@ class _Reader:
         self.links[WORLD] = Link(WORLD, np.eye(4), xml.at(worlds[0]))
         for world in worlds:
             self._inside(world, WORLD, np.eye(4), world.get("childclass"))
-        loops = closures(xml, root, self.links, self.sites, self.left)
-        self._leave_out_world(loops)
-        return Robot(
-            name=(root.get("model") or name).replace("/", "_") or name,
-            at=xml.at(root),
-            links=tuple(self.links.values()),
-            joints=(*self.joints.values(), *loops),
-            ratios=tuple(ratios(xml, root, self.joints, self.left)),
-            root=WORLD if WORLD in self.links else next(iter(self.links), None),
-            notes=self.left.sentences(xml.file),
-            files=files,
-            folders=tuple(sorted(self.folders)),
-        )
+        self.loops += closures(xml, root, self.links, self.sites, self.left)
+        self.ratios += ratios(xml, root, self.joints, self.left)
+        return Content(self.links, self.joints, tuple(self.loops), tuple(self.ratios), self.sites, self.above)
 
     def _leave_out_world(self, loops: list[RobotJoint]) -> None:
         """The world is no link where it has no geometry, and at most one body is fixed to it."""
@@ -118,8 +156,10 @@ class _Reader:
             elif tag == "frame":
                 inner = X @ self.compiler.pose(self.xml, child, child.attrib)
                 self._inside(child, link, inner, child.get("childclass") or named)
+            elif tag == "attach":
+                self._attach(child, link, X)
             elif tag == "geom":
-                shape, only_seen = self._geom(child, link, X, named)
+                shape, only_seen = self.shapes.geom(child, link, X, named)
                 if shape is not None:
                     (visual if only_seen else collision).append(shape)
             elif tag == "site":
@@ -145,23 +185,55 @@ class _Reader:
         name = self.free_link(stated or f"body {len(self.links)}")
         at = self.xml.at(element)
         inertial = self.xml.child(element, "inertial")
-        stated_mass = None if inertial is None or self.compiler.from_geometry else self._inertial(inertial, name, X)
+        if self.compiler.from_geometry:
+            inertial = None
+        stated_mass = None if inertial is None else self.shapes.inertial(inertial, name, X)
         joints = [j for j in self._joints(element) if self._type(j, named) is not None]
         free = self.xml.child(element, "freejoint") is not None or any(self._type(j, named) == "" for j in joints)
-        written = None if inertial is None or self.compiler.from_geometry else self._stated(inertial)
+        written = None if inertial is None else self.shapes.stated(inertial)
         self.links[name] = Link(name, X, at, inertial=stated_mass, stated=written)
+        self.above[name] = above
         if not free:
             between = above
             for k, joint in enumerate(joints):
                 below = name if k == len(joints) - 1 else self.free_link(f"{name} {k + 1}")
                 if below != name:
                     self.links[below] = Link(below, X, self.xml.at(joint))
+                    self.above[below] = name
                 self._joint(joint, between, below, X, named)
                 between = below
             if not joints:
                 label = self.free_joint(f"{name} fixed")
                 self.joints[label] = RobotJoint(label, "fixed", (above, name), at)
         self._inside(element, name, X, named)
+
+    def _attach(self, element: Element, link: str, X: Array) -> None:
+        """Put what a model holds into a body."""
+        content = self.models.content(element)
+        new = None if content is None else attached(self.xml, element, content, link, X)
+        if new is None:
+            return
+        twice = [name for name in new.links if name in self.links and name != link]
+        twice += [name for name in new.joints if name in self.joints]
+        if twice:
+            wrong = f"<attach>: there is a {in_quotes(twice[0])} already"
+            self.xml.complain(element, wrong, "give another prefix")
+            return
+        for name, other in new.links.items():
+            old = self.links.get(name)
+            if old is None:
+                self.links[self.free_link(name)] = other
+            else:  # geometry of the model's world
+                seen = () if other.visual is other.collision else other.visual
+                visual, collision = (*old.visual, *seen), (*old.collision, *other.collision)
+                self.links[name] = replace(old, visual=visual, collision=collision)
+        for name, joint in new.joints.items():
+            limits = [v for v in (joint.effort, self.efforts.get(name)) if v is not None]
+            self.joints[self.free_joint(name)] = replace(joint, effort=min(limits) if limits else None)
+        self.above |= {name: around for name, around in new.above.items() if name not in self.above and name != link}
+        self.loops += new.loops
+        self.ratios += new.ratios
+        self.sites |= new.sites
 
     def _joints(self, element: Element) -> Iterator[Element]:
         for child in self.xml.children(element, "joint", "frame"):
@@ -260,70 +332,3 @@ class _Reader:
         limits = [max(map(abs, own))] if len(own) == 2 else []
         limits += [self.efforts[name]] if name in self.efforts else []
         return min(limits) if limits and min(limits) > 0.0 else None
-
-    def _inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
-        xml, said = self.xml, element.attrib
-        mass = xml.number(element, "mass") or 0.0
-        full = xml.vector(element, "fullinertia", (0.0,) * 6)
-        diagonal = xml.vector(element, "diaginertia", (0.0,) * 3)
-        if mass <= 0.0:
-            self.left.notes.append(f"body {in_quotes(name)} states the mass {mass:g} kg: taken as not stated")
-            return None
-        six = full if "fullinertia" in said else (*diagonal, 0.0, 0.0, 0.0)
-        return placed(mass, X @ self.compiler.pose(xml, element, said), symmetric(*six), xml.at(element))
-
-    def _stated(self, element: Element) -> Stated | None:
-        """What an inertial says, word for word; None without a mass."""
-        mass = self.xml.number(element, "mass")
-        full = self.xml.vector(element, "fullinertia", (0.0,) * 6)
-        diagonal = self.xml.vector(element, "diaginertia", (0.0,) * 3)
-        six = full if "fullinertia" in element.attrib else (*diagonal, 0.0, 0.0, 0.0)
-        return None if mass is None else Stated(mass, six, self.xml.at(element))
-
-    def _geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
-        """The shape of a geom, and whether it is seen only: it collides with nothing."""
-        xml, said = self.xml, self.defaults.said(element, named)
-        kind = said.get("type", "mesh" if "mesh" in said else "sphere")
-        seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
-        X_FG = X @ self.compiler.pose(xml, element, said)
-        name = (said.get("name") or "").replace("/", "_") or None
-        if kind == "mesh" or (kind == "sdf" and "mesh" in said):
-            return self._mesh(element, said, link, X_FG, name), seen
-        if kind in ("plane", "hfield", "sdf") or "mesh" in said:
-            self.left.add(f"geom of type {kind}" + (" fitted to a mesh" if "mesh" in said else ""))
-            return None, seen
-        size = list(xml.numbers(element, said.get("size", ""), "size", None) or ())
-        if "fromto" in said:
-            ends = np.array(xml.numbers(element, said["fromto"], "fromto", 6) or (0.0,) * 5 + (1.0,)).reshape(2, 3)
-            X_FG = X @ pose(from_z(ends[0] - ends[1]), 0.5 * (ends[0] + ends[1]))
-            half = 0.5 * float(np.linalg.norm(ends[0] - ends[1]))
-            size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*(size[:1] * 2), half]
-        count = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}.get(kind)
-        if count is None:
-            xml.complain(element, f"geom type {in_quotes(kind)} is not known", "give box, cylinder, sphere or mesh")
-            return None, seen
-        if len(size) < count or min(size[:count]) <= 0.0:
-            xml.complain(element, f"a {kind} of {in_quotes(link)} needs {count} positive sizes", 'give size="…"')
-            return None, seen
-        sizes = {"box": [2.0 * s for s in size[:3]], "cylinder": [size[0], 2.0 * size[-1]]}.get(kind, size[:count])
-        if kind in ("capsule", "cylinder"):
-            sizes = [size[0], 2.0 * size[1]]
-        return Shape(name, Solid(kind, tuple(sizes)), (1.0, 1.0, 1.0), X_FG, xml.at(element)), seen
-
-    def _mesh(self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None) -> Shape | None:
-        stated = said.get("mesh", "")
-        asset = self.assets.get(stated)
-        if asset is None:
-            wrong = f"body {in_quotes(link)}: there is no mesh {in_quotes(stated)}"
-            self.xml.complain(element, wrong, did_you_mean(stated, self.assets, "the meshes"))
-            return None
-        if not asset.file:
-            self.left.add("mesh without file")
-            return None
-        found = self.meshes.find(asset.file, self.meshes.folder / self.compiler.folder)
-        if found.path is None:
-            self.xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
-            return None
-        if found.folder is not None:
-            self.folders.add(found.folder)
-        return Shape(name, found.path, asset.scale, X @ asset.X, self.xml.at(element))

@@ -9,6 +9,7 @@ from lxml import etree
 
 from kinform.form.constants import REPLICAS_MOST
 from kinform.form.descriptions.elements import FILE, Element, Xml, tag_of
+from kinform.form.descriptions.mjcf_attach import SUFFIX
 from kinform.form.descriptions.mjcf_defaults import Compiler
 from kinform.form.descriptions.poses import pose
 from kinform.foundation.algebra.spatial import quaternions
@@ -73,5 +74,7 @@ class Replicas:
             for inner in twin.iter():
                 if isinstance(inner.tag, str) and inner.get("name") is not None:
                     inner.set("name", inner.get("name") + suffix)
+                if isinstance(inner.tag, str) and tag_of(inner) == "attach":
+                    inner.set(SUFFIX, inner.get(SUFFIX, "") + suffix)
             frame.append(twin)
         return frame

@@ -1,0 +1,95 @@
+"""What the bodies of an MJCF are made of: geoms, the meshes that they name, and stated masses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from kinform.form.descriptions.elements import Element, Xml
+from kinform.form.descriptions.inertials import placed, symmetric
+from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, from_z, mesh_assets
+from kinform.form.descriptions.poses import pose
+from kinform.form.descriptions.robot import Inertial, Shape, Solid, Stated
+from kinform.form.descriptions.tree import Count
+from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.model.arrays import Array
+
+
+class Shapes:
+    """Reads what is in bodies; `folders` are those of its meshes."""
+
+    def __init__(self, xml: Xml, root: Element, meshes: MeshFiles, compiler: Compiler, defaults: Defaults, left: Count):
+        self._xml, self._meshes, self._compiler, self._defaults, self._left = xml, meshes, compiler, defaults, left
+        self._assets = mesh_assets(xml, root, compiler, defaults)
+        self.folders: set[Path] = set()
+
+    def inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
+        """The stated mass of a body whose pose in F is X; None after noting that there is none."""
+        xml, said = self._xml, element.attrib
+        mass = xml.number(element, "mass") or 0.0
+        full = xml.vector(element, "fullinertia", (0.0,) * 6)
+        diagonal = xml.vector(element, "diaginertia", (0.0,) * 3)
+        if mass <= 0.0:
+            self._left.notes.append(f"body {in_quotes(name)} states the mass {mass:g} kg: taken as not stated")
+            return None
+        six = full if "fullinertia" in said else (*diagonal, 0.0, 0.0, 0.0)
+        return placed(mass, X @ self._compiler.pose(xml, element, said), symmetric(*six), xml.at(element))
+
+    def stated(self, element: Element) -> Stated | None:
+        """What an inertial says, word for word; None without a mass."""
+        mass = self._xml.number(element, "mass")
+        full = self._xml.vector(element, "fullinertia", (0.0,) * 6)
+        diagonal = self._xml.vector(element, "diaginertia", (0.0,) * 3)
+        six = full if "fullinertia" in element.attrib else (*diagonal, 0.0, 0.0, 0.0)
+        return None if mass is None else Stated(mass, six, self._xml.at(element))
+
+    def geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
+        """The shape of a geom, and whether it is seen only: it collides with nothing."""
+        xml, said = self._xml, self._defaults.said(element, named)
+        kind = said.get("type", "mesh" if "mesh" in said else "sphere")
+        seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
+        X_FG = X @ self._compiler.pose(xml, element, said)
+        name = (said.get("name") or "").replace("/", "_") or None
+        if kind == "mesh" or (kind == "sdf" and "mesh" in said):
+            return self._mesh(element, said, link, X_FG, name), seen
+        if kind in ("plane", "hfield", "sdf") or "mesh" in said:
+            self._left.add(f"geom of type {kind}" + (" fitted to a mesh" if "mesh" in said else ""))
+            return None, seen
+        size = list(xml.numbers(element, said.get("size", ""), "size", None) or ())
+        if "fromto" in said:
+            ends = np.array(xml.numbers(element, said["fromto"], "fromto", 6) or (0.0,) * 5 + (1.0,)).reshape(2, 3)
+            X_FG = X @ pose(from_z(ends[0] - ends[1]), 0.5 * (ends[0] + ends[1]))
+            half = 0.5 * float(np.linalg.norm(ends[0] - ends[1]))
+            size = [*size[:1], half] if kind in ("capsule", "cylinder") else [*(size[:1] * 2), half]
+        count = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}.get(kind)
+        if count is None:
+            xml.complain(element, f"geom type {in_quotes(kind)} is not known", "give box, cylinder, sphere or mesh")
+            return None, seen
+        if len(size) < count or min(size[:count]) <= 0.0:
+            xml.complain(element, f"a {kind} of {in_quotes(link)} needs {count} positive sizes", 'give size="…"')
+            return None, seen
+        sizes = {"box": [2.0 * s for s in size[:3]], "cylinder": [size[0], 2.0 * size[-1]]}.get(kind, size[:count])
+        if kind in ("capsule", "cylinder"):
+            sizes = [size[0], 2.0 * size[1]]
+        return Shape(name, Solid(kind, tuple(sizes)), (1.0, 1.0, 1.0), X_FG, xml.at(element)), seen
+
+    def _mesh(self, element: Element, said: Mapping[str, str], link: str, X: Array, name: str | None) -> Shape | None:
+        stated = said.get("mesh", "")
+        asset = self._assets.get(stated)
+        if asset is None:
+            wrong = f"body {in_quotes(link)}: there is no mesh {in_quotes(stated)}"
+            self._xml.complain(element, wrong, did_you_mean(stated, self._assets, "the meshes"))
+            return None
+        if not asset.file:
+            self._left.add("mesh without file")
+            return None
+        found = self._meshes.find(asset.file, self._meshes.folder / self._compiler.folder)
+        if found.path is None:
+            self._xml.complain(asset.element, f"mesh {in_quotes(stated)} {found.message}", found.remedy)
+            return None
+        if found.folder is not None:
+            self.folders.add(found.folder)
+        return Shape(name, found.path, asset.scale, X @ asset.X, self._xml.at(element))
