@@ -22,7 +22,7 @@ EXAMPLES = examples(
     "kinform show arm.h5 joints",
     "kinform show arm.h5 joints --format json | jq '.joints[].type'",
     "kinform show arm.h5 joints --joint base~shoulder",
-    "COLUMNS=200 kinform show arm.h5 contacts | grep shoulder    # lines so wide; else 80 off a terminal",
+    "COLUMNS=200 kinform show arm.h5 contacts | grep shoulder    # wider than 80",
     "kinform show arm.h5 mobility --graph arm.svg",
 )
 
