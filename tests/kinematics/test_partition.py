@@ -165,3 +165,21 @@ def test_bodies_guessed_from_several_names_are_unclear_where_contact_still_holds
     placed = partition(whole, contacts.find(whole, found), stated.joints).placed
     assert placed["low"].body == placed["high"].body != placed["base"].body
     assert all(placed[name].either for name in ("base", "low", "high", "lever")) == guessed
+
+
+@pytest.mark.parametrize("tight", ["left", "right"])
+def test_a_pin_stays_where_it_is_tight_and_may_go_with_either(tight):
+    """Neither side holds it along its axis; the area that it touches is greater where it is loose."""
+    height = {name: 6 if name == tight else 9 for name in ("left", "right")}
+    bore = {name: 3.0 if name == tight else 3.1 for name in ("left", "right")}
+    left = box(-30, 6, -6, 6, -height["left"], 0) - rod(bore["left"], -20, 20, 64)
+    right = box(-6, 30, -6, 6, 0.5, 0.5 + height["right"]) - rod(bore["right"], -20, 20, 64)
+    pin = rod(3.0, -height["left"], 0.5 + height["right"], 64)
+    solids = {"left": left, "right": right, "pin": pin}
+    whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()))
+    hinge = moved(joint("hinge", ("left", "right")), np.eye(4), 1e-3)
+    whole = replace(whole, function=Function(joints=(hinge,), complete=("",)))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    placed = partition(whole, contacts.find(whole, found), (hinge,)).placed
+    assert placed["pin"].body == placed[tight].body
+    assert placed["pin"].unclear

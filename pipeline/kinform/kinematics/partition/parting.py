@@ -197,18 +197,20 @@ class Contact:
 
     def _round(self, joint: IntendedJoint, opposed: Flags) -> float:
         """The price along a turn: do patches go round its axis, or its centre?"""
-        journal, farthest = False, 0.0
+        journal, firm, farthest = False, False, 0.0
         total = float(self.weights.sum())
         for k, patch in enumerate(self.patches):
             rows = slice(int(self.start[k]), int(self.start[k + 1]))
             if opposed[rows].any() or float(patch.weights.sum()) < constants.OPPOSED_AREA * total:
                 continue
             off = self._off(joint, k)
-            journal |= self._journal(joint, k)
+            here = self._journal(joint, k)
+            journal |= here
+            firm |= here and not _loose(patch)
             farthest = max(farthest, off)
         round_it = farthest < constants.FACE_OFF
         if journal and round_it:
-            return constants.JOURNAL
+            return constants.JOURNAL if firm else constants.LOOSE_JOURNAL
         return constants.FACE_ROUND if journal or round_it else constants.FLAT_BESIDE
 
     def journal(self, joint: IntendedJoint) -> bool:
@@ -238,3 +240,8 @@ class Contact:
         axis = joint.axis / np.linalg.norm(joint.axis)
         gap = widest_gap(self.normals[~opposed], axis)
         return constants.JOURNAL if gap < constants.GUIDED_ROUND else constants.FLAT_BESIDE
+
+
+def _loose(patch: Patch) -> bool:
+    """Whether a journal has play that its facets do not explain."""
+    return patch.gap > patch.chord + constants.LOOSE * max(patch.radii, default=0.0)
