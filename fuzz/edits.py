@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import h5py
 import numpy as np
@@ -14,9 +15,22 @@ COUNTS = (0, 1, -1, -2, 2, 7, 2**31 - 1, -(2**31), 2**62, -(2**63), 2**63 - 1, 1
 TEXTS = ("", "x", "␀", "␀{", "[]", "{}", "null", "[" * 50, "a\tb", "1", '{"a": 1}', "revolute", "[1, 2]", "/" * 300)
 
 
-def edited(images: Sequence[bytes], choices: bytes) -> bytes:
+@dataclass(frozen=True)
+class Edited:
+    """A results file that was changed and sealed again."""
+
+    which: int
+    """Of the files that edits are made of."""
+    image: bytes
+    names: frozenset[str]
+    """What was edited: datasets, and groups themselves."""
+
+
+def edited(images: Sequence[bytes], choices: bytes) -> Edited:
     """One of the files after the edits that eight bytes each choose."""
-    stream = io.BytesIO(images[choices[0] % len(images) if choices else 0])
+    which = choices[0] % len(images) if choices else 0
+    touched = set()
+    stream = io.BytesIO(images[which])
     with h5py.File(stream, "r+") as file:
         names = _names(file)
         for start in range(1, min(len(choices), 65) - 7, 8):
@@ -24,8 +38,40 @@ def edited(images: Sequence[bytes], choices: bytes) -> bytes:
             name = names[where % len(names)]
             if name in file:
                 _edit(file, name, element, what)
+                touched.add(name)
         file.flush()
-    return _sealed(stream.getvalue())
+    return Edited(which, _sealed(stream.getvalue()), frozenset(touched))
+
+
+def groups_to_check(names: Iterable[str]) -> set[str]:
+    """The groups of which a check looks at one of these datasets, their own ones among them."""
+    from kinform.results import schema
+
+    looked_at: dict[str, set[str]] = {}
+
+    def note(column: str, *others: object) -> None:
+        for other in others:
+            if isinstance(other, schema.Last):
+                other = other.dataset
+            if isinstance(other, str):
+                looked_at.setdefault(_top(other), set()).add(_top(column))
+
+    for name, form in schema.ARRAYS.items():
+        note(name, *form.shape)
+    for name, (owner, form) in schema.RAGGED.items():
+        note(name, owner, *form.shape)
+    for name, lengths in schema.AS_LONG.items():
+        note(name, *lengths)
+    for column, (table, _) in schema.ROWS.items():
+        note(column, table)
+    for column, tables in schema.NAMES.items():
+        note(column, *tables)
+    touched = {_top(name) for name in names}
+    return touched.union(*(looked_at.get(name, ()) for name in touched))
+
+
+def _top(name: str) -> str:
+    return name.partition("/")[0]
 
 
 def _sealed(image: bytes) -> bytes:

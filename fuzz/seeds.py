@@ -262,7 +262,7 @@ SDF = """<?xml version="1.0"?>
 <sdf version="1.9"><model name="r" placement_frame="f"><pose degrees="true">1 2 3 10 20 30</pose>
   <link name="a"><inertial><pose>0 0 1 0 0 0</pose><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia>
     </inertial><visual name="v"><geometry><mesh><uri>a.stl</uri><scale>0.001 0.001 -0.001</scale></mesh></geometry>
-    </visual><collision name="c"><geometry><capsule><radius>1</radius><length>2</length></capsule></geometry>
+    </visual><collision name="c"><geometry><cylinder><radius>1</radius><length>2</length></cylinder></geometry>
     </collision></link>
   <frame name="f" attached_to="a"><pose rotation_format="quat_xyzw">0 0 1 0 0 0 1</pose></frame>
   <model name="n"><pose relative_to="f">0 0 1 0 0 0</pose><link name="b"><visual name="v"><geometry>
@@ -397,6 +397,9 @@ def locks() -> list[bytes]:
 
 def catalogs() -> list[bytes]:
     """Of two designs, and of none."""
+    import contextlib
+    import sqlite3
+
     from kinform.catalog import Catalog, entry_of, write
 
     out = []
@@ -408,23 +411,31 @@ def catalogs() -> list[bytes]:
             path = Path(folder) / "c.db"
             path.unlink(missing_ok=True)
             write(Catalog(("a.h5", "b.h5"), tuple(entries)), path)
+            with contextlib.closing(sqlite3.connect(path)) as database:  # small pages: fewer bytes that say nothing
+                database.execute("PRAGMA page_size = 512")
+                database.execute("VACUUM")
             out.append(path.read_bytes())
     return out
 
 
 @functools.cache
-def results_images() -> tuple[bytes, ...]:
-    """Results files of which edits are made: of an import, of its joints, and of everything."""
+def results_designs() -> tuple:
+    """Of an import, of its joints, and of everything."""
     from dataclasses import replace
-
-    from kinform.results.file import to_bytes
 
     whole = design("pairs/revolute_collars")
     bare = {"mass": None, "behaviour": None, "simulation": None, "report": None}
     joints = replace(whole, **bare)
     imported = replace(joints, surfaces={}, contacts=None, kinematics=None)
-    every = (imported, joints, whole, design("functional/stick_four_bar"))
-    return tuple(to_bytes(made) for made in every)
+    return (imported, joints, whole, design("functional/stick_four_bar"))
+
+
+@functools.cache
+def results_images() -> tuple[bytes, ...]:
+    """Results files of these designs, of which edits are made."""
+    from kinform.results.file import to_bytes
+
+    return tuple(to_bytes(made) for made in results_designs())
 
 
 def edits() -> list[bytes]:

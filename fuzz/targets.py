@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import functools
+import os
+import shutil
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,8 +36,18 @@ class Target:
     """Of the time that all targets have."""
 
 
-_FOLDER = Path(tempfile.mkdtemp(prefix="kinform-fuzz-", dir="/dev/shm" if Path("/dev/shm").is_dir() else None))
-"""Where the files lie that readers are given by name."""
+_TOP = Path(tempfile.mkdtemp(prefix="kinform-fuzz-", dir="/dev/shm" if Path("/dev/shm").is_dir() else None))
+_FOLDER = _TOP / "design"
+"""Where the files lie that readers are given by name; below a folder of nothing else, for readers look there."""
+_FOLDER.mkdir()
+_MAKER = os.getpid()
+
+
+@atexit.register
+def _sweep() -> None:
+    """Take the files away again; not in a fork."""
+    if os.getpid() == _MAKER:
+        shutil.rmtree(_TOP, ignore_errors=True)
 
 
 def _mesh(raw) -> None:
@@ -68,13 +82,13 @@ def _manifest(data: bytes) -> None:
     form.load(_FOLDER / "m.toml")
 
 
+@functools.cache
 def _beside() -> None:
-    """What a manifest may name."""
+    """Write what a manifest may name; no reader writes."""
     files = {"below.toml": seeds.BELOW.encode(), "a.stl": seeds.stl()[0], "a.obj": seeds.obj()[0]}
     files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH}
     for name, content in files.items():
-        if not (_FOLDER / name).exists():
-            (_FOLDER / name).write_bytes(content)
+        (_FOLDER / name).write_bytes(content)
 
 
 _WITH_TABLES = """schema = 1
@@ -104,11 +118,35 @@ tolerance = 1
 """
 
 
-def _csv(data: bytes) -> None:
-    from kinform import form
+@dataclass
+class _Place:
+    """What a reader of tables needs of a manifest: where problems go, and a frame."""
 
+    problems: object
+    X_WF: np.ndarray
+
+    def point(self, values: list[float]) -> np.ndarray:
+        return self.X_WF[:3, :3] @ np.array(values) + self.X_WF[:3, 3]
+
+
+_TURNED = np.array([[0.0, -1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 2.0], [0.0, 0.0, 1.0, 3.0], [0.0, 0.0, 0.0, 1.0]])
+
+
+def _csv(data: bytes) -> None:
+    """Reads a law and a path; what is good as either, in a manifest too."""
+    from kinform import form
+    from kinform.form.problems import Problems
+    from kinform.form.readers.csv_tables import law_rows, path_rows
+
+    path = _FOLDER / "table.csv"
+    path.write_bytes(data)
+    laws, paths = Problems(), Problems()
+    times, values = law_rows(_Place(laws, _TURNED), path, "table.csv")
+    assert np.isfinite([*times, *values]).all()
+    assert np.isfinite([number for row in path_rows(_Place(paths, _TURNED), path, "table.csv") for number in row]).all()
+    if laws and paths:
+        laws.raise_if_any()
     (_FOLDER / "with_tables.toml").write_text(_WITH_TABLES)
-    (_FOLDER / "table.csv").write_bytes(data)
     form.load(_FOLDER / "with_tables.toml")
 
 
@@ -145,24 +183,68 @@ def _catalog(data: bytes) -> None:
     write(found, _FOLDER / "again.db")
 
 
+_WHOLE = 16
+"""One of so many edited results files is read, used and written as a whole; of the others what the edits can change."""
+_FIELDS = {"joints": "kinematics", "constraints": "kinematics", "mobility": "kinematics", "findings": "report"}
+"""Of a design: what a group holds, where that has not its name."""
+
+
 def _results(data: bytes) -> None:
     import edits
     from kinform import results
 
-    (_FOLDER / "r.h5").write_bytes(edits.edited(seeds.results_images(), data))
-    _use(results.read(_FOLDER / "r.h5"))
+    made, path = edits.edited(seeds.results_images(), data), _FOLDER / "r.h5"
+    path.write_bytes(made.image)
+    inside = all("/" in name for name in made.names)
+    if inside and sum(data) % _WHOLE:
+        _part(path, seeds.results_designs()[made.which], made.names)
+    else:
+        _use(results.read(path))
+
+
+def _part(path: Path, pristine, names: frozenset[str]) -> None:
+    """Read and write the groups that were edited, after the checks of all groups that refer to them; use the design
+    that they give with the others, which are as they were."""
+    from dataclasses import replace
+
+    import h5py
+
+    import edits
+    from kinform.results.conformity import check_group
+    from kinform.results.file import NONSENSE, Earlier, write_groups
+    from kinform.results.replacement import refuse
+
+    touched = {name.partition("/")[0] for name in names}
+    with Earlier(path) as found:
+        fields = {field: getattr(found, field) for field in {_FIELDS.get(name, name) for name in touched}}
+        for name in sorted(edits.groups_to_check(names) - touched):
+            if name in found.file:
+                try:
+                    check_group(found.file, name)
+                except NONSENSE as error:
+                    raise refuse(path, str(error), "") from error
+    design = replace(pristine, **fields)
+    with h5py.File("again", "w", driver="core", backing_store=False) as file:
+        write_groups(file, design, touched)
+    _show(design)
 
 
 def _use(design) -> None:
     """What the commands do with a design that was read."""
+    from kinform.results.file import to_bytes
+
+    to_bytes(design)
+    _show(design)
+
+
+def _show(design) -> None:
+    """What the commands make of a design."""
     from kinform import reports
     from kinform.catalog import entry_of
     from kinform.changes import snapshot, write_lock
     from kinform.errors import StageError
     from kinform.exports import export
-    from kinform.results.file import to_bytes
 
-    to_bytes(design)
     steps = (
         lambda: reports.summary_json(design, None),
         lambda: write_lock(snapshot(design)) if design.kinematics is not None else None,
@@ -251,7 +333,8 @@ _JSON_WORDS = (
 )
 _SDF_WORDS = (
     b"relative_to='a'", b"<include><uri>robot.sdf</uri></include>", b"<include><uri>model://r</uri></include>", b"::",
-    b"placement_frame='b'", b"expressed_in='f'", b"<frame name='f'/>", b"<model name='m'/>", b"world", b"inf",
+    b"placement_frame='b'", b"<capsule><radius>1</radius><length>2</length></capsule>", b"expressed_in='f'",
+    b"<frame name='f'/>", b"<model name='m'/>", b"world", b"inf",
 )  # fmt: skip
 _GLTF_WORDS = (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WORDS)
 _XML_WORDS = (

@@ -247,6 +247,10 @@ primitives and of simplified meshes."""
 SIBLINGS_MOST = 300
 """Files of a package that are looked through for the names of meshes, at most."""
 
+ENTRIES_MOST = 20_000
+"""Files and folders that are looked at for these, at most: about a second. The largest public package tried has 1,453;
+what is more is a home folder that holds a description."""
+
 SIBLING_BYTES = 4 * 1024 * 1024
 """Of each of these files, at most."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
-from kinform.form.constants import PACKAGE_LEVELS
+from kinform.form.constants import ENTRIES_MOST, PACKAGE_LEVELS
 
 _PACKAGE = re.compile(r"(?:package|model)://([^/]*)/?(.*)", re.DOTALL)
 _PACKAGE_FILES = ("package.xml", "model.config")
@@ -94,6 +94,29 @@ class MeshFiles:
             yield prefix / "share" / name
         for folder in _paths(self._environment.get("ROS_PACKAGE_PATH")):
             yield from (folder / name, folder) if folder.name == name else (folder / name,)
+
+
+def files_below(folder: Path, suffixes: Sequence[str]) -> list[Path]:
+    """Files with these suffixes in a folder and those below it, sorted; folder by folder, the near ones first, until
+    so many entries were looked at that the folder is no package. Linked folders are not entered."""
+    out, left, looked_at = [], [folder], 0
+    while left and looked_at < ENTRIES_MOST:
+        deeper: list[Path] = []
+        for above in left:
+            try:
+                entries = sorted(os.scandir(above), key=lambda entry: entry.name)
+            except OSError:
+                continue
+            looked_at += len(entries)
+            if looked_at > ENTRIES_MOST:
+                break
+            for entry in entries:
+                if entry.is_dir(follow_symlinks=False):
+                    deeper.append(Path(entry.path))
+                elif entry.name.lower().endswith(tuple(suffixes)) and entry.is_file():
+                    out.append(Path(entry.path))
+        left = deeper
+    return sorted(out)
 
 
 def _paths(text: str | None) -> list[Path]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from kinform.form.constants import XACRO_FILES
 from kinform.form.descriptions import urdf
-from kinform.form.descriptions.meshes import MeshFiles
+from kinform.form.descriptions.meshes import MeshFiles, files_below
 from kinform.form.descriptions.robot import Robot
 from kinform.form.problems import Problems
 
@@ -44,7 +44,7 @@ _INCLUDE = re.compile(rb"include\s+filename\s*=\s*[\"']([^\"']+)")
 
 def _packages_of(data: bytes, home: Path) -> list[str]:
     """Names of packages that the file, and the xacro files of its package, ask for."""
-    beside = [path for path in sorted(home.rglob("*.xacro")) if path.is_file()]
+    beside = files_below(home, (".xacro",))
     texts = [data, *(path.read_bytes() for path in beside[:XACRO_FILES])]
     return sorted({name.decode("utf-8", "replace") for text in texts for name in _FIND.findall(text)})
 

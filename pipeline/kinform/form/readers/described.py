@@ -16,6 +16,7 @@ from pydantic import TypeAdapter
 from kinform.form.constants import SIBLING_BYTES, SIBLINGS_MOST
 from kinform.form.descriptions.coverage import coverage_of
 from kinform.form.descriptions.facts import Facts
+from kinform.form.descriptions.meshes import MeshFiles, files_below
 from kinform.form.descriptions.robot import Shape, Solid
 from kinform.form.descriptions.tables import shape_table
 from kinform.form.files import DesignFiles, is_mesh
@@ -150,12 +151,6 @@ class _Describer:
         """What may name the meshes: the description, and the texts of its package."""
         yield self.facts.description.text.encode()
         path = self.files.top / self.facts.description.file
-        beside = [other for other in self._beside(path) if other.suffix.lower() in _TEXTS and other.is_file()]
-        for other in beside[:SIBLINGS_MOST]:
+        for other in files_below(MeshFiles(path, {}).home, _TEXTS)[:SIBLINGS_MOST]:
             if other.stat().st_size <= SIBLING_BYTES:
                 yield other.read_bytes()
-
-    def _beside(self, path: Path) -> list[Path]:
-        from kinform.form.descriptions.meshes import MeshFiles
-
-        return sorted(MeshFiles(path, {}).home.rglob("*"))

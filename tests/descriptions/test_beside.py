@@ -1,0 +1,31 @@
+"""What lies beside a description is looked through as far as a package goes, and no further."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from kinform.form import constants
+from kinform.form.descriptions import meshes
+
+
+def test_files_of_a_package_are_found_whatever_their_depth(tmp_path: Path) -> None:
+    below = tmp_path / "a" / "b" / "c"
+    below.mkdir(parents=True)
+    for path in (tmp_path / "z.urdf", below / "y.XACRO", below / "x.txt"):
+        path.write_text("x")
+    (tmp_path / "dir.urdf").mkdir()
+    (tmp_path / "a" / "again").symlink_to(tmp_path)
+    assert meshes.files_below(tmp_path, (".urdf", ".xacro")) == [below / "y.XACRO", tmp_path / "z.urdf"]
+
+
+def test_a_home_folder_is_not_searched_to_its_end(tmp_path: Path, monkeypatch) -> None:
+    """The near folders are seen; what lies behind too many entries is left alone."""
+    (tmp_path / "near").mkdir()
+    (tmp_path / "near" / "n.urdf").write_text("x")
+    far = tmp_path / "near" / "many"
+    far.mkdir()
+    for number in range(60):
+        (far / f"{number}.urdf").write_text("x")
+    monkeypatch.setattr(meshes, "ENTRIES_MOST", 50)
+    assert meshes.files_below(tmp_path, (".urdf",)) == [tmp_path / "near" / "n.urdf"]
+    assert constants.ENTRIES_MOST >= 1453  # entries of the largest public package tried
