@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinform.api import Outcome
 from kinform.design import Design
-from kinform.errors import InputError, Problem
+from kinform.errors import InputError, Problem, ResultsError
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.progress import Progress as StageProgress
 
@@ -58,13 +58,24 @@ def run(
     from kinform.reuse.ledger import Ledger
 
     earlier = _earlier(output, say)
+
+    def derived(ledger: Ledger) -> Design:
+        design = _import(manifest, units, allow_outside, reading, ledger)
+        design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
+        design = stages.joints(design, ledger=ledger)
+        design = stages.mass(design, ledger=ledger)
+        design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
+        return stages.check(design, ledger=ledger)
+
     ledger = Ledger(earlier)
-    design = _import(manifest, units, allow_outside, reading, ledger)
-    design = stages.contacts(design, jobs=jobs, progress=_steps(progress, "contacts"), ledger=ledger)
-    design = stages.joints(design, ledger=ledger)
-    design = stages.mass(design, ledger=ledger)
-    design = stages.simulate(design, ranges=ranges, progress=_steps(progress, "simulation"), say=say, ledger=ledger)
-    design = stages.check(design, ledger=ledger)
+    try:
+        design = derived(ledger)
+    except ResultsError as error:  # an earlier file that makes no sense: seen where it was read
+        if earlier is None:
+            raise
+        _tell_absent(error, say)
+        ledger = Ledger()
+        design = derived(ledger)
     account = ledger.account(design.fingerprints.files)
     if output is not None:
         from kinform import results
@@ -134,6 +145,14 @@ def _earlier(output: str | Path | None, say: Callable[[str], None] | None) -> Ea
     from kinform import results
 
     return results.earlier(output, None if say is None else lambda text: say(f"warning: {text}"))
+
+
+def _tell_absent(error: ResultsError, say: Callable[[str], None] | None) -> None:
+    """Say that an earlier file is as good as none."""
+    from kinform import results
+
+    if say is not None:
+        say(f"warning: {results.as_absent(error)}")
 
 
 def _steps(progress: Progress | None, stage: str) -> StageProgress | None:

@@ -24,14 +24,18 @@ def contacts(source: Results, output: Output, jobs: Jobs = None) -> None:
     What is still valid in an earlier output is reused.
     """
     from kinform import results, stages
+    from kinform.errors import ResultsError
     from kinform.reuse.ledger import Ledger
 
     def stage(design: Design, working: Working) -> Design:
-        earlier = results.earlier(output)
-        design = stages.contacts(design, jobs=cores(jobs), progress=working, ledger=Ledger(earlier))
+        try:
+            earlier = results.earlier(output)
+            found = stages.contacts(design, jobs=cores(jobs), progress=working, ledger=Ledger(earlier))
+        except ResultsError:  # it makes no sense, which was told: it counts as absent
+            return stages.contacts(design, jobs=cores(jobs), progress=working)
         if earlier is not None:
             earlier.close()
-        return design
+        return found
 
     contacts = files.advance(source, output, "contacts", stage).contacts
     assert contacts is not None

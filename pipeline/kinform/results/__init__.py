@@ -5,18 +5,20 @@ from kinform.results.file import (
     as_absent,
     check_output,
     earlier,
+    fault_of,
     files_of,
     read,
     read_if_current,
     to_bytes,
     write,
 )
-from kinform.results.opening import SCHEMA, fault_of
+from kinform.results.opening import SCHEMA, NotWholeError
 from kinform.results.replacement import replace_file
 
 __all__ = [
     "SCHEMA",
     "Earlier",
+    "NotWholeError",
     "as_absent",
     "check_output",
     "earlier",

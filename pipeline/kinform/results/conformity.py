@@ -6,28 +6,21 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from kinform.results import schema
+from kinform.results.held import HeldDataset, HeldGroup
 from kinform.results.schema import Form, Last, Length
 from kinform.results.table import DatasetError, missing, read_texts_of
 
-Check = Callable[[h5py.File, str], None]
+Check = Callable[[HeldGroup, str], None]
 
 
-def check_group(file: h5py.File, group: str) -> None:
+def check_group(file: HeldGroup, group: str) -> None:
     """Raise DatasetError for the first dataset of a group that is not what the schema says, or has not the rows that
     another one needs. What is not there is left to who reads it."""
-    names: list[str] = []
-
-    def note(name: str, item: Any) -> None:
-        if isinstance(item, h5py.Dataset):
-            names.append(name)
-
-    file[group].visititems(note)
-    datasets = {f"{group}/{name}" for name in names}
+    datasets = {f"{group}/{name}" for name in file.group(group).datasets()}
     for name in sorted(datasets):
         _check_numbers(file, name)
     for name in _those(schema.ARRAYS, datasets):
@@ -48,14 +41,14 @@ def _those(table: dict[str, Any], datasets: set[str]) -> list[str]:
     return [name for name in table if name in datasets]
 
 
-def _check_numbers(file: h5py.File, name: str) -> None:
+def _check_numbers(file: HeldGroup, name: str) -> None:
     """Every number is one, but for those that are said to be unknown or endless."""
-    dataset = file[name]
+    dataset = file.dataset(name)
     dtype = dataset.dtype
     real = [c for c in dtype.names or ("",) if (dtype[c] if c else dtype).kind == "f"]
     if not real:
         return
-    data = dataset[()]
+    data = dataset.data
     for column in real:
         place = f"{name}.{column}" if column else name
         values = np.asarray(data[column] if column else data)
@@ -72,14 +65,15 @@ def _check_numbers(file: h5py.File, name: str) -> None:
             raise DatasetError(place, f"row {int(np.argwhere(wrong)[0][0])} holds {values[wrong][0]}, no number")
 
 
-def _check_array(file: h5py.File, name: str, form: Form) -> None:
-    shape = file[name].shape
-    nothing = form.or_none and shape is not None and len(shape) == len(form.shape) and shape[0] == 0
-    _check_form(file, name, form if not nothing else Form(form.kind, (0, *(None for _ in shape[1:]))))
+def _check_array(file: HeldGroup, name: str, form: Form) -> None:
+    shape = file.dataset(name).shape
+    if form.or_none and shape and len(shape) == len(form.shape) and shape[0] == 0:
+        form = Form(form.kind, (0, *(None for _ in shape[1:])))
+    _check_form(file, name, form)
 
 
-def _check_form(file: h5py.File, name: str, form: Form) -> None:
-    dataset = file[name]
+def _check_form(file: HeldGroup, name: str, form: Form) -> None:
+    dataset = file.dataset(name)
     dtype = dataset.dtype
     if dtype.kind != form.kind or dtype.names:
         raise DatasetError(name, f"holds {_kind(dtype)}; expected {_KINDS[form.kind]}")
@@ -93,47 +87,49 @@ def _check_form(file: h5py.File, name: str, form: Form) -> None:
         raise DatasetError(name, f"has the shape {shape}; expected ({said})")
 
 
-def _length(file: h5py.File, name: str, length: Length) -> int | None:
+def _length(file: HeldGroup, name: str, length: Length) -> int | None:
     if isinstance(length, Last):
         places = _whole(file, length.dataset)
         return int(places[-1]) if len(places) else None
     return rows_of(file, name, length) if isinstance(length, str) else length
 
 
-def rows_of(file: h5py.File, name: str, other: str) -> int:
+def rows_of(file: HeldGroup, name: str, other: str) -> int:
     """How many rows a dataset has that `name` needs."""
-    if other not in file or not isinstance(file[other], h5py.Dataset) or file[other].ndim < 1:
+    found = file.get(other)
+    if not isinstance(found, HeldDataset) or not found.shape:
         raise DatasetError(name, f"needs {other}, which is not there")
-    return int(file[other].shape[0])
+    return found.shape[0]
 
 
-def _check_ragged(file: h5py.File, name: str, owner: str, form: Form) -> None:
+def _check_ragged(file: HeldGroup, name: str, owner: str, form: Form) -> None:
     _check_form(file, name, form)
     offset = f"{name}_offset"
     if offset not in file:
         raise DatasetError(offset, "is not there")
     _check_form(file, offset, Form("i", (rows_of(file, name, owner) + 1,)))
-    _check_steps(file, offset, len(file[name]))
+    _check_steps(file, offset, len(file.dataset(name)))
 
 
-def _check_steps(file: h5py.File, name: str, end: int | None) -> None:
+def _check_steps(file: HeldGroup, name: str, end: int | None) -> None:
     """Places that begin with 0, never fall, and end where they must."""
-    places = file[name][()]
+    places = file.dataset(name).data
     if len(places) == 0 or places[0] != 0 or (np.diff(places) < 0).any() or (end is not None and places[-1] != end):
         last = "" if end is None else f" to {end}"
         raise DatasetError(name, f"must rise from 0{last}")
 
 
-def _check_length(file: h5py.File, name: str, other: str, end: str | None) -> None:
+def _check_length(file: HeldGroup, name: str, other: str, end: str | None) -> None:
     steady = name in schema.STEADY
     rows = rows_of(file, name, other) + steady
-    if file[name].ndim != 1 or len(file[name]) != rows:
-        raise DatasetError(name, f"has the shape {file[name].shape}; expected ({rows},)")
+    shape = file.dataset(name).shape
+    if shape != (rows,):
+        raise DatasetError(name, f"has the shape {shape}; expected ({rows},)")
     if steady:
         _check_steps(file, name, None if end is None else rows_of(file, name, end))
 
 
-def _check_rows(file: h5py.File, column: str) -> None:
+def _check_rows(file: HeldGroup, column: str) -> None:
     table, or_none = schema.ROWS[column]
     places = _whole(file, column)
     if len(places):
@@ -147,7 +143,7 @@ def _check_between(name: str, places: NDArray[Any], low: int, counts: NDArray[An
         raise DatasetError(name, f"row {wrong[0]} holds {places[wrong[0]]}, of {counts[wrong[0]]} in {of}")
 
 
-def _check_names(file: h5py.File, column: str) -> None:
+def _check_names(file: HeldGroup, column: str) -> None:
     used = list(_named(file, column))
     if used:
         given = {name for of in schema.NAMES[column] for name in _named(file, of)}
@@ -156,21 +152,21 @@ def _check_names(file: h5py.File, column: str) -> None:
             raise DatasetError(column, f"names {wrong!r}, which {schema.NAMES[column][0]} has not")
 
 
-def _check_alone(file: h5py.File, column: str) -> None:
+def _check_alone(file: HeldGroup, column: str) -> None:
     names = list(_named(file, column))
     if len(set(names)) < len(names):
         twice = next(name for k, name in enumerate(names) if name in names[:k])
         raise DatasetError(column, f"has {twice!r} twice")
 
 
-def _check_words(file: h5py.File, column: str) -> None:
+def _check_words(file: HeldGroup, column: str) -> None:
     words = schema.WORDS[column]
     wrong = next((text for text in _texts(file, column) if text not in words), None)
     if wrong is not None:
         raise DatasetError(column, f"holds {wrong!r}; expected one of {', '.join(words)}")
 
 
-def _named(file: h5py.File, column: str) -> Iterator[str]:
+def _named(file: HeldGroup, column: str) -> Iterator[str]:
     """The names that a column has, one a row or a list of them."""
     lists = column in _LISTS
     for text in _texts(file, column):
@@ -183,7 +179,7 @@ def _named(file: h5py.File, column: str) -> Iterator[str]:
         yield from names
 
 
-def _texts(file: h5py.File, column: str) -> Sequence[str]:
+def _texts(file: HeldGroup, column: str) -> Sequence[str]:
     """The texts of a column, or of an array of them; none where it is not there."""
     data = _column(file, column)
     if data is None:
@@ -193,7 +189,7 @@ def _texts(file: h5py.File, column: str) -> Sequence[str]:
     return [text for text in read_texts_of(data) if text is not None]
 
 
-def _whole(file: h5py.File, column: str) -> NDArray[Any]:
+def _whole(file: HeldGroup, column: str) -> NDArray[Any]:
     """The whole numbers of a column, or of an array of them."""
     data = _column(file, column)
     if data is None:
@@ -203,58 +199,58 @@ def _whole(file: h5py.File, column: str) -> NDArray[Any]:
     return data
 
 
-def _column(file: h5py.File, column: str) -> NDArray[Any] | None:
+def _column(file: HeldGroup, column: str) -> NDArray[Any] | None:
     name, _, label = column.partition(".")
-    if name not in file or not isinstance(file[name], h5py.Dataset):
+    dataset = file.get(name)
+    if not isinstance(dataset, HeldDataset):
         return None
-    dataset = file[name]
     if dataset.ndim != 1:
         raise DatasetError(name, f"has the shape {dataset.shape}; expected one row an item")
     if not label:
-        return np.asarray(dataset[()])
-    return np.asarray(dataset[label]) if label in (dataset.dtype.names or ()) else None
+        return dataset.data
+    return np.asarray(dataset.data[label]) if label in (dataset.dtype.names or ()) else None
 
 
-def _check_within(file: h5py.File, name: str) -> None:
+def _check_within(file: HeldGroup, name: str) -> None:
     counts, low, of = _WITHIN[name](file)
-    data = np.asarray(file[name][()])
+    data = file.dataset(name).data
     if data.size:
         flat = data.reshape(len(data), -1)
         _check_between(name, flat.min(axis=1), low, counts, of)
         _check_between(name, flat.max(axis=1), low, counts, of)
 
 
-def _lengths(file: h5py.File, name: str) -> NDArray[Any]:
+def _lengths(file: HeldGroup, name: str) -> NDArray[Any]:
     """Of each item of an array of arrays."""
     return np.diff(_whole(file, f"{name}_offset"))
 
 
-def _owners(file: h5py.File, name: str) -> NDArray[Any]:
+def _owners(file: HeldGroup, name: str) -> NDArray[Any]:
     lengths = _lengths(file, name)
     return np.repeat(np.arange(len(lengths)), lengths)
 
 
-def _corners(file: h5py.File) -> tuple[NDArray[Any], int, str]:
+def _corners(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
     return _lengths(file, "assembly/vertices")[_owners(file, "assembly/faces")], 0, "the vertices of its mesh"
 
 
-def _labels(file: h5py.File) -> tuple[NDArray[Any], int, str]:
+def _labels(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
     meshes = rows_of(file, "surfaces/labels", "surfaces/meshes")
     counts = np.bincount(_whole(file, "surfaces/surfaces.mesh"), minlength=meshes)
     return counts[_owners(file, "surfaces/labels")], -1, "the surfaces of its mesh"
 
 
-def _facets(file: h5py.File) -> tuple[NDArray[Any], int, str]:
+def _facets(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
     meshes = _whole(file, "surfaces/surfaces.mesh")
     return _lengths(file, "surfaces/labels")[meshes[_owners(file, "surfaces/faces")]], 0, "the facets of its mesh"
 
 
-def _columns_of_bodies(file: h5py.File) -> tuple[NDArray[Any], int, str]:
+def _columns_of_bodies(file: HeldGroup) -> tuple[NDArray[Any], int, str]:
     columns = 6 * rows_of(file, "constraints/indices", "constraints/bodies")
-    return np.full(len(file["constraints/indices"]), columns), 0, "six columns a body"
+    return np.full(len(file.dataset("constraints/indices")), columns), 0, "six columns a body"
 
 
-_WITHIN: dict[str, Callable[[h5py.File], tuple[NDArray[Any], int, str]]] = {
+_WITHIN: dict[str, Callable[[HeldGroup], tuple[NDArray[Any], int, str]]] = {
     "assembly/faces": _corners,
     "surfaces/labels": _labels,
     "surfaces/faces": _facets,

@@ -11,7 +11,7 @@ import contextlib
 import dataclasses
 import importlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -24,7 +24,8 @@ from kinform.model.fingerprints import Fingerprints
 from kinform.results import constants
 from kinform.results.conformity import check_group
 from kinform.results.groups import assembly
-from kinform.results.opening import DAMAGE, RECOMPUTE, SCHEMA, NotWholeError, check_replaceable, opened
+from kinform.results.held import HeldGroup
+from kinform.results.opening import DAMAGE, SCHEMA, NotWholeError, check_replaceable, not_whole, opened
 from kinform.results.replacement import check_target, refuse, replace_file
 from kinform.results.seal import block_of, seal
 from kinform.reuse import lineage
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from kinform.model.surfaces import MeshSurfaces
 
 
-_NONSENSE = (
+NONSENSE = (
     ArithmeticError, AttributeError, LookupError, OSError, RuntimeError, TypeError, ValueError,
 )  # fmt: skip
 """What h5py and the codecs raise on a group that makes no sense."""
@@ -85,8 +86,8 @@ def read(path: str | Path) -> Design:
 def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earlier | None:
     """What an earlier run has left at `path`, which is about to be written; None where there is nothing.
 
-    What is no longer whole counts as nothing, and `say` is told. Raises ResultsError when `write` would refuse this
-    path.
+    What is no longer whole counts as nothing, and `say` is told; what makes no sense raises NotWholeError where it is
+    read. Raises ResultsError when `write` would refuse this path.
     """
     check_output(path)
     target = Path(path)
@@ -98,6 +99,18 @@ def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earli
         if say is not None:
             say(as_absent(error))
         return None
+
+
+def fault_of(path: str | Path) -> ResultsError | None:
+    """Why the results file at `path` is as good as none, and may be written again; None where it is whole and makes
+    sense, or where there is nothing that was written as one."""
+    try:
+        read(path)
+    except NotWholeError as error:
+        return error
+    except ResultsError:
+        return None
+    return None
 
 
 def as_absent(error: ResultsError) -> str:
@@ -113,7 +126,7 @@ class Earlier:
     def __init__(self, path: str | Path):
         self._path = path
         self._open = contextlib.ExitStack()
-        self._file = self._open.enter_context(opened(path))
+        self.file: HeldGroup = self._open.enter_context(opened(path))
 
     def __enter__(self) -> Earlier:
         return self
@@ -127,24 +140,24 @@ class Earlier:
 
     def _read(self, name: str) -> Any:
         """What a group holds; None where it is not there."""
-        if name not in self._file:
+        if name not in self.file:
             return None
         try:
-            check_group(self._file, name)
-            return _codec(name).read(self._file[name])
-        except _NONSENSE as error:
+            check_group(self.file, name)
+            return _codec(name).read(self.file.group(name))
+        except NONSENSE as error:
             raise self._damaged(error) from error
 
     def _damaged(self, error: BaseException) -> ResultsError:
-        return refuse(self._path, f"the results file is damaged ({error})", RECOMPUTE)
+        return not_whole(self._path, f"the results file is damaged ({error})")
 
     @cached_property
     def assembly(self) -> Assembly:
         """As written; KeyError is damage, for every results file has one."""
         try:
-            check_group(self._file, "assembly")
-            return assembly.read(self._file["assembly"])
-        except _NONSENSE as error:
+            check_group(self.file, "assembly")
+            return assembly.read(self.file.group("assembly"))
+        except NONSENSE as error:
             raise self._damaged(error) from error
 
     @cached_property
@@ -194,7 +207,7 @@ class Earlier:
     def fingerprints(self) -> Fingerprints:
         from kinform.results.groups import joints
 
-        file = self._file
+        file = self.file
         try:
             return Fingerprints(
                 stages={
@@ -202,12 +215,12 @@ class Earlier:
                 },
                 meshes=self._surfaces[1],
                 pairs=self._contacts[1],
-                files=assembly.read_contents(file["assembly"]),
+                files=assembly.read_contents(file.group("assembly")),
                 lineage=_marks(file, "lineage"),
-                inputs={name: json.loads(text) for name, text in _marks(file, "inputs").items()},
-                decisions=joints.read_decisions(file["joints"]) if "joints" in file else {},
+                inputs={name: _inputs(text) for name, text in _marks(file, "inputs").items()},
+                decisions=joints.read_decisions(file.group("joints")) if "joints" in file else {},
             )
-        except _NONSENSE as error:
+        except NONSENSE as error:
             raise self._damaged(error) from error
 
     @property
@@ -230,7 +243,7 @@ def _image(design: Design) -> bytes:
     with file:
         file.attrs["schema"] = SCHEMA
         file.attrs["kinform"] = __version__
-        _write_groups(file, design)
+        write_groups(file, design)
         file.flush()
         image: bytes = file.id.get_file_image()
     return image
@@ -247,8 +260,8 @@ def _group(file: h5py.File, name: str, marks: Fingerprints) -> h5py.Group:
     return group
 
 
-def _write_groups(file: h5py.File, design: Design) -> None:
-    """All groups of which something is known."""
+def write_groups(file: h5py.File, design: Design, only: Container[str] | None = None) -> None:
+    """All groups of which something is known; or `only` some of them."""
     kinematics = design.kinematics
     contents = {
         "assembly": design.assembly, "surfaces": design.surfaces or design.contacts, "contacts": design.contacts,
@@ -256,7 +269,7 @@ def _write_groups(file: h5py.File, design: Design) -> None:
         "behaviour": design.behaviour, "simulation": design.simulation, "findings": design.report,
     }  # fmt: skip
     for name, content in contents.items():
-        if content is not None:
+        if content is not None and (only is None or name in only):
             _codec(name).write(_group(file, name, design.fingerprints), design)
 
 
@@ -265,16 +278,24 @@ def _codec(group: str) -> Any:
     return importlib.import_module(f"kinform.results.groups.{group}")
 
 
-def _marks(file: h5py.File, attribute: str) -> dict[str, str]:
+def _marks(file: HeldGroup, attribute: str) -> dict[str, str]:
     """An attribute of all groups that have it."""
-    return {name: str(group.attrs[attribute]) for name, group in file.items() if attribute in group.attrs}
+    return {name: str(group.attrs[attribute]) for name, group in file.groups().items() if attribute in group.attrs}
+
+
+def _inputs(text: str) -> dict[str, str]:
+    """What a group was made of, by its names in words. Raises ValueError where it is something else."""
+    inputs = json.loads(text)
+    if not isinstance(inputs, dict) or not all(isinstance(mark, str) for mark in inputs.values()):
+        raise ValueError("the inputs of a group make no sense")
+    return inputs
 
 
 def files_of(path: str | Path) -> tuple[str, ...]:
     """The files that were read for these results, relative to the manifest; () where there are no such results."""
     try:
         with opened(path) as file:
-            return assembly.read_files(file["assembly"])
+            return assembly.read_files(file.group("assembly"))
     except (ResultsError, *DAMAGE):
         return ()
 
@@ -288,22 +309,24 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
     try:
         with opened(path) as file:
             marks = Fingerprints(lineage=_marks(file, "lineage"))
-            contents = assembly.read_contents(file["assembly"])
+            contents = assembly.read_contents(file.group("assembly"))
             written_from = marks.lineage.get("findings")
             if not written_from or written_from != lineage.current(manifest, contents, allow_outside=allow_outside):
                 return None
-            gist = assembly.read_header(file["assembly"])
-            report = _codec("findings").read(file["findings"])
+            for name in file.groups():
+                check_group(file, name)
+            gist = assembly.read_header(file.group("assembly"))
+            report = _codec("findings").read(file.group("findings"))
             return Design(gist, kinematics=_bodies(file, gist), report=report, fingerprints=marks)
     except (ResultsError, *DAMAGE):
         return None
 
 
-def _bodies(file: h5py.File, gist: Assembly) -> Kinematics | None:
+def _bodies(file: HeldGroup, gist: Assembly) -> Kinematics | None:
     """The bodies, where the ground is one that kinform chose and findings are told with a note about it."""
     if gist.ground is not None:
         return None
     from kinform.model.kinematics import only_bodies
     from kinform.results.groups import joints
 
-    return only_bodies(joints.read_bodies(file["joints"]))
+    return only_bodies(joints.read_bodies(file.group("joints")))

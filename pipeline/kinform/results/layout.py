@@ -30,6 +30,7 @@ import h5py
 import numpy as np
 
 from kinform.model.arrays import freeze
+from kinform.results.held import HeldGroup
 from kinform.results.records import Hint, columns_of, defaults, hint, hints, record_maker, record_values
 from kinform.results.table import (
     DatasetError,
@@ -64,7 +65,7 @@ class Holder(Protocol):
     def write(self, group: h5py.Group, cls: type, records: Sequence[Any]) -> None:
         """Write the fields of all records, which are of one class."""
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         """Add the fields to each row."""
 
 
@@ -79,18 +80,18 @@ class Layout:
         for holder in self._holders:
             holder.write(group, self._cls, [record])
 
-    def read_fields(self, group: h5py.Group) -> dict[str, Any]:
+    def read_fields(self, group: HeldGroup) -> dict[str, Any]:
         """The fields that are held, by name."""
         rows: Rows = [{}]
         _read_all(self._holders, group, self._cls, rows)
         return rows[0]
 
-    def read(self, group: h5py.Group) -> Any:
+    def read(self, group: HeldGroup) -> Any:
         """The record that `write` wrote."""
         return self._cls(**self.read_fields(group))
 
 
-def _read_all(holders: Sequence[Holder], group: h5py.Group, cls: type, rows: Rows) -> None:
+def _read_all(holders: Sequence[Holder], group: HeldGroup, cls: type, rows: Rows) -> None:
     for holder in holders:
         if holder.dataset in group or not defaults(cls).issuperset(holder.fields):
             holder.read(group, cls, rows)
@@ -106,7 +107,7 @@ class Row:
         columns = columns_of(hint(cls), frozenset(hints(cls)), self.fields)
         write_rows(group, self.dataset, columns, [record_values(hint(cls), records, column) for column in columns])
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         columns = columns_of(hint(cls), frozenset(hints(cls)), self.fields)
         found = read_rows(group, self.dataset, columns, defaults(cls))
         _check_count(group, self.dataset, len(found), len(rows))
@@ -114,7 +115,7 @@ class Row:
             row |= more
 
 
-def _check_count(group: h5py.Group, dataset: str, found: int, expected: int) -> None:
+def _check_count(group: HeldGroup, dataset: str, found: int, expected: int) -> None:
     """Raise DatasetError where a dataset has not as many rows or items as there are records."""
     if found != expected:
         raise DatasetError(f"{group.name}/{dataset}", f"has {found} rows; expected {expected}")
@@ -174,7 +175,7 @@ class Table:
         for holder in self._holders:
             holder.write(group, owned.record.type, inner)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         owned = self._owned(cls)
         columns = self._columns(owned.record)
         made_of = owned.record.type
@@ -197,7 +198,7 @@ class Table:
             row[self._field] = tuple(items) if owned.several else _only(group, self.dataset, items)
 
 
-def _only(group: h5py.Group, dataset: str, items: Sequence[Any]) -> Any:
+def _only(group: HeldGroup, dataset: str, items: Sequence[Any]) -> Any:
     """The one item, or None; DatasetError where there are several."""
     _check_count(group, dataset, len(items), min(len(items), 1))
     return items[0] if items else None
@@ -218,7 +219,7 @@ class Ragged:
         dtype = self._dtype or ("<i8" if whole else "<f8")
         write_ragged(group, self.dataset, arrays, number.unit or "1", width=self._width, dtype=dtype)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         of_tuples = hints(cls)[self.fields[0]].item is not None
         arrays = read_ragged(group, self.dataset)
         _check_count(group, self.dataset, len(arrays), len(rows))
@@ -237,7 +238,7 @@ class Numbers:
         dtype = {np.int64: "<i8", np.bool_: "|u1"}.get(said.number, "<f8")
         write_array(group, self.dataset, getattr(records[0], self.dataset), said.unit or "1", dtype)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         array = read_array(group, self.dataset)
         is_flags = hints(cls)[self.dataset].number is np.bool_
         rows[0][self.dataset] = freeze(array.astype(np.bool_)) if is_flags else array
@@ -253,7 +254,7 @@ class Texts:
         value = getattr(records[0], self.dataset)
         write_texts(group, self.dataset, [value] if hints(cls)[self.dataset].type is str else value)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         items = read_texts(group, self.dataset)
         rows[0][self.dataset] = _only(group, self.dataset, items) if hints(cls)[self.dataset].type is str else items
 
@@ -272,7 +273,7 @@ class WholeColumns:
             columns[name] = (said.unit or "1", getattr(records[0], name).astype(dtype))
         write_columns(group, self.dataset, columns)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         table = read_columns(group, self.dataset)
         lacking = defaults(cls).difference(table.dtype.names or ())
         rows[0].update({name: freeze(table[name].copy()) for name in self.fields if name not in lacking})
@@ -289,6 +290,6 @@ class Subgroup:
         if value is not None:
             self._layout.write(group.create_group(self.dataset), value)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         optional = hints(cls)[self.dataset].optional and self.dataset not in group
-        rows[0][self.dataset] = None if optional else self._layout.read(group[self.dataset])
+        rows[0][self.dataset] = None if optional else self._layout.read(group.group(self.dataset))

@@ -14,6 +14,7 @@ import h5py
 from kinform.errors import ResultsError
 from kinform.foundation.regular import not_a_file
 from kinform.results import constants
+from kinform.results.held import HeldGroup, hold
 from kinform.results.replacement import refuse
 from kinform.results.seal import Seal, is_sealed, read_seal
 from kinform.results.structure import ForeignError, check_structure
@@ -31,13 +32,13 @@ _NAME_ONE = "name a results file of kinform"
 
 
 class NotWholeError(ResultsError):
-    """The file was written as a results file of this schema, and is not what was written."""
+    """The file was written as a results file of this schema, and is not what was written, or makes no sense."""
 
 
 @contextlib.contextmanager
-def opened(path: str | Path) -> Iterator[h5py.File]:
-    """The file, open for reading and known to be a whole results file of this schema. Raises NotWholeError, and
-    ResultsError for what was never one."""
+def opened(path: str | Path) -> Iterator[HeldGroup]:
+    """What the file holds, open for reading and known to be a whole results file of this schema. Raises NotWholeError,
+    and ResultsError for what was never one."""
     with contextlib.ExitStack() as stack:
         stream = stack.enter_context(_stream(path))
         _check_seal(path, _sealed(path, stream))
@@ -47,12 +48,12 @@ def opened(path: str | Path) -> Iterator[h5py.File]:
             check_structure(file, stream, size)
             schema = file.attrs.get("schema")
         except ForeignError as error:
-            raise _not_whole(path, f"kinform did not write this results file: it holds {error}") from error
+            raise not_whole(path, f"kinform did not write this results file: it holds {error}") from error
         except DAMAGE as error:
-            raise _not_whole(path, "the results file is damaged: its HDF5 makes no sense") from error
+            raise not_whole(path, "the results file is damaged: its HDF5 makes no sense") from error
         if schema != SCHEMA:
-            raise _not_whole(path, "the results file is damaged: it has two schemas")
-        yield file
+            raise not_whole(path, "the results file is damaged: it has two schemas")
+        yield hold(file)
 
 
 def check_replaceable(path: Path) -> None:
@@ -65,18 +66,6 @@ def check_replaceable(path: Path) -> None:
             return
         with contextlib.suppress(NotWholeError):
             _check_seal(path, _sealed(path, stream))
-
-
-def fault_of(path: str | Path) -> ResultsError | None:
-    """Why the results file at `path` is as good as none, and may be written again; None where it is whole, or where
-    there is nothing that was written as one."""
-    try:
-        with opened(path):
-            return None
-    except NotWholeError as error:
-        return error
-    except ResultsError:
-        return None
 
 
 def _stream(path: str | Path) -> BufferedReader:
@@ -116,7 +105,7 @@ def _stranger(path: str | Path, stream: BufferedReader) -> ResultsError:
 
 def _check_seal(path: str | Path, seal: Seal) -> None:
     if seal.fault is not None:
-        raise _not_whole(path, f"the results file is not whole: {seal.fault}")
+        raise not_whole(path, f"the results file is not whole: {seal.fault}")
     if seal.schema != SCHEMA:
         raise refuse(
             path,
@@ -125,5 +114,6 @@ def _check_seal(path: str | Path, seal: Seal) -> None:
         )
 
 
-def _not_whole(path: str | Path, message: str) -> NotWholeError:
+def not_whole(path: str | Path, message: str) -> NotWholeError:
+    """The error about a file that was written as results, and can only be made again."""
     return NotWholeError(refuse(path, message, RECOMPUTE).problem)

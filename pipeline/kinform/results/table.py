@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from kinform.errors import ResultsError
 from kinform.model.arrays import freeze
+from kinform.results.held import HeldDataset, HeldGroup
 
 TEXT = h5py.string_dtype()
 FACETS = "<i4"
@@ -255,19 +256,19 @@ def write_columns(group: h5py.Group, name: str, columns: Mapping[str, tuple[str,
     dataset.attrs["units"] = np.array([unit for unit, _ in columns.values()], dtype=TEXT)
 
 
-def read_columns(group: h5py.Group, name: str, labels: Sequence[str] | None = None) -> Any:
-    """The table as a structured array: all of it, or only these columns."""
+def read_columns(group: HeldGroup, name: str, labels: Sequence[str] | None = None) -> Any:
+    """The table as a structured array, read-only, which has these columns at least."""
     dataset = _dataset(group, name)
     if dataset.ndim != 1 or not dataset.dtype.names:
         raise DatasetError(dataset.name, "is no table")
     _check_labels(dataset.name, dataset.dtype, labels or ())
-    return dataset[()] if labels is None else dataset.fields(list(labels))[()]
+    return dataset.data
 
 
-def _dataset(group: h5py.Group, name: str) -> h5py.Dataset:
+def _dataset(group: HeldGroup, name: str) -> HeldDataset:
     """A dataset of a group. Raises DatasetError where there is none of that name."""
     dataset = group.get(name)
-    if not isinstance(dataset, h5py.Dataset):
+    if not isinstance(dataset, HeldDataset):
         raise DatasetError(f"{group.name}/{name}", "is not there")
     return dataset
 
@@ -291,7 +292,7 @@ def write_rows(group: h5py.Group, name: str, columns: Sequence[Column], fields: 
 
 
 def read_rows(
-    group: h5py.Group, name: str, columns: Sequence[Column], later: Container[str] = ()
+    group: HeldGroup, name: str, columns: Sequence[Column], later: Container[str] = ()
 ) -> list[dict[str, Any]]:
     """The rows that `write_rows` wrote: field → value. Fields that came `later` are left out where the file lacks
     them."""
@@ -333,12 +334,12 @@ def write_array(group: h5py.Group, name: str, array: NDArray[Any], unit: str, dt
     return dataset
 
 
-def read_array(group: h5py.Group, name: str) -> NDArray[Any]:
+def read_array(group: HeldGroup, name: str) -> NDArray[Any]:
     """One array, read-only."""
     dataset = _dataset(group, name)
     if dataset.dtype.names or dataset.dtype.kind not in "fiub":
         raise DatasetError(dataset.name, "holds no numbers")
-    return freeze(np.asarray(dataset[()]))
+    return dataset.data
 
 
 def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
@@ -350,12 +351,12 @@ def write_texts(group: h5py.Group, name: str, items: Sequence[str]) -> None:
     dataset.attrs["units"] = ""
 
 
-def read_texts(group: h5py.Group, name: str) -> tuple[Any, ...]:
+def read_texts(group: HeldGroup, name: str) -> tuple[Any, ...]:
     """The texts that `write_texts` wrote."""
     dataset = _dataset(group, name)
     if dataset.ndim != 1 or dataset.dtype.kind != "O":
         raise DatasetError(dataset.name, "holds no texts")
-    texts = read_texts_of(dataset[()])
+    texts = read_texts_of(dataset.data)
     if any(text is None for text in texts):
         raise DatasetError(dataset.name, "lacks a text")
     return tuple(texts)
@@ -375,7 +376,7 @@ def write_ragged(
     write_array(group, f"{name}_offset", offset, "1", "<i8")
 
 
-def read_ragged(group: h5py.Group, name: str) -> list[NDArray[Any]]:
+def read_ragged(group: HeldGroup, name: str) -> list[NDArray[Any]]:
     """The arrays that `write_ragged` wrote, read-only; whole numbers have eight bytes, however they are kept."""
     data, offset = read_array(group, name), read_array(group, f"{name}_offset")
     if data.dtype.kind == "i":

@@ -14,6 +14,7 @@ from kinform.model.assembly import Assembly, Mesh, Part
 from kinform.model.tolerances import Tolerances
 from kinform.results.groups.checks import CHECK
 from kinform.results.groups.function import FUNCTION, REQUEST
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Rows, Subgroup, Table, Texts
 from kinform.results.records import columns_of, hint, hints
 from kinform.results.table import (
@@ -66,7 +67,7 @@ class _Parts:
         self.overrides.write(group, Part, parts)
         self.meshes.write(group, _Meshes(tuple(distinct.values())))
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         meshes = self.meshes.read(group).meshes
         parts = read_rows(group, "parts", self.columns)
         self.overrides.read(group, Part, parts)
@@ -120,13 +121,13 @@ def write(group: h5py.Group, design: Design) -> None:
         write_texts(group, "contents", [f"{content} {name}" for name, content in sorted(files.items())])
 
 
-def read(group: h5py.Group) -> Assembly:
+def read(group: HeldGroup) -> Assembly:
     """The assembly that `write` wrote; parts of one mesh share it."""
     assembly: Assembly = LAYOUT.read(group)
     return assembly
 
 
-def read_header(group: h5py.Group) -> Assembly:
+def read_header(group: HeldGroup) -> Assembly:
     """The assembly without parts and groups: its name, source, function, files and notes."""
     return Assembly(
         **GIST.read_fields(group),
@@ -139,12 +140,12 @@ def read_header(group: h5py.Group) -> Assembly:
     )
 
 
-def read_files(group: h5py.Group) -> tuple[str, ...]:
+def read_files(group: HeldGroup) -> tuple[str, ...]:
     """The files that were read, relative to the manifest."""
     return read_texts(group, "files")
 
 
-def read_contents(group: h5py.Group) -> dict[str, str]:
+def read_contents(group: HeldGroup) -> dict[str, str]:
     """SHA-256 (hex) of the content of each file, by its name; empty where the file does not say."""
     lines = read_texts(group, "contents") if "contents" in group else ()
     return {name: content for content, name in (line.split(" ", 1) for line in lines)}

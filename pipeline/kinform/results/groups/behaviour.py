@@ -20,6 +20,7 @@ from kinform.behaviour.shafts import Controller
 from kinform.behaviour.signals import LAWS, Signal, Table, law_of
 from kinform.design import Design
 from kinform.results import layout
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout
 from kinform.results.records import columns_of, defaults, hint, hints
 from kinform.results.table import (
@@ -138,7 +139,7 @@ class _Rows:
         self.tables["laws"].append((law, *numbers))
 
 
-def read(group: h5py.Group) -> Behaviour:
+def read(group: HeldGroup) -> Behaviour:
     """The model that `write` wrote."""
     signals = _read_laws(group)
     kinds = {kind: read_rows(group, kind, columns, defaults(COMPONENTS[kind])) for kind, columns in PARAMETERS.items()}
@@ -178,7 +179,7 @@ def _flat_names(systems: list[dict[str, Any]], rows: list[dict[str, Any]]) -> li
     return [before[row["system"]] + row["name"] for row in rows]
 
 
-def _read_laws(group: h5py.Group) -> list[Signal]:
+def _read_laws(group: HeldGroup) -> list[Signal]:
     times, levels = read_ragged(group, "law_times"), read_ragged(group, "law_levels")
     signals: list[Signal] = []
     for row, knots, values in zip(read_rows(group, "laws", LAW_ROWS), times, levels, strict=True):

@@ -10,6 +10,7 @@ import h5py
 from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.names import JointName
 from kinform.model.simulation import Simulation
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Rows, Table
 
 
@@ -41,7 +42,7 @@ class _Ranges:
             self.sides.write(group, _Sides(sides))
             self.left_out.write(group, JointRange, ranges)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         sides = self.sides.read(group).ranges
         pairs = zip(sides[::2], sides[1::2], strict=True)
         ranges: Rows = [

@@ -11,6 +11,7 @@ from kinform.design import Design
 from kinform.model.arrays import freeze
 from kinform.model.contacts import Patch
 from kinform.model.kinematics import ConstraintMatrix
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Texts
 from kinform.results.table import TEXT, read_columns, stored_text, write_columns
 
@@ -34,7 +35,7 @@ class _Origins:
         }
         write_columns(group, "rows", columns)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         table = read_columns(group, "rows", self.fields)
         rows[0].update({name: freeze(table[name].copy()) for name in self.fields})
 
@@ -51,7 +52,7 @@ def write(group: h5py.Group, design: Design) -> None:
     _layout(_Origins(patches)).write(group, design.kinematics.matrix)
 
 
-def read(group: h5py.Group) -> ConstraintMatrix:
+def read(group: HeldGroup) -> ConstraintMatrix:
     """The matrix that `write` wrote."""
     matrix: ConstraintMatrix = _layout(_Origins()).read(group)
     return matrix

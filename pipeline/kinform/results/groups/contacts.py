@@ -13,6 +13,7 @@ from kinform.model.arrays import freeze
 from kinform.model.contacts import Contacts, Interference, Patch, Suggestion
 from kinform.model.names import PartName
 from kinform.model.quantities import Metres, PartPair
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Rows, Table
 from kinform.results.table import read_columns, write_columns
 
@@ -56,7 +57,7 @@ class _Samples:
             columns[label] = (unit, numbers[:, i].astype("<f8"))
         write_columns(group, "samples", columns)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         table = read_columns(group, "samples")
         numbers = np.column_stack([table[label] for label in SAMPLES])
         owner, count = table["patch"], len(rows)
@@ -85,7 +86,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, _Contacts(pairs, contacts.patches, contacts.interferences, contacts.suggestions))
 
 
-def read(group: h5py.Group) -> tuple[Contacts, dict[tuple[PartName, PartName], str]]:
+def read(group: HeldGroup) -> tuple[Contacts, dict[tuple[PartName, PartName], str]]:
     """The contacts, and the fingerprints by pair."""
     stored: _Contacts = LAYOUT.read(group)
     contacts = Contacts(

@@ -6,6 +6,7 @@ import h5py
 
 from kinform.design import Design
 from kinform.model.findings import CheckReport
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Table
 
 LAYOUT = Layout(
@@ -18,7 +19,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, design.report)
 
 
-def read(group: h5py.Group) -> CheckReport:
+def read(group: HeldGroup) -> CheckReport:
     """The report that `write` wrote."""
     report: CheckReport = LAYOUT.read(group)
     return report

@@ -9,6 +9,7 @@ import h5py
 
 from kinform.design import Design
 from kinform.model.kinematics import Body, Kinematics
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Table, Texts
 
 LAYOUT = Layout(
@@ -71,18 +72,18 @@ def write(group: h5py.Group, design: Design) -> None:
         DECISIONS.write(group, _Decisions(tuple(_Decision(key, *kept) for key, kept in sorted(decisions.items()))))
 
 
-def read(group: h5py.Group) -> dict[str, Any]:
+def read(group: HeldGroup) -> dict[str, Any]:
     """The fields of Kinematics that `write` wrote."""
     return LAYOUT.read_fields(group)
 
 
-def read_bodies(group: h5py.Group) -> tuple[Body, ...]:
+def read_bodies(group: HeldGroup) -> tuple[Body, ...]:
     """The bodies alone."""
     bodies: tuple[Body, ...] = Layout(Kinematics, Table("bodies")).read_fields(group)["bodies"]
     return bodies
 
 
-def read_decisions(group: h5py.Group) -> dict[str, tuple[str, str]]:
+def read_decisions(group: HeldGroup) -> dict[str, tuple[str, str]]:
     """Packed answers and their seals, by the hash of the question."""
     if "decisions" not in group:
         return {}

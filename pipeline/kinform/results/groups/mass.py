@@ -6,6 +6,7 @@ import h5py
 
 from kinform.design import Design
 from kinform.model.mass import MassReport
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Row, Table
 
 LAYOUT = Layout(MassReport, Row("summary", "valid"), Table("parts"), Table("bodies"), Table("problems"))
@@ -16,7 +17,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, design.mass)
 
 
-def read(group: h5py.Group) -> MassReport:
+def read(group: HeldGroup) -> MassReport:
     """The report that `write` wrote."""
     report: MassReport = LAYOUT.read(group)
     return report

@@ -6,6 +6,7 @@ import h5py
 
 from kinform.design import Design
 from kinform.model.kinematics import Mobility
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Ragged, Row, Table, Texts
 
 LAYOUT = Layout(
@@ -29,7 +30,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, design.kinematics.mobility)
 
 
-def read(group: h5py.Group) -> Mobility:
+def read(group: HeldGroup) -> Mobility:
     """The mobility that `write` wrote."""
     mobility: Mobility = LAYOUT.read(group)
     return mobility

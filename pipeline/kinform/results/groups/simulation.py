@@ -10,6 +10,7 @@ import h5py
 from kinform.design import Design
 from kinform.model.simulation import Simulation
 from kinform.results.groups.collisions import COLLISIONS
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Numbers, Row, Rows, Table, Texts, WholeColumns
 from kinform.results.table import TEXT
 
@@ -22,7 +23,7 @@ class _EnergyColumns:
     def write(self, group: h5py.Group, cls: type, records: Sequence[Simulation]) -> None:
         group["energy"].attrs.create("columns", ["kinetic", "potential", "work"], dtype=TEXT)
 
-    def read(self, group: h5py.Group, cls: type, rows: Rows) -> None:
+    def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         """Nothing: they are always these."""
 
 
@@ -51,7 +52,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, design.simulation)
 
 
-def read(group: h5py.Group) -> Simulation:
+def read(group: HeldGroup) -> Simulation:
     """The run that `write` wrote."""
     simulation: Simulation = LAYOUT.read(group)
     return simulation

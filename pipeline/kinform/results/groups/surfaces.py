@@ -8,6 +8,7 @@ import h5py
 
 from kinform.design import Design
 from kinform.model.surfaces import MeshSurfaces
+from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Table
 from kinform.results.table import FACETS
 
@@ -45,7 +46,7 @@ def write(group: h5py.Group, design: Design) -> None:
     LAYOUT.write(group, _Meshes(tuple(meshes)))
 
 
-def read(group: h5py.Group) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:
+def read(group: HeldGroup) -> tuple[dict[str, MeshSurfaces], dict[str, str]]:
     """The surfaces by mesh digest, and the fingerprints by mesh digest."""
     meshes: tuple[_Mesh, ...] = LAYOUT.read(group).meshes
     surfaces = {mesh.digest: MeshSurfaces(mesh.digest, mesh.surfaces, mesh.labels, mesh.noise) for mesh in meshes}
