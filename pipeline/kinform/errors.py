@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 
 class KinformError(Exception):
@@ -37,6 +37,25 @@ class InputError(KinformError):
     def __init__(self, problems: Iterable[Problem]):
         self.problems = tuple(problems)
         super().__init__("\n".join(str(p) for p in self.problems))
+
+
+class OpenSidesError(InputError):
+    """Joints that do not name their sides, where contact does not tell them; problems by joint."""
+
+    def __init__(self, by_joint: Mapping[str, Problem]):
+        self.by_joint = by_joint
+        super().__init__(by_joint.values())
+
+    def at(self, places: Mapping[str, tuple[str, int | None]]) -> OpenSidesError:
+        """The same with the file and line of each joint."""
+        return OpenSidesError(
+            {
+                name: replace(problem, file=places[name][0] or None, line=places[name][1])
+                if name in places
+                else problem
+                for name, problem in self.by_joint.items()
+            }
+        )
 
 
 class ResultsError(KinformError):

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from kinform.design import Design
-from kinform.errors import StageError
+from kinform.errors import OpenSidesError, StageError
 from kinform.form.sources import AS_IT_IS, Reading
 from kinform.foundation.progress import Progress
 from kinform.model.fingerprints import Fingerprints
@@ -104,7 +104,14 @@ def joints(design: Design, *, ledger: Ledger | None = None) -> Design:
         derived = kinematics.derive(view, design.surfaces, contacts, decisions)
         return Result({"kinematics": derived}, {"decisions": decisions.asked})
 
-    return advance(JOINTS, design, derive, ledger)
+    try:
+        done = advance(JOINTS, design, derive, ledger)
+    except OpenSidesError as error:
+        raise error.at({joint.name: (joint.file, joint.line) for joint in design.assembly.function.joints}) from None
+    found = {} if done.kinematics is None else {one.joint: one.parts for one in done.kinematics.sides}
+    if not found:
+        return done
+    return replace(done, assembly=replace(done.assembly, function=done.assembly.function.with_sides(found)))
 
 
 def mass(design: Design, *, ledger: Ledger | None = None) -> Design:

@@ -70,7 +70,9 @@ def _intended(design: Design, lengths: Lengths) -> list[RenderableType]:
     for one in given:
         gap = "" if one.gap is None else f"gap {lengths.length(one.gap)} {lengths.small}"
         rows.add(one.name, one.type, one.answer, one.free or one.blocked_by or gap)
-    return [rows]
+    sides = () if design.kinematics is None else design.kinematics.sides
+    found = [f"  {one.joint}: '{one.parts[0]}' and '{one.parts[1]}': {one.evidence}" for one in sides]
+    return [rows, Text("\nSides that contact told", style="bold"), *found] if found else [rows]
 
 
 def _range(item: JointRange | None, lengths: Lengths) -> str:

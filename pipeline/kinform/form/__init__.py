@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "from_meshes", "init_manifest", "load", "load_meshes", "schema"]
 
-CODE_VERSION: int = 13
+CODE_VERSION: int = 14
 """Bumped when results change."""
 
 _LAZY = {

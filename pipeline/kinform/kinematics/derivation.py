@@ -39,7 +39,7 @@ from kinform.kinematics.mobility.loop_redundancy import redundancies_of_loops
 from kinform.kinematics.mobility.named_freedoms import named_freedoms
 from kinform.kinematics.mobility.stated_couplings import coupled_mobility, coupling_rows, restrict_closure
 from kinform.kinematics.pair.question import Answer, bare_patches
-from kinform.kinematics.partition import Partition, partition
+from kinform.kinematics.partition import Partition, partition, with_sides
 from kinform.kinematics.separation.constraint_matrix import constraint_matrix
 from kinform.kinematics.separation.contact_rows import ContactRows, pair_cones
 from kinform.kinematics.separation.releases import with_releases
@@ -100,8 +100,10 @@ def derive(
 
     Parts are fused by groups, assumptions and contact of rank six; fusing comes before joints, so
     bodies are classified again until nothing fuses. Stick bodies take their joints from [function]. What is asked of
-    single pairs, and of all together, may be known to `answers`.
+    single pairs, and of all together, may be known to `answers`. Raises InputError where a joint names one side or none
+    and it is not clear which are meant.
     """
+    assembly, sides = with_sides(assembly, contacts)
     extents = Extents(assembly)
     patches, size = bare_patches(contacts.patches), extents.assembly
     pairs = Pairs(assembly, contacts, patches, extents, answers)
@@ -152,6 +154,7 @@ def derive(
         asides=asides,
         membership=() if found is None else _membership(found, _body_of_part(bodies)),
         unparted=() if found is None else tuple(Unparted(joint, parts) for joint, parts in found.unparted.items()),
+        sides=sides,
     )
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -39,6 +40,15 @@ class IntendedJoint:
     line: int | None
     closure: bool = False
     """It only closes a loop at its point: contact that lets the bodies do some of its motion does not contradict it."""
+    named: int = 2
+    """How many of its sides the designer names, the first ones: the others are "" until contact has told them."""
+
+    @property
+    def as_named(self) -> IntendedJoint:
+        """The joint as the designer gives it, without the sides that contact told."""
+        first, second = self.between
+        names = (first if self.named > 0 else "", second if self.named > 1 else "")
+        return self if names == self.between else replace(self, between=names)
 
 
 @dataclass(frozen=True)
@@ -136,6 +146,16 @@ class Function:
     requirements: tuple[Requirement, ...] = ()
     complete: tuple[str, ...] = ()
     """Prefixes of the manifests whose joints are all that are meant to move; "" for the top one."""
+
+    @property
+    def as_named(self) -> Function:
+        """The same without the sides of joints that contact told."""
+        return replace(self, joints=tuple(joint.as_named for joint in self.joints))
+
+    def with_sides(self, sides: Mapping[str, tuple[str, str]]) -> Function:
+        """The same with the sides of some joints, by their names."""
+        joints = (replace(one, between=sides[one.name]) if one.name in sides else one for one in self.joints)
+        return replace(self, joints=tuple(joints))
 
     @property
     def driven(self) -> bool:

@@ -418,6 +418,17 @@ class Unparted:
     may part from it."""
 
 
+@dataclass(frozen=True)
+class FoundSides:
+    """The sides of an intended joint that names one part, or none."""
+
+    joint: str
+    parts: Annotated[tuple[str, str], columns("part_a", "part_b")]
+    """The named one first; of two found ones, that on the ground's side."""
+    evidence: str
+    """What parts them, what each side has, and by how much the next way of parting would be dearer."""
+
+
 @dataclass(frozen=True, eq=False)
 class Kinematics:
     """All of it."""
@@ -442,6 +453,8 @@ class Kinematics:
     """With `[function] complete = true`: every part of an assembly with meshes, sorted by name."""
     unparted: tuple[Unparted, ...] = ()
     """With `[function] complete = true`: joints whose sides contact holds together, sorted by name."""
+    sides: tuple[FoundSides, ...] = ()
+    """Of joints that name one part or none, sorted by name."""
 
     def body_of(self, part: str) -> Body:
         """The body that contains the part; KeyError otherwise."""

@@ -41,7 +41,7 @@ def for_joints(assembly: Assembly) -> Assembly:
     """What decides bodies and joints: of the function, only the joints that it names, and where there are no meshes its
     couplings; densities, only where the heaviest body becomes the ground."""
     bare, function = _bare(assembly), _bare_function(assembly.function)
-    joints = tuple(replace(joint, range=None) for joint in function.joints)
+    joints = tuple(replace(joint.as_named, range=None) for joint in function.joints)
     parts = bare.parts if bare.ground is None else _weightless(bare.parts)
     groups = bare.groups if bare.ground is None else tuple(replace(g, override=None) for g in bare.groups)
     couplings = () if any(part.mesh is not None for part in parts) else function.couplings

@@ -15,7 +15,11 @@ class IntendedJointTable(Table):
     """`[[function.joint]]`: values are of the second of `between` about `axis`, relative to the first."""
 
     name: Name = Field(description="name of the joint, any text but '/'")
-    between: Pair = Field(description="two parts or groups; each stands for the body that contains it")
+    between: Annotated[list[Reference], Field(max_length=2)] = Field(
+        [],
+        description="a part, group or sub-assembly of each side; each stands for the body that contains it. One of "
+        "them, or none, where contact at the axis leaves only one way of parting",
+    )
     type: JointType = Field(description="type of the joint")
     axis: Vector | None = Field(None, description="direction of the axis; the normal of a planar joint")
     axis2: Vector | None = Field(None, description="second axis of a universal joint")

@@ -21,6 +21,7 @@ from kinform.form.materials import BUILT_IN, density_of
 from kinform.form.meshes.primitives import primitive
 from kinform.form.problems import Problems
 from kinform.form.readers.function import FunctionReader
+from kinform.form.readers.grounds import grounds_of
 from kinform.form.readers.open_manifest import Parsed, Scope, parse
 from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
@@ -144,7 +145,11 @@ class _AssemblyReader:
             for scope in self.scopes
             for _, table in scope.tables("function", "joint")
         }
-        readers = [FunctionReader(scope, self.files, places, joints) for scope in self.scopes]
+        grounds, meshed = (
+            grounds_of(self.scopes, self.subassemblies, parts),
+            any(part.mesh is not None for part in parts),
+        )
+        readers = [FunctionReader(scope, self.files, places, joints, grounds, meshed) for scope in self.scopes]
         intended = top.manifest.function
         function = Function(
             mobility=intended.mobility if intended else None,

@@ -35,10 +35,19 @@ LINEAR = ("prismatic",)
 
 class FunctionReader:
     """Reads one manifest; `places` are the full names of all parts and groups, `joints` of all intended joints
-    with their types."""
+    with their types, `grounds` of sub-assemblies with what holds them; `meshed`: whether any part has a mesh."""
 
-    def __init__(self, scope: Scope, files: DesignFiles, places: set[str], joints: dict[str, str]):
+    def __init__(
+        self,
+        scope: Scope,
+        files: DesignFiles,
+        places: set[str],
+        joints: dict[str, str],
+        grounds: dict[str, str] | None = None,
+        meshed: bool = True,
+    ):
         self.scope, self.files, self.places, self.joints = scope, files, places, joints
+        self.grounds, self.meshed = grounds or {}, meshed
 
     def place(self, name: str, *path: str | int) -> str:
         """Full name of a part or group; a problem when there is none."""
@@ -100,12 +109,28 @@ class FunctionReader:
         """`[[function.joint]]`."""
         for path, table in self.scope.tables("function", "joint"):
             what = f"[[function.joint]] {in_quotes(table.name)}"
-            between = self.pair(table.between, self.place, *path, "between")
+            between = self._sides(table, what, *path)
             geometry = self.geometry(table, table.type, what, *path)
             bounds = self._range(table, what, *path)
             name = self.scope.prefix + table.name
             where = self.scope.where(*path)
-            yield IntendedJoint(name, between, table.type, *geometry, bounds, *where, closure=table.closure)
+            named = len(table.between)
+            yield IntendedJoint(
+                name, between, table.type, *geometry, bounds, *where, closure=table.closure, named=named
+            )
+
+    def _sides(self, table: Any, what: str, *path: str | int) -> tuple[str, str]:
+        """Full names of what a joint joins; "" for what contact is to tell, which it cannot without meshes."""
+        if len(table.between) == 2:
+            return self.pair(table.between, self.side, *path, "between")
+        if table.type == "fixed" or not self.meshed:
+            why = "a fixed joint" if table.type == "fixed" else "a joint of parts without meshes"
+            self.scope.complain(f"{what}: {why} needs both sides", "name two parts or groups in `between`", *path)
+        return next((self.side(name, *path, "between") for name in table.between), ""), ""
+
+    def side(self, name: str, *path: str | int) -> str:
+        """Full name of a part or group; of a sub-assembly, that of its ground, or of its largest part."""
+        return self.grounds.get(self.scope.prefix + name) or self.place(name, *path)
 
     def _range(self, table: Any, what: str, *path: str | int) -> tuple[float, float] | None:
         if table.range is None:

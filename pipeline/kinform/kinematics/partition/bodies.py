@@ -11,9 +11,8 @@ import numpy as np
 from kinform.foundation.graphs.graph import shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
-from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
-from kinform.kinematics.partition.graph import Graph, graph_of
+from kinform.kinematics.partition.graph import Graph, graph_of, stated_merger
 from kinform.kinematics.partition.labelling import Labelling, Margin, label_all, margins
 from kinform.kinematics.partition.standard_parts import StandardPart, standard_parts
 from kinform.model.arrays import Array
@@ -79,15 +78,7 @@ def partition(
     Groups and assumptions stand. The result does not depend on the order of parts or joints.
     """
     joints = sorted(joints, key=lambda joint: joint.name)
-    merger = Merger(assembly)
-    for joint in joints:
-        for name in joint.between:
-            members = assembly.parts_of(name)
-            for other in members[1:]:
-                merger.fuse(members[0], other, f"named as {name}")
-        if joint.type == "fixed":
-            first, second = (assembly.parts_of(name)[0] for name in joint.between)
-            merger.fuse(first, second, f"intended joint {joint.name}")
+    merger = stated_merger(assembly, joints)
     moving = [joint for joint in joints if joint.type != "fixed"]
     graph = graph_of(assembly, contacts, moving, merger)
     labelling = label_all(graph.nodes, graph.seeds, graph.edges)

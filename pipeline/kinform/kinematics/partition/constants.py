@@ -70,6 +70,14 @@ true with it at first, 81 of 81 with 0.005, 105 of 121 with 0.001 (the false one
 BESIDE = 0.1
 """Of several pairs of bodies on one axis, those are proposed whose smaller side is at least this share of the largest
 such: legs on one hip axis, and not the rings of their bearings."""
+ALIKE = 0.3
+"""Share of the smallest side by which two ways of parting differ at most that are one: by a ring, a horn, screws."""
+ONLY_WAY = 1000.0
+"""Price by which every other way of parting is dearer than the one that is taken where a joint does not name its sides:
+that of a pocket. Beyond it something would be parted that is fastened. Holes round a journal (400) are no such, as the
+horns of servos have them: by 340 and 400 wrong ways were cheaper on a public robot, where batteries lie on the axis."""
+WAYS_NAMED = 4
+"""So many ways of parting are named where it is not clear which is meant."""
 SAME_AXIS = np.radians(1.0)
 """rad: journals whose axes differ by less are on one axis."""
 SAME_AXIS_OFF = 0.02

@@ -53,9 +53,31 @@ class Graph:
         return max(self.piece_of.values(), default=-1) + 1
 
 
-def graph_of(assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJoint], merger: Merger) -> Graph:
-    """The graph for these joints, none of them fixed; parts that are one in `merger` are one piece."""
-    costs = prices(joints, [joint_twists(joint) for joint in joints], contacts.patches, contacts.suggestions)
+def stated_merger(assembly: Assembly, joints: Sequence[IntendedJoint]) -> Merger:
+    """Parts that are one body whatever contact says: groups, assumptions, fixed joints, and the parts of one name."""
+    merger = Merger(assembly)
+    for joint in joints:
+        for name in filter(None, joint.between):
+            members = assembly.parts_of(name)
+            for other in members[1:]:
+                merger.fuse(members[0], other, f"named as {name}")
+        if joint.type == "fixed":
+            first, second = (assembly.parts_of(name)[0] for name in joint.between)
+            merger.fuse(first, second, f"intended joint {joint.name}")
+    return merger
+
+
+def graph_of(
+    assembly: Assembly,
+    contacts: Contacts,
+    joints: Sequence[IntendedJoint],
+    merger: Merger,
+    costs: Prices | None = None,
+) -> Graph:
+    """The graph for these joints, none of them fixed; parts that are one in `merger` are one piece. `costs`: what the
+    joints part at which price, where it is known."""
+    if costs is None:
+        costs = prices(joints, [joint_twists(joint) for joint in joints], contacts.patches, contacts.suggestions)
     parts = sorted(part.name for part in assembly.parts)
     number = {name: k for k, name in enumerate(parts)}
     named = [tuple(assembly.parts_of(name)[0] for name in joint.between) for joint in joints]

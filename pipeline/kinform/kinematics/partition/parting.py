@@ -69,6 +69,14 @@ class Prices:
     held: Mapping[PartPair, float]
     """What it costs to part a pair although no joint may: what holds it is broken."""
 
+    def of(self, numbers: Sequence[int]) -> Prices:
+        """The prices of some of the joints, numbered anew."""
+        new = {number: k for k, number in enumerate(numbers)}
+        some = {
+            pair: {new[k]: price for k, price in parted.items() if k in new} for pair, parted in self.by_joint.items()
+        }
+        return Prices(some, self.held)
+
 
 def prices(
     joints: Sequence[IntendedJoint],
@@ -170,6 +178,8 @@ class Contact:
             return constants.ROLLING
         if not turns:
             return self._guided(joint, opposed)
+        if joint.type == "planar":
+            return constants.JOURNAL  # a flat across its normal, wherever it lies
         price = self._round(joint, opposed)
         return max(price, constants.SERRATED) if (opposed & serrated).any() else price
 
@@ -177,6 +187,8 @@ class Contact:
         """(n,) points on facets of no known surface that go round the joint's axis: serrations of a servo's output,
         which is one mesh with the servo, in what it turns."""
         out = np.zeros(len(self.points), dtype=bool)
+        if joint.type == "planar":
+            return out
         for k, patch in enumerate(self.patches):
             rows = slice(int(self.start[k]), int(self.start[k + 1]))
             if patch.kind in ("freeform", "other"):

@@ -24,6 +24,7 @@ def joint_values(design: Design) -> dict[str, Any]:
         "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
         "intended": [asdict(answer) for answer in given],
         "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
+        "sides": [asdict(one) for one in kinematics.sides],
         "asides": [asdict(aside) for aside in kinematics.asides],
         "mobility": mobility_counts(kinematics.mobility),
         "separations": [

@@ -42,6 +42,7 @@ LAYOUT = Layout(
     Table("asides"),
     Table("membership"),
     Table("unparted"),
+    Table("sides"),
     Table("couplings", Table("meshings", field="meshing", owner="coupling")),
 )
 """The matrix and the mobility have groups of their own."""

@@ -1,0 +1,194 @@
+"""Ways in which a joint may part the assembly, where it does not say what it joins.
+
+A way is named by two parts that touch about the joint's axis: they are given to the cut as its two sides, beside
+the joints whose sides are known. What is parted in all tells how likely a way is. Ways that differ by rings, horns or
+screws only are one, the cheapest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from kinform.foundation.graphs.graph import UnionFind
+from kinform.kinematics.bodies.merging import Merger
+from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.graph import graph_of, stated_merger
+from kinform.kinematics.partition.labelling import Labels, label_all
+from kinform.kinematics.partition.parting import PartPair, Prices, contact_of_pairs, hints_of, joint_twists, prices
+from kinform.kinematics.partition.proposals import volumes
+from kinform.model.assembly import Assembly
+from kinform.model.contacts import Contacts
+from kinform.model.function import IntendedJoint
+from kinform.model.names import PartName
+
+Names = tuple[PartName, PartName]
+Bodies = tuple[frozenset[PartName], frozenset[PartName]]
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """One way of parting."""
+
+    names: Names
+    """A part of each side."""
+    bodies: Bodies
+    """All parts of each side."""
+    cost: float
+    """Of everything that is parted."""
+    beyond: float
+    """m along the joint's axis from its point to where they touch, or 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parted:
+    """The bodies of all parts."""
+
+    body: Mapping[PartName, int | None]
+    sides: Mapping[int, Labels]
+    """Of joints, by number."""
+    cost: float
+
+
+class Ways:
+    """The moving joints of an assembly, and what each may part. Numbers of joints are those of `joints`."""
+
+    def __init__(self, assembly: Assembly, contacts: Contacts, joints: Sequence[IntendedJoint]):
+        self.assembly, self.contacts, self.joints = assembly, contacts, joints
+        self.volume = volumes(assembly)
+        self.contact = contact_of_pairs(contacts.patches)
+        self.hints = hints_of(contacts.suggestions)
+        motions = [joint_twists(joint) for joint in joints]
+        self.prices: Prices = prices(joints, motions, contacts.patches, contacts.suggestions)
+        self._parted: dict[tuple[tuple[int, Names], ...], Parted] = {}
+        self._drawn: dict[tuple[int, bool], list[Way]] = {}
+
+    @cached_property
+    def merger(self) -> Merger:
+        """What is one body whatever contact says."""
+        return stated_merger(self.assembly, sorted(self.assembly.function.joints, key=lambda joint: joint.name))
+
+    @cached_property
+    def piece(self) -> dict[PartName, PartName]:
+        """The largest of the parts that no joint may part from a part, by part."""
+        number = {name: k for k, name in enumerate(sorted(self.volume))}
+        sets = UnionFind(len(number))
+        first: dict[int, int] = {}
+        for name, k in number.items():
+            sets.union(first.setdefault(self.merger.root(name), k), k)
+        for pair, parted in self.prices.by_joint.items():
+            if not parted:
+                sets.union(number[pair[0]], number[pair[1]])
+        largest: dict[int, PartName] = {}
+        for name, k in number.items():
+            root = sets.find(k)
+            largest[root] = max(largest.get(root, name), name, key=lambda one: (self.volume[one], one))
+        return {name: largest[sets.find(k)] for name, k in number.items()}
+
+    def parted(self, known: Mapping[int, Names]) -> Parted:
+        """The bodies that the joints with known sides ask for."""
+        key = tuple(sorted(known.items()))
+        if key not in self._parted:
+            numbers = [number for number, _ in key]
+            joints = [replace(self.joints[number], between=names) for number, names in key]
+            costs = self.prices.of(numbers)
+            graph = graph_of(self.assembly, self.contacts, joints, self.merger.copy(), costs)
+            labels = label_all(graph.nodes, graph.seeds, graph.edges).labels
+            cost = 0.0
+            for edge in graph.edges:
+                first, second = (labels[end] for end in edge.ends)
+                if first is not None and second is not None:
+                    cost += edge.price(first, second)
+            body = {name: labels[piece] for name, piece in graph.piece_of.items()}
+            self._parted[key] = Parted(body, dict(zip(numbers, graph.sides, strict=True)), cost)
+        return self._parted[key]
+
+    def ways(self, number: int, known: Mapping[int, Names]) -> list[Way]:
+        """Ways of parting by a joint beside those whose sides are known, the cheapest first; none that parts the same
+        two bodies as another joint. Flats beside the axis count where nothing goes round it."""
+        for flats in (False, True):
+            out: list[Way] = []
+            for drawn in self._alone(number, flats):
+                parted = self.parted(dict(known) | {number: drawn.names})
+                sides = parted.sides[number]
+                if not any(set(parted.sides[other]) == set(sides) for other in known if other != number):
+                    out.append(self._way(drawn.names, parted, sides, drawn.beyond))
+            found = self._different(number, out)
+            if found:
+                return found
+        return []
+
+    def _alone(self, number: int, flats: bool) -> list[Way]:
+        """Ways of parting by a joint without any other, those that are alike once."""
+        if (number, flats) not in self._drawn:
+            found = []
+            for names, beyond in sorted(self._touching(number, flats).items()):
+                parted = self.parted({number: names})
+                found.append(self._way(names, parted, parted.sides[number], beyond))
+            self._drawn[number, flats] = self._different(number, found)
+        return self._drawn[number, flats]
+
+    def _touching(self, number: int, flats: bool) -> dict[Names, float]:
+        """Parts that touch about the joint's axis and that it may part, with how far from its point: of each two pieces
+        those that touch over the largest area."""
+        joint = self.joints[number]
+        best: dict[frozenset[PartName], tuple[float, Names]] = {}
+        for pair in self.about(number, flats):
+            pieces = frozenset(self.piece[name] for name in pair)
+            if len(pieces) == 2:
+                best[pieces] = max(best.get(pieces, (0.0, pair)), (float(self.contact[pair].weights.sum()), pair))
+        out: dict[Names, float] = {}
+        for _, pair in best.values():
+            out[pair] = 0.0
+            if joint.axis is not None and joint.point is not None:
+                along = (self.contact[pair].points - joint.point) @ joint.axis
+                out[pair] = max(float(along.min()), -float(along.max()), 0.0)
+        return out
+
+    def about(self, number: int, flats: bool = True) -> list[PartPair]:
+        """The pairs that touch about the joint's axis and that it may part, of the parts below its own manifest. A
+        slide has no place: of it, guides count only."""
+        joint = self.joints[number]
+        prefix = joint.name[: joint.name.rfind("/") + 1]
+        turns = joint.type not in ("prismatic", "planar")
+        return [
+            pair
+            for pair, parted in self.prices.by_joint.items()
+            if number in parted
+            and all(name.startswith(prefix) for name in pair)
+            and (not turns or self.contact[pair].near(joint))
+            and ((turns and flats) or self._own(number, pair) <= constants.PARTED)
+        ]
+
+    def _own(self, number: int, pair: PartPair) -> float:
+        return self.prices.by_joint[pair][number] - self.hints.get(pair, 0.0)
+
+    def _way(self, names: Names, parted: Parted, sides: Labels, beyond: float) -> Way:
+        first, second = (frozenset(n for n, body in parted.body.items() if body == side) for side in sides)
+        return Way(names, (first, second), parted.cost, beyond)
+
+    def _different(self, number: int, ways: Sequence[Way]) -> list[Way]:
+        """Of ways that are alike the cheapest, of those whose sides are more than rings, balls and screws, and with the
+        named part on a side."""
+        joint = self.joints[number]
+        named = self.assembly.parts_of(joint.between[0])[0] if joint.between[0] else None
+        least = constants.SUBSTANTIAL * sum(self.volume.values())
+        out: list[Way] = []
+        for way in sorted(ways, key=lambda one: (one.cost, one.names)):
+            if named is not None and not any(named in side for side in way.bodies):
+                continue
+            free = [side for side in way.bodies if named not in side]
+            if min(self._size(side) for side in free) >= least and not any(self.alike(way, other) for other in out):
+                out.append(way)
+        return out
+
+    def alike(self, one: Way, other: Way) -> bool:
+        """Whether two ways differ by little, by what the smallest of their sides has."""
+        smallest = min(self._size(side) for side in (*one.bodies, *other.bodies))
+        (a, b), (c, d) = one.bodies, other.bodies
+        odd = min(self._size((a ^ c) | (b ^ d)), self._size((a ^ d) | (b ^ c)))
+        return odd < constants.ALIKE * smallest
+
+    def _size(self, names: frozenset[PartName]) -> float:
+        return sum(self.volume.get(name, 0.0) for name in sorted(names))
