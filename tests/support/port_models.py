@@ -175,6 +175,20 @@ def governor():
     return model
 
 
+def chain(links, held=False):
+    """Rods of 1 m hinged in a row: horizontal and hanging by one end, or held at both along a half circle."""
+    angle = np.linspace(np.pi, 2 * np.pi, links + 1)
+    half = links / np.pi * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    points = half if held else np.outer(np.arange(links + 1), (1.0, 0, 0))
+    model = Model()
+    for k in range(links):
+        model.rod(f"r{k}", points[k], points[k + 1])
+        model.joint(f"j{k}", "base" if k == 0 else f"r{k - 1}", f"r{k}", point=points[k])
+    if held:
+        model.joint("end", f"r{links - 1}", "base", point=points[links])
+    return model
+
+
 def hung_chain(law=None):
     """A ball, a slide and hinges in a row, a motion drive in the middle and a loop at the end."""
     model = Model()

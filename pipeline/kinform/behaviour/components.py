@@ -226,27 +226,27 @@ class System(Component):
         (only,) = (c for c in self.components if isinstance(c, Ground))
         return only
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Ground | RigidBody, ...]:
         """Ground and bodies in order."""
         return tuple(c for c in self.components if isinstance(c, Ground | RigidBody))
 
-    @property
+    @cached_property
     def joints(self) -> tuple[JointComponent, ...]:
         """Joints in order."""
         return tuple(c for c in self.components if isinstance(c, JointComponent))
 
-    @property
+    @cached_property
     def gears(self) -> tuple[Gear, ...]:
         """Gears in order."""
         return tuple(c for c in self.components if isinstance(c, Gear))
 
-    @property
+    @cached_property
     def springs(self) -> tuple[SpringDamper, ...]:
         """Springs and dampers between points, in order."""
         return tuple(c for c in self.components if isinstance(c, SpringDamper))
 
-    @property
+    @cached_property
     def loads(self) -> tuple[LoadComponent, ...]:
         """Loads in order."""
         return tuple(c for c in self.components if isinstance(c, LoadComponent))

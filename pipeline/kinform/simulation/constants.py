@@ -157,6 +157,9 @@ LONGER = 1.5
 """Times the plain evaluations that a run must promise to take before it is compiled early: its pace may fall."""
 SHOWN = 60
 """Steps from which on the whole run can be told to be longer than that."""
+PASS = 200
+"""Multiplications a rate of one pass of articulated bodies along the tree (`kernel.choice.way`). Counted; with it the
+two ways take as long as each other where they are said to."""
 LARGE = 1000
 """Rates times independent rows of the loops from which on plain functions would take too long at all."""
 STALL = 1000

@@ -5,15 +5,18 @@ Never compiled: it is called a few times a run.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from kinform.model.arrays import Ints
-from kinform.simulation.constants import CLOSING_PIVOT
+from kinform.simulation.constants import CLOSING_PIVOT, PASS
 from kinform.simulation.kernel.loops import gather
 
 from kinform.simulation.kernel.layout import (  # isort: skip
-    COUNTS, COLUMNS, CLOSURES, MODE, SCALE, GEARS, ROWS, VECTORS,
-    RANK, RATES, SIGNAL, CHOSEN, ORDER, PLACE,
+    COUNTS, LINKS, COLUMNS, CLOSURES, MODE, SCALE, GEARS, ROWS, VECTORS,
+    RANK, LED, RATES, PARENT, LINK, BEFORE, SIGNAL, WEIGHT, TENSOR, CHOSEN, ORDER, PLACE, STANDING, WAY,
+    MOVED, LED_RATE, MASSLESS_RATE,
     REFERENCE,
     Nums, Work,
 )  # fmt: skip
@@ -53,3 +56,26 @@ def choose(ints: Ints, nums: Nums, work: Work) -> None:
     mode[ORDER][:n] = order
     for place, column in enumerate(order):
         mode[PLACE][column] = place
+
+
+def way(ints: Ints, nums: Nums) -> None:
+    """Decides whether articulated bodies are the way to solve with the rows and rates chosen, by what both ways cost,
+    and writes what they make of each rate: all that is not led has mass to move, or follows from a row."""
+    n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
+    links, columns, mode = np.array(ints[LINKS]), np.array(ints[COLUMNS]).reshape(n, 3), ints[MODE]
+    heavy: Any = (np.array(nums[LINKS])[:, [WEIGHT, *range(TENSOR, TENSOR + 12, 4)]] > 0.0).any(axis=1)
+    for link in range(len(links) - 1, 0, -1):
+        heavy[links[link, PARENT]] |= heavy[link]
+    depth = np.zeros(n)
+    for k in range(n):
+        depth[k] = 1 + (depth[columns[k, BEFORE]] if columns[k, BEFORE] >= 0 else 0)
+    standing = np.where(columns[:, SIGNAL] >= 0, LED_RATE, np.where(heavy[columns[:, LINK]], MOVED, MASSLESS_RATE))
+    loose, rest = np.flatnonzero(standing == MASSLESS_RATE), n - rank
+    rows = rank - len(loose)
+    # Multiplications, of either: reduced mass matrices, or passes along the tree and a matrix of the rows.
+    through_rows = 2 * depth.sum() * rest + rank * rest**2 / 2 + rest**3 / 6
+    reduced = through_rows if rank or led else (depth**2).sum() / 2
+    passes = PASS * n * (rows + 2) + rows * n * rows / 2 + rows**3 / 6
+    wanted = passes < reduced and set(loose.tolist()) <= set(np.array(mode[ORDER])[:rank].tolist())
+    mode[STANDING][:n] = standing.tolist()
+    mode[WAY][0] = int(wanted)

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from kinform.simulation.kernel import (
+    articulated,
     crossings,
     equations,
     explicit,
@@ -34,10 +35,11 @@ from kinform.simulation.kernel import (
     vectors,
 )
 
-_MODULES = (vectors, motion, masses, forces, loops, reduction, equations, crossings, steps, explicit)
+_MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
 _UNITS = (
     motion.place_links, motion.twist_links, masses.inertias, masses.mass_matrix, loops.gather, loops.eliminate,
+    articulated.refer, articulated.articulate, articulated.resist, articulated.respond, articulated.settle_tree,
     reduction.reduce, reduction.settle, equations.derivative, equations.project, steps.slope, steps.try_step,
     explicit.sample, explicit.attempt, explicit.pass_through, explicit.advance,
 )  # fmt: skip

@@ -6,6 +6,7 @@ import math
 
 from kinform.model.arrays import Ints
 from kinform.simulation.constants import FACTORS_STALE, MOST_CORRECTIONS, SLOW_CORRECTION, TORN_GAP
+from kinform.simulation.kernel.articulated import resist
 from kinform.simulation.kernel.forces import between, drive, law, loads
 from kinform.simulation.kernel.loops import gained, gap_of
 from kinform.simulation.kernel.masses import cholesky, inertias, mass_matrix, solve_cholesky, wrenches
@@ -14,8 +15,8 @@ from kinform.simulation.kernel.reduction import factor, settle
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, LOADS, SPRINGS, MODE, CONSTANTS, GEARS, PIECES, STATE, MASS, VECTORS,
-    RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, TWIST, GAIN, CHOSEN,
-    FORCE, ACC, NEED, GAP, KEPT,
+    RANK, LED, POSITIONS, STATES, RATES, LENGTH, LAST, KIND, Q, FIRST, WIDTH, SCREW, SIGNAL, TWIST, GAIN, WRENCH,
+    CHOSEN, WAY, FORCE, ACC, NEED, GAP, KEPT, PULLED,
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
 
@@ -44,14 +45,21 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         impose(links, columns, values, pieces, t, y, first)
     place_links(ints, nums, work, y)
     twist_links(ints, work, y)
-    inertias(ints, nums, work)
-    wrenches(ints, nums, work)
+    articulated = mode[WAY][0] == 1
+    if articulated:
+        for i in range(1, len(links)):
+            for c in range(WRENCH, WRENCH + 6):
+                state[i][c] = 0.0
+    else:
+        inertias(ints, nums, work)
+        wrenches(ints, nums, work)
     power = drive(ints, nums, vectors, t, y, dy)
     power += loads(ints[LOADS], nums[LOADS], state)
     power += between(ints[SPRINGS], nums[SPRINGS], state)
-    mass_matrix(ints, work, True)
+    if not articulated:
+        mass_matrix(ints, work, True)
     margin = 1.0
-    if rank == 0 and led == 0:
+    if rank == 0 and led == 0 and not articulated:
         if not cholesky(matrix, n):
             return -1.0
         for k in range(n):
@@ -66,7 +74,11 @@ def derivative(ints: Ints, nums: Nums, work: Work, t: float, y: Row, dy: Row) ->
         for k in range(n):
             if columns[k][SIGNAL] >= 0:
                 _, _, vectors[ACC][k] = law(values, pieces, columns[k][SIGNAL], t)
+        if articulated:
+            resist(ints, nums, work, y)
+            vectors[KEPT][PULLED] = 1.0
         settle(ints, work)
+        vectors[KEPT][PULLED] = 0.0
         for k in range(n):
             if columns[k][SIGNAL] >= 0:
                 power += vectors[NEED][k] * y[first + k]
@@ -172,8 +184,9 @@ def project(ints: Ints, nums: Nums, work: Work, t: float, y: Row, closed: float,
             size = max(size, abs(vectors[GAP][r]))
         stale = count > 0 and size > SLOW_CORRECTION * before if factored else before > FACTORS_STALE
         if stale:
-            inertias(ints, nums, work)
-            mass_matrix(ints, work, False)
+            if mode[WAY][0] == 0:
+                inertias(ints, nums, work)
+                mass_matrix(ints, work, False)
             margin = factor(ints, nums, work)
             if margin <= 0.0:
                 return size if margin == 0.0 else -1.0

@@ -36,8 +36,9 @@ COUNTS, LINKS, COLUMNS, CLOSURES, SIGNALS, ACTORS, LOADS, SPRINGS, MODE, STOPS =
 CONSTANTS, SCALE, GEARS, PIECES = COUNTS, COLUMNS, MODE, 10
 
 # Tables of scratch.
-STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE, MOTIONS = range(10)
-"""MOTIONS: columns keep the loops closed. HALF: the mass matrix times them."""
+STATE, SCREWS, MASS, ROWS, HALF, REDUCED, VECTORS, STAGES, DENSE, MOTIONS, CARRIED, HANDLES = range(12)
+"""MOTIONS: columns keep the loops closed. HALF: the mass matrix times them. CARRIED and HANDLES: of links and rates,
+where they are articulated bodies (`articulated`)."""
 
 # ints[COUNTS][0]
 RANK, LED, POSITIONS, STATES, RATES, SIZE = range(6)
@@ -67,11 +68,23 @@ ROT, POS, TWIST, GAIN, WRENCH, INERT = 0, 9, 12, 18, 24, 30
 # ints[MODE]: independent rows; rates in the order dependent, free, led; where each is in it. Of the rows as
 # gathered and factored: for each dependent rate how far down rows reach that touch it or one before, and
 # for each row the last dependent rate that it touches.
-CHOSEN, ORDER, PLACE, LOWEST, REACH = range(5)
+CHOSEN, ORDER, PLACE, LOWEST, REACH, STANDING, WAY = range(7)
+"""STANDING: what articulated bodies make of each rate. WAY, its first number: 1 where they are the way to solve."""
+MOVED, LED_RATE, MASSLESS_RATE = range(3)
+"""MASSLESS_RATE: of a branch that closes a loop; the loop says what it does."""
 
 # work[VECTORS]:
 FORCE, ACC, NEED, GAP, GIVEN, PIVOT, REFERENCE, TRIAL, RIGHT, KEPT = range(10)
-"""KEPT, its first number: smallest pivot over that of its choice, at the last projection."""
+"""KEPT, its first number: smallest pivot over that of its choice, at the last projection; its next, whether links have
+wrenches (`articulated`)."""
+PULLED = 1
+
+# work[CARRIED], of links, and work[HANDLES], of rates, after the six numbers of their screw.
+REFERENCE_POINT, SPATIAL, PULL, LOADED, GOING, RUNNING, CARRIED_WIDTH = 0, 3, 39, 45, 51, 57, 60
+"""SPATIAL: 6 × 6 inertia of what the link carries. PULL: the wrench that it needs itself. LOADED: with what it carries.
+GOING: its acceleration over that at constant rates; RUNNING: of its reference, at those."""
+REACTION, INVERSE, SURPLUS, HANDLE_WIDTH = 6, 12, 13, 14
+"""REACTION: inertia times the screw. INVERSE: of what the rate moves. SURPLUS: effort that is left for it."""
 
 # ints[ACTORS], and their kinds.
 DOES, AT_Q, AT_V, LAW, FIRST_STATE, SECOND_STATE = range(6)

@@ -8,12 +8,13 @@ when there are none: Eᵀ (M x − f) vanishes for the free ones, and is the eff
 from __future__ import annotations
 
 from kinform.model.arrays import Ints
+from kinform.simulation.kernel.articulated import articulate, settle_tree
 from kinform.simulation.kernel.loops import back_substitute, eliminate, gather
 from kinform.simulation.kernel.masses import cholesky, solve_cholesky
 
 from kinform.simulation.kernel.layout import (  # isort: skip
     COUNTS, COLUMNS, MODE, MASS, ROWS, HALF, REDUCED, VECTORS, MOTIONS,
-    RANK, LED, RATES, BEFORE, ORDER,
+    RANK, LED, RATES, BEFORE, ORDER, WAY,
     FORCE, ACC, NEED, GAP, TRIAL, RIGHT,
     Row, Table, Index, Nums, Work,
 )  # fmt: skip
@@ -78,6 +79,8 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
     """
     gather(ints, nums, work, ints[COUNTS][0][RANK])
     margin = eliminate(ints, nums, work)
+    if ints[MODE][WAY][0] == 1:
+        return -1.0 if margin != 0.0 and articulate(ints, nums, work) < 0.0 else margin
     if margin != 0.0 and reduce(ints, work) < 0.0:
         return -1.0
     return margin
@@ -86,6 +89,9 @@ def factor(ints: Ints, nums: Nums, work: Work) -> float:
 def settle(ints: Ints, work: Work) -> None:
     """Solves for work[VECTORS][ACC] from [FORCE], [GAP] (by independent rows) and led rates in [ACC], by what
     `factor` left. [NEED] is the effort that led rates take."""
+    if ints[MODE][WAY][0] == 1:
+        settle_tree(ints, work)
+        return
     n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
     before, order, matrix = ints[COLUMNS], ints[MODE][ORDER], work[MASS]
     rows, small, vectors = work[ROWS], work[REDUCED], work[VECTORS]

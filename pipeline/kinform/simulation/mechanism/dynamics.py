@@ -86,6 +86,7 @@ def _place(ints: Ints, nums: Nums, work: Work, y: Row, rank: int) -> None:
     motion.place_links(ints, nums, work, y)
     if rank:
         choice.choose(ints, nums, work)
+    choice.way(ints, nums)
 
 
 def _weigh(ints: Ints, nums: Nums, work: Work, y: Row) -> None:

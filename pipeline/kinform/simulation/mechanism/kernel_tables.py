@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from kinform.behaviour.components import RigidBody, System
@@ -11,6 +13,7 @@ from kinform.model.arrays import Array, Ints
 from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.tables import Tables
 from kinform.simulation.mechanism.actuation import Actuation
+from kinform.simulation.mechanism.coefficients import NUMBERS
 from kinform.simulation.mechanism.mechanism import Mechanism
 
 
@@ -39,11 +42,11 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     n, nq = mechanism.rates, mechanism.gear_q.shape[1]
     size = nq + n + states + 1
     count = 6 * len(closures) + len(mechanism.gear_v)
-    width = max(n, count, nq, 1)
+    width = max(n, count, nq, 2)
     scale = np.column_stack([mechanism.scale, ~mechanism.moves[mechanism.link_of].any(axis=0)])[order.v_order]
     gears = np.hstack([mechanism.gear_v[:, order.v_order], mechanism.gear_q[:, order.q_order]])
     values, pieces = signals.tables()
-    mode = np.zeros((5, width), dtype=np.int64)
+    mode = np.zeros((7, width), dtype=np.int64)
     mode[layout.ORDER, :n] = np.argsort(columns[:, layout.SIGNAL] >= 0, kind="stable")
     mode[layout.PLACE, :n] = np.argsort(mode[layout.ORDER, :n])
     numbers = np.array([[*gravity, mechanism.length, np.inf, 0.0, 0.0, 0.0]])
@@ -58,6 +61,7 @@ def tabulate(mechanism: Mechanism, system: System, gravity: Array, actuation: Ac
     L = len(mechanism.parent)
     shapes = (
         (L, 40), (n, 6), (n, n), (max(count, 1), max(n, 1)), (n, n), (n, n), (10, width), (20, size), (7, size), (n, n),
+        (L, layout.CARRIED_WIDTH), (n, layout.HANDLE_WIDTH),
     )  # fmt: skip
     work = tuple(np.zeros(shape) for shape in shapes)
     work[layout.STATE][0, [0, 4, 8]] = 1.0
@@ -129,11 +133,12 @@ def _links(mechanism: Mechanism, system: System, order: _Order) -> Array:
     for ball in mechanism.balls:
         out[ball.link, layout.POINT : layout.POINT + 3] = ball.point
     link_of = dict(zip(mechanism.bodies, mechanism.link_of, strict=True))
-    for link in range(1, len(out)):
-        bodies = [b for b in system.bodies if isinstance(b, RigidBody) and link_of[b.subject] == link]
+    carried: dict[int, list[RigidBody]] = {}
+    for body in system.bodies:
+        if isinstance(body, RigidBody) and link_of[body.subject] > 0:
+            carried.setdefault(int(link_of[body.subject]), []).append(body)
+    for link, bodies in carried.items():
         mass = sum(b.mass or 0.0 for b in bodies)
-        if not bodies:
-            continue
         points = np.array([b.centre_of_mass for b in bodies]) - mechanism.centre
         weights = np.array([b.mass for b in bodies])
         centre = weights @ points / mass if mass > 0.0 else points.mean(axis=0)
@@ -224,20 +229,12 @@ def _actors(actuation: Actuation, order: _Order, signals: _Signals) -> tuple[Int
     return _rows(rows, 6), np.array(numbers, dtype=np.float64).reshape(-1, 8), states
 
 
+@cache
 def _coefficients() -> Array:
-    """nums[COEFFICIENTS], from scipy's own integrator of this method."""
-    from scipy.integrate import DOP853
-
+    """nums[COEFFICIENTS]."""
     out = np.zeros((25, 16))
-    out[:12, :12] = DOP853.A[:12, :12]
-    out[12, :12] = DOP853.B
-    out[13:16] = DOP853.A_EXTRA
-    out[layout.B_ROW, :12] = DOP853.B
-    out[layout.C_ROW, :12] = DOP853.C[:12]
-    out[layout.C_ROW, 12] = 1.0
-    out[layout.C_ROW, 13:16] = DOP853.C_EXTRA
-    out[layout.E3_ROW, :13] = DOP853.E3
-    out[layout.E5_ROW, :13] = DOP853.E5
-    out[layout.D_ROW : layout.D_ROW + 4] = DOP853.D
-    out[layout.ORDER_ROW, :12] = np.argsort(DOP853.C[:12], kind="stable")
+    for row, numbers in zip(out, NUMBERS, strict=False):
+        row[list(numbers)] = list(numbers.values())
+    out[layout.ORDER_ROW, :12] = np.argsort(out[layout.C_ROW, :12], kind="stable")
+    out.setflags(write=False)
     return out

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -161,12 +162,23 @@ class Mechanism:
     def advance(self, q: Array, step: Array) -> Array:
         """Positions after the displacement `step` (n,), a rate times a time."""
         out = q.copy()
-        for slot in self.slots:
-            if slot.has_ball:
-                out[slot.q] = _turned(q[slot.q], step[slot.v])
-            else:
-                out[slot.q] += step[slot.v]
+        positions, rates = self._plain
+        out[positions] += step[rates]
+        for slot in self._balls:
+            out[slot.q] = _turned(q[slot.q], step[slot.v])
         return out
+
+    @cached_property
+    def _balls(self) -> tuple[Slot, ...]:
+        return tuple(slot for slot in self.slots if slot.has_ball)
+
+    @cached_property
+    def _plain(self) -> tuple[Ints, Ints]:
+        """Positions that are no ball's, and the rate of each."""
+        slots = [slot for slot in self.slots if not slot.has_ball]
+        both = [(q, v) for s in slots for q, v in zip(_range(s.q), _range(s.v), strict=True)]
+        positions, rates = np.array(both, dtype=np.int64).reshape(-1, 2).T
+        return positions, rates
 
     def gap(self, X: Array, q: Array) -> Array:
         """(6C + G,) what keeps the loops from closing: rotation (rad), displacement over `length`."""
@@ -205,6 +217,10 @@ class Mechanism:
     @property
     def _row_scale(self) -> Array:
         return np.array([1.0, 1.0, 1.0, self.length, self.length, self.length])
+
+
+def _range(slots: slice) -> range:
+    return range(slots.start, slots.stop)
 
 
 def _ball_motion(ball: BallLink, q: Array) -> Array:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinform.behaviour.components import System
 from kinform.model.arrays import Array
 from kinform.simulation.constants import DEPENDENT_GEARS, VANISHING_WRENCH
 from kinform.simulation.mechanism.dynamics import Dynamics
@@ -38,7 +39,7 @@ class Balance:
 
 def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: Array) -> Balance:
     """How far the nodes are from balance at the efforts (T, n) on their shafts."""
-    mechanism, system, length = dynamics.mechanism, dynamics.system, dynamics.mechanism.length
+    mechanism, length = dynamics.mechanism, dynamics.mechanism.length
     bodies = [mechanism.bodies[k] for k in dynamics.body_index]
     wrench, points = reactions.on_second, reactions.points
     with np.errstate(over="ignore"):  # of a run that overflows
@@ -53,6 +54,7 @@ def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: 
     # Where all wrenches pass zero at once, only rounding is left to be compared with rounding.
     scale = np.maximum(scale, VANISHING_WRENCH * scale.max(initial=0.0))
     errors = np.zeros((len(effort), len(mechanism.bodies)))
+    held = _held(dynamics.system)
     for k, (body, link) in enumerate(zip(bodies, dynamics.body_links, strict=True)):
         X, V, A = states.poses[:, link], states.twists[:, link], states.accelerations[:, link]
         R, spin, turn = X[:, :3, :3], V[:, :3], A[:, :3]
@@ -65,14 +67,21 @@ def imbalance(dynamics: Dynamics, states: States, reactions: Reactions, effort: 
         inertia = dynamics.inertia[k]
         euler = alpha @ inertia.T + np.cross(omega, omega @ inertia.T)
         torque = torque - (R @ euler[..., None])[..., 0]
-        for j, joint in enumerate(system.joints):
-            for port, sign in (("a", -1.0), ("b", 1.0)):
-                if system.body_at(joint.name, port).subject == body:
-                    force = force + sign * wrench[:, j, 3:]
-                    torque = torque + sign * (wrench[:, j, :3] + np.cross(points[:, j] - com, wrench[:, j, 3:]))
+        for j, sign in held.get(body, ()):
+            force = force + sign * wrench[:, j, 3:]
+            torque = torque + sign * (wrench[:, j, :3] + np.cross(points[:, j] - com, wrench[:, j, 3:]))
         errors[:, dynamics.body_index[k]] = np.maximum(np.abs(force).max(axis=1), np.abs(torque).max(axis=1) / length)
     least = np.where(scale > 0.0, scale, 1.0)[:, None]
     return Balance(errors / least, _shafts(dynamics, states, reactions, effort) / least)
+
+
+def _held(system: System) -> dict[str, list[tuple[int, float]]]:
+    """Joints at each body, in order: which, and the sign of its wrench on the second body there."""
+    out: dict[str, list[tuple[int, float]]] = {}
+    for j, joint in enumerate(system.joints):
+        for port, sign in (("a", -1.0), ("b", 1.0)):
+            out.setdefault(system.body_at(joint.name, port).subject, []).append((j, sign))
+    return out
 
 
 def _shafts(dynamics: Dynamics, states: States, reactions: Reactions, effort: Array) -> Array:
