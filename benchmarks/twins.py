@@ -31,6 +31,12 @@ ROBOTS = {
     "so101": "TheRobotStudio+SO-ARM100/Simulation/SO101/so101_new_calib.urdf",
     "duck_bdx": "apirrone+Open_Duck_Mini/mini_bdx/robots/bdx/robot.urdf",
     "toddler_active": "hshi74+toddlerbot/toddlerbot/descriptions/assemblies/toddlerbot_active/toddlerbot_active.urdf",
+    "so100": "TheRobotStudio+SO-ARM100/Simulation/SO100/so100.urdf",
+    "finger_edu": "Gepetto+example-robot-data/robots/finger_edu_description/robots/finger_edu.urdf",
+    "2wheels": "Rhoban+onshape-to-robot-examples/2wheels_urdf/robot.urdf",
+    "cassie_like": "Gepetto+example-parallel-robots/robots/cassie_like/robot.urdf",
+    "robot_delta": "Gepetto+example-parallel-robots/robots/robot_delta/robot.urdf",
+    "solo12": "Gepetto+example-robot-data/robots/solo_description/robots/solo12.urdf",
 }
 AXIS_OFF = 0.003
 """m."""

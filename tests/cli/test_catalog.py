@@ -6,9 +6,11 @@ import contextlib
 import json
 import shutil
 import sqlite3
+from pathlib import Path
 
 import pytest
 from support.places import FIXTURES
+from support.walkers import Walker
 
 from kinform import results
 from kinform.catalog import joint_count
@@ -155,3 +157,16 @@ def test_counts_of_joints():
     assert joint_count("revolute:2") == ("revolute", 2, 2)
     assert joint_count("revolute:0") == ("revolute", 0, 0)
     assert joint_count("Revolute:2+") == ("revolute", 2, None)
+
+
+def test_a_description_is_run_first_with_its_results_beside_it(tmp_path, monkeypatch, found, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("walker.urdf").write_text(Walker().text())
+    assert main(["catalog", "add", "walker.urdf"]) == 0
+    assert "walker.h5: results of walker.urdf" in capsys.readouterr().err
+    assert found("--joint", "revolute:4") == ["walker.h5"]
+    assert main(["catalog", "rebuild", "-q"]) == 0
+    assert found() == ["walker.h5"]
+    Path("walker.xml").write_text("<mujoco/>")
+    assert main(["catalog", "add", "walker.xml"]) == 2
+    assert "walker.h5 beside it holds results of walker.urdf" in capsys.readouterr().err

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 from support.command_line import ran_here
+from support.places import FIXTURES
 from support.solids import box, rod, save
 from support.suggestions import CORNERS, drilled
 
@@ -145,3 +148,25 @@ def test_joints_are_proposed_that_can_be_taken_over(tmp_path):
     (screwed,) = (one for one in bodies["membership"] if one["part"] == "screw")
     assert screwed["evidence"].startswith("held by 'low'")
     assert screwed["evidence"].endswith("screw: named 'screw'")
+
+
+def test_a_cad_file_without_function_gets_proposals_as_meshes_do(tmp_path):
+    """The joint that is proposed for a STEP file is that of the STL version, and the manifest is one that runs."""
+    pytest.importorskip("cascadio")
+    source = Path(__file__).parents[1] / "form/step/revolute_collars.step"
+    shutil.copy(source, tmp_path)
+    ran = kinform(tmp_path, "init", source.name, "-o", "m.toml")
+    assert ran.returncode == 0 and "1 joint proposed as comments" in ran.stderr
+    text = (tmp_path / "m.toml").read_text()
+    lines = text.split("# [function]\n")[1].splitlines()
+    meant = "\n".join(line.removeprefix("# ") for line in lines if line.startswith("# "))
+    (joint,) = tomllib.loads(meant)["function"]["joint"]
+    assert (joint["type"], sorted(joint["between"])) == ("revolute", ["block", "shaft"])
+    stated = tomllib.loads((FIXTURES / "pairs/revolute_collars/revolute_collars.toml").read_text())
+    (twin,) = stated["function"]["joint"]
+    axis, wanted = (np.array(table["axis"]) / np.linalg.norm(table["axis"]) for table in (joint, twin))
+    assert abs(axis @ wanted) == pytest.approx(1.0, abs=1e-6)
+    beside = np.cross(np.array(joint["point"]) - twin["point"], wanted)  # mm
+    assert np.linalg.norm(beside) < 0.02
+    without = kinform(tmp_path, "init", source.name, "--no-suggest")
+    assert "function.joint" not in without.stdout

@@ -12,7 +12,20 @@ from kinform.foundation.words import counted
 from kinform_cli import console, files
 from kinform_cli.designs import is_design
 from kinform_cli.errors import refuse
-from kinform_cli.options import Command, Group, PrintedTable, TableFormat, argument, examples, option
+from kinform_cli.options import (
+    Command,
+    GeometryKind,
+    Group,
+    Packages,
+    PrintedTable,
+    TableFormat,
+    argument,
+    cores,
+    examples,
+    option,
+    reading,
+)
+from kinform_cli.progress import Working
 from kinform_cli.text import command
 
 if TYPE_CHECKING:
@@ -38,25 +51,51 @@ _DEFAULT = Path("catalog.sqlite")
 
 
 @app.command(
-    cls=Command, epilog=examples("kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite")
-)
+    cls=Command,
+    epilog=examples(
+        "kinform catalog add designs/", "kinform catalog add arm.h5 hand.h5 -c robots.sqlite",
+        "kinform catalog add robot.urdf arm.step",
+    ),
+)  # fmt: skip
 def add(
-    sources: Annotated[list[Path], argument("DIR|F.h5...", "Folders, with all below them; or results files.")],
+    sources: Annotated[
+        list[Path], argument("DIR|F.h5|SOURCE...", "Folders, with all results below them; results files; any source.")
+    ],
     file: File = _DEFAULT,
+    packages: Packages = None,
 ) -> None:
     """Add designs to the catalog: all results files below these folders.
 
-    The catalog is made where there is none; a design that it has is read again.
+    The catalog is made where there is none; a design that it has is read again. A manifest, description or CAD file is
+    run first, with its results beside it: robot.urdf gives robot.h5.
     """
     files.check_text_output(file, inputs=sources)
-    for source in sources:
-        if source.is_file() and is_design(source):
-            first = command("kinform", "run", source, "-o", source.with_suffix(".h5"))
-            raise refuse("a catalog is of results", file=source, remedy=f"first {first}, then name that")
+    results = [_results_of(source, packages) for source in sources]
     from kinform import catalog
 
     old = catalog.read(file) if file.exists() else catalog.Catalog()
-    _keep(*catalog.add(old, sources, file.parent), file)
+    _keep(*catalog.add(old, results, file.parent), file)
+
+
+def _results_of(source: Path, packages: Packages) -> Path:
+    """The results of a source, which are made where they are not; another path as it is."""
+    if not (source.is_file() and is_design(source)):
+        return source
+    output = source.with_suffix(".h5")
+    files.check_outputs([source], output, None)
+    if output.exists() and (other := files.read(output).assembly.source.file) != source.name:
+        run = command("kinform", "run", source, "-o", source.with_name(f"{source.name}.h5"))
+        raise refuse(f"{output.name} beside it holds results of {other}", file=source,
+                     remedy=f"run it to a name of its own: {run}, then name that")  # fmt: skip
+    import kinform
+
+    with Working("run") as working:
+        kinform.run(
+            source, output, jobs=cores(None), progress=working.step, say=console.say,
+            reading=reading(GeometryKind.visual, packages),
+        )  # fmt: skip
+    console.say(f"{output}: results of {source}")
+    return output
 
 
 @app.command(

@@ -33,7 +33,9 @@ SCHEMA = "kinform.schema.json"
 
 
 def init(
-    meshes: Annotated[list[Path], argument("SOURCE", "A robot description; or STL and OBJ files, with --units.")],
+    meshes: Annotated[
+        list[Path], argument("SOURCE", "A robot description, STEP or GLB; or STL and OBJ files, with --units.")
+    ],
     units: Units = None,
     output: Annotated[Path | None, option("--output -o", "M.toml", "Manifest to write; else it is printed.")] = None,
     suggest: Annotated[
@@ -46,7 +48,7 @@ def init(
     packages: Packages = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
 ) -> None:
-    """Write a manifest: for meshes, ready to be completed; of a robot description, all that it says."""
+    """Write a manifest: for meshes and CAD files, ready to be completed; of a robot description, all that it says."""
     described = files.is_description(meshes, units)
     if output is not None:
         if output.exists() and not force:
@@ -55,15 +57,21 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
+    hints = _Hints() if suggest else None
     if described:
         from kinform.form.write_manifest import init_from_source
 
-        text = init_from_source(meshes[0], relative_to=folder, reading=reading(geometry, packages))
+        text = init_from_source(
+            meshes[0],
+            relative_to=folder,
+            reading=reading(geometry, packages),
+            fastened=None if hints is None else hints.groups,
+            jointed=None if hints is None else hints.joints,
+        )
         _write(text, output)
         return
     assert units is not None
     name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
-    hints = _Hints() if suggest else None
     text = form.init_manifest(
         meshes,
         units=units,

@@ -96,7 +96,20 @@ def init_manifest(
         if part.mesh.body is not None:
             lines.append(f"body = {_text(part.mesh.body)}")
         lines.append('# material = "steel"   # or density = 7850.0 (kg/m³)')
-    lines += ["", "# Parts that are fastened by means that the geometry does not show:"]
+    lines += proposals(assembly, units, fastened, jointed)
+    lines.append("")
+    return "\n".join(lines)
+
+
+def proposals(
+    assembly: Assembly,
+    units: str,
+    fastened: Callable[[Assembly], Sequence[tuple[Sequence[str], str]]] | None,
+    jointed: Callable[[Assembly], Sequence[tuple[IntendedJoint, str]]] | None,
+) -> list[str]:
+    """Lines of comments: groups and joints that may be meant, or what they would look like; arguments as for
+    `init_manifest`."""
+    lines = ["", "# Parts that are fastened by means that the geometry does not show:"]
     taken = {str(part.name) for part in assembly.parts}
     hints = [] if fastened is None else fastened(assembly)
     for parts, evidence in hints:
@@ -114,8 +127,7 @@ def init_manifest(
     lines += ["# [function]", "# complete = true" if joints else "# mobility = 1"]
     for joint, evidence in joints:
         lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in _joint_lines(joint, units))]
-    lines.append("")
-    return "\n".join(lines)
+    return lines
 
 
 def _joint_lines(joint: IntendedJoint, units: str) -> list[str]:

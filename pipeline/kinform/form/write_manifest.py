@@ -6,19 +6,32 @@ import json
 import math
 import os
 import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from kinform.form.problems import Problems
+from kinform.form.readers.assembly import load
 from kinform.form.sources import AS_IT_IS, Reading, Source, source_tables
+from kinform.form.without_manifest import proposals
+from kinform.model.assembly import Assembly
+from kinform.model.function import IntendedJoint
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def init_from_source(path: Path, *, relative_to: str | Path = ".", reading: Reading = AS_IT_IS) -> str:
-    """Text of a manifest that is equivalent to a description; meshes are named relative to the folder `relative_to`.
+def init_from_source(
+    path: Path,
+    *,
+    relative_to: str | Path = ".",
+    reading: Reading = AS_IT_IS,
+    fastened: Callable[[Assembly], Sequence[tuple[Sequence[str], str]]] | None = None,
+    jointed: Callable[[Assembly], Sequence[tuple[IntendedJoint, str]]] | None = None,
+) -> str:
+    """Text of a manifest that is equivalent to a source; meshes are named relative to the folder `relative_to`.
 
-    Raises InputError with every problem.
+    A CAD or scene file has no function: what `fastened` and `jointed` propose is added as `init_manifest` does. Raises
+    InputError with every problem.
     """
     problems = Problems()
     folder = Path(os.path.realpath(relative_to))
@@ -28,7 +41,11 @@ def init_from_source(path: Path, *, relative_to: str | Path = ".", reading: Read
     notes = [f"# {' '.join(note.split())}" for note in tables.notes]
     if tables.described:
         tables.raw.setdefault("check", {"profile": "description"})
-    return "\n".join(["schema = 1", *notes, *_tables(tables.raw, ())]) + "\n"
+    lines = ["schema = 1", *notes, *_tables(tables.raw, ())]
+    if not tables.described:
+        assembly = load(path, reading=reading)
+        lines += proposals(assembly, tables.raw["assembly"]["units"], fastened, jointed)
+    return "\n".join(lines) + "\n"
 
 
 def _tables(tables: dict[str, Any], path: tuple[str, ...]) -> list[str]:
