@@ -121,3 +121,5 @@ HULL_THICKNESS = 1e-7
 mesh is exact to."""
 ROWS_TOGETHER = 64
 """Rows of an array that are looked at as one for the least and the greatest of its columns."""
+KEPT_SPANS = 200_000
+"""Facets up to which the spans of a mesh are kept: 5 MB; of more those that are asked for are computed anew."""

@@ -87,12 +87,12 @@ def _directions(near: tuple[NearSurfaces, NearSurfaces]) -> list[Array]:
 def _meetings(pair: PairView, sheets: list[Sheet], direction: Array) -> list[_Meeting]:
     """Where the outlines across `direction` (3,) of these facets of a and of b meet."""
     tolerance, tolerances, limit = pair.tolerance, pair.tolerances, constants.MATING_REACH * pair.tolerance
-    cut = [
-        segments(part, sheet, direction, tolerances.alignment, constants.GRAIN * tolerance)
-        for part, sheet in zip(pair.parts, sheets, strict=True)
-    ]
-    if cut[0] is None or cut[1] is None:
-        return []
+    cut = []
+    for part, sheet in zip(pair.parts, sheets, strict=True):
+        pieces = segments(part, sheet, direction, tolerances.alignment, constants.GRAIN * tolerance)
+        if pieces is None:
+            return []
+        cut.append(pieces)
     near = near_boxes(*cut[0].boxes(), *cut[1].boxes(), limit)
     first = curves(pair.a, cut[0], near[0], tolerances.smooth_edge)
     second = curves(pair.b, cut[1], near[1], tolerances.smooth_edge)

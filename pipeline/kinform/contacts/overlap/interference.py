@@ -158,11 +158,24 @@ def _joined(samples: list[_Samples]) -> _Samples:
     )
 
 
-def _sampled(a: PartView, b: PartView, piece: Piece, count: int) -> _Samples:
-    """Depths at about `count` points of a piece: middles of its facets, and just inside their corners."""
-    points, part, facet = _points_of(piece)
-    chosen = np.arange(0, len(points), max(1, math.ceil(len(points) / count)))
-    return _measured_on(a, b, points[chosen], part[chosen], facet[chosen])
+def _sampled(a: PartView, b: PartView, pieces: list[Piece], counts: list[int]) -> list[_Samples]:
+    """Depths at about so many points of each piece: middles of its facets, and just inside their corners."""
+    chosen = []
+    for piece, count in zip(pieces, counts, strict=True):
+        points, part, facet = _points_of(piece)
+        some = slice(0, None, max(1, math.ceil(len(points) / count)))
+        chosen.append((points[some], part[some], facet[some]))
+    if not chosen:
+        return []
+    points, part, facet = (np.concatenate(columns) for columns in zip(*chosen, strict=True))
+    number = np.repeat(np.arange(len(chosen)), [len(one[0]) for one in chosen])
+    all_ = _measured_on(a, b, points, part, facet)
+    # those on facets of the first part come before those on facets of the second
+    number = np.concatenate([number[part == 0], number[part == 1]])
+    return [
+        _Samples(all_.points[number == k], all_.depth[number == k], all_.surfaces[number == k])
+        for k in range(len(chosen))
+    ]
 
 
 def _deepest(a: PartView, b: PartView, piece: Piece, samples: _Samples, deep: Flags) -> float:
@@ -203,12 +216,13 @@ def _by_volume(a: PartView, b: PartView, pieces: list[Piece], allowance: _Allowa
     """The pieces of the overlap that are deeper than the surfaces explain, as one interference."""
     volume, depth, moment, mated = 0.0, 0.0, np.zeros(3), True
     facets = sum(len(piece.corners) for piece in pieces)
-    for piece in pieces:
-        # Faces that coincide leave sheets of no thickness: they need no measuring.
-        if piece.volume <= allowance.floor**3:
-            continue
-        count = max(constants.DEPTH_SAMPLES_LEAST, round(constants.DEPTH_SAMPLES * len(piece.corners) / facets))
-        samples = _sampled(a, b, piece, count)
+    # Faces that coincide leave sheets of no thickness: they need no measuring.
+    thick_ones = [piece for piece in pieces if piece.volume > allowance.floor**3]
+    counts = [
+        max(constants.DEPTH_SAMPLES_LEAST, round(constants.DEPTH_SAMPLES * len(piece.corners) / facets))
+        for piece in thick_ones
+    ]
+    for piece, samples in zip(thick_ones, _sampled(a, b, thick_ones, counts), strict=True):
         deep, at_mates = allowance.unexplained(samples)
         thick = 2.0 * piece.volume / piece.area
         if deep.any():

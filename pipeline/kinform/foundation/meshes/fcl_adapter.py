@@ -12,6 +12,9 @@ UNIT = 2.0**20
 2e-4 of what it counts in: it is given about micrometres, by a power of two, which rounds nothing."""
 
 
+_DISTANCE = fcl.DistanceRequest()
+
+
 def fcl_model(vertices: Array, faces: Ints) -> fcl.BVHModel:
     """FCL's model of triangles: vertices (V, 3) m and faces (F, 3). To be placed and measured by the two below."""
     model = fcl.BVHModel()
@@ -30,7 +33,7 @@ def fcl_distance(
     first: fcl.CollisionObject, second: fcl.CollisionObject, result: fcl.DistanceResult | None = None
 ) -> float:
     """m between two such models, 0 where they touch or cross."""
-    distance = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult() if result is None else result)
+    distance = fcl.distance(first, second, _DISTANCE, fcl.DistanceResult() if result is None else result)
     return max(float(distance), 0.0) / UNIT
 
 

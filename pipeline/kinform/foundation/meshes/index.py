@@ -9,7 +9,7 @@ import fcl
 import numpy as np
 
 from kinform.foundation.algebra.vectors import cross, dot
-from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, RAYS
+from kinform.foundation.constants import BALL_PARTS, BALL_SHARE, KEPT_SPANS, RAYS
 from kinform.foundation.graphs.components import components
 from kinform.foundation.meshes.boxes import FacetBoxes, facet_boxes
 from kinform.foundation.meshes.edges import shared_edges
@@ -32,6 +32,7 @@ class MeshIndex:
     def __init__(self, mesh: Mesh):
         self.mesh = mesh
         self._bvh: fcl.BVHModel | None = None
+        self._spans: Array | None = None
         self._borders: Ints | None = None
         self._shells: Ints | None = None
         self._boxes: FacetBoxes | None = None
@@ -45,8 +46,9 @@ class MeshIndex:
 
     def spans(self, facets: Ints) -> Array:
         """(n, 3) cross products of two edges of each facet: outward, of twice its area (m²)."""
-        corners = self.mesh.vertices[self.mesh.faces[facets]]
-        return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        if self._spans is None and len(self.mesh.faces) <= KEPT_SPANS:
+            self._spans = _spans(self.mesh.vertices[self.mesh.faces])
+        return _spans(self.mesh.vertices[self.mesh.faces[facets]]) if self._spans is None else self._spans[facets]
 
     def areas(self, facets: Ints) -> Array:
         """(n,) m²."""
@@ -166,6 +168,11 @@ class MeshIndex:
                 count[asked[doubtful]] = np.median([count[asked[doubtful]], second[doubtful], third], axis=0)
         out[out] = np.abs(count) > 0.5
         return out
+
+
+def _spans(corners: Array) -> Array:
+    """(n, 3) of facets (n, 3, 3)."""
+    return cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def _balls(mesh: Mesh) -> list[tuple[cKDTree, float]]:

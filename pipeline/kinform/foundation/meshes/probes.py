@@ -9,6 +9,7 @@ given in the mesh's own frame: the BVH never has to be built again for another p
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import fcl
@@ -74,8 +75,8 @@ class Region:
         result = fcl.CollisionResult()
         fcl.collide(fcl.CollisionObject(self.bvh), fcl.CollisionObject(probe_model), request, result)
         pairs = np.array([(c.b2, c.b1) for c in result.contacts], dtype=np.int64).reshape(-1, 2)
-        pairs = np.unique(pairs, axis=0)
-        probe, facet = pairs[:, 0], pairs[:, 1]
+        facets = np.int64(max(len(mesh.faces), 1))
+        probe, facet = np.divmod(np.unique(pairs[:, 0] * facets + pairs[:, 1]), facets)
         if self.facets is not None:
             facet = self.facets[facet]
         normal = self.index.normals(facet)
@@ -87,8 +88,7 @@ class Region:
 
     def depths(self, points: Array) -> tuple[Array, Ints]:
         """Distance (n,) m of points (n, 3) of the part frame to these facets, and the nearest of them (n,)."""
-        # a triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges
-        point = fcl.CollisionObject(fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]])))
+        point = fcl.CollisionObject(_point())
         mesh = fcl.CollisionObject(self.bvh)
         distance, facet = np.zeros(len(points)), np.zeros(len(points), dtype=np.int64)
         for k, p in enumerate(UNIT * points):
@@ -105,3 +105,9 @@ class Region:
         request = fcl.CollisionRequest(num_max_contacts=1, enable_contact=False)
         placed = fcl.CollisionObject(other.bvh, fcl_pose(X_SO))
         return bool(fcl.collide(fcl.CollisionObject(self.bvh), placed, request, fcl.CollisionResult()))
+
+
+@cache
+def _point() -> fcl.BVHModel:
+    """A triangle without size: FCL takes one that reaches through a facet for as far off as the facet's edges."""
+    return fcl_model(np.zeros((3, 3)), np.array([[0, 1, 2]]))

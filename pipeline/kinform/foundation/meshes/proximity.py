@@ -44,27 +44,32 @@ def _cells(low: Array, high: Array, origin: Array, size: Array, counts: Ints) ->
 def _grid(first: Ints, last: Ints, counts: Ints) -> Array:
     """Sums of occupied cells from the origin, one larger than the grid along each axis."""
     shape = counts + 1
-    total = np.zeros(int(shape.prod()))
-    for corner in range(8):
-        upper = np.array([(corner >> k) & 1 for k in range(3)])
-        at = np.where(upper == 1, last + 1, first)
-        flat = (at[:, 0] * shape[1] + at[:, 1]) * shape[2] + at[:, 2]
-        total += (-1) ** int(upper.sum()) * np.bincount(flat, minlength=len(total))
-    cells = total.reshape(tuple(shape))
+    flat, sign = _corners(first, last, shape)
+    weights = np.broadcast_to(sign[:, None], flat.shape)
+    cells = np.bincount(flat.ravel(), weights.ravel(), int(shape.prod())).reshape(tuple(shape))
     for axis in range(3):
-        cells = np.cumsum(cells, axis=axis)
+        np.cumsum(cells, axis=axis, out=cells)
     summed = np.zeros(tuple(shape))
     summed[1:, 1:, 1:] = cells[:-1, :-1, :-1] > 0.5
     for axis in range(3):
-        summed = np.cumsum(summed, axis=axis)
+        np.cumsum(summed, axis=axis, out=summed)
     return summed
+
+
+def _corners(first: Ints, last: Ints, shape: Ints) -> tuple[Ints, Array]:
+    """(8, n) place in a flat grid of that shape of the corners of boxes of cells, upper ones one beyond, and their
+    signs (8,) in sums."""
+    x, y, z = (np.stack([low, high + 1]) * step for low, high, step in zip(
+        first.T, last.T, (shape[1] * shape[2], shape[2], 1), strict=True
+    ))  # fmt: skip
+    flat = (x[:, None, None] + y[None, :, None] + z[None, None]).reshape(8, -1)
+    return flat, _SIGNS
+
+
+_SIGNS = np.array([(-1.0) ** (i + j + k) for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
 
 def _occupied(summed: Array, first: Ints, last: Ints) -> Flags:
     """Whether any cell of each box is occupied."""
-    count = np.zeros(len(first))
-    for corner in range(8):
-        upper = [(corner >> k) & 1 for k in range(3)]
-        at = tuple(last[:, k] + 1 if upper[k] else first[:, k] for k in range(3))
-        count += (-1) ** (3 - sum(upper)) * summed[at]
-    return np.asarray(count > 0.5)
+    flat, sign = _corners(first, last, np.array(summed.shape))
+    return np.asarray(-sign @ summed.ravel()[flat] > 0.5)
