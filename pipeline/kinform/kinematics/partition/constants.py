@@ -76,6 +76,9 @@ ONLY_WAY = 1000.0
 """Price by which every other way of parting is dearer than the one that is taken where a joint does not name its sides:
 that of a pocket. Beyond it something would be parted that is fastened. Holes round a journal (400) are no such, as the
 horns of servos have them: by 340 and 400 wrong ways were cheaper on a public robot, where batteries lie on the axis."""
+ROUND_OFF = 0.1
+"""A part goes round an axis where the middle of its surface lies beside it by less than this share of its spread, and
+its spread differs by less than this share from one direction to another."""
 WAYS_NAMED = 4
 """So many ways of parting are named where it is not clear which is meant."""
 SAME_AXIS = np.radians(1.0)

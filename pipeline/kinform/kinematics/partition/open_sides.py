@@ -2,8 +2,10 @@
 possible. Where there are several, or none, it is an error that lists them: nothing is guessed.
 
 Joints whose sides are known cut first. A way of parting is taken where every other one would part what is dearer by the
-price of a pocket, and where it breaks no contact that no joint may part; one that takes a single part out, as
-a ring, only where there is no other. What was taken while other joints were open is asked again with all of them.
+price of a pocket, where it breaks no contact that no joint may part, and where it does not just take out a single part
+that goes round the axis, as the ring of a bearing does. It makes at
+most one body more: else what it names was not found to be of a body that others name. What was taken while other
+joints were open is asked again with all of them.
 """
 
 from __future__ import annotations
@@ -76,12 +78,13 @@ def _taken(ways: Ways, stated: Mapping[int, Names], waiting: Sequence[int]) -> d
 def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, float] | None:
     """The only way of parting, with by how much the next is dearer; None where it is not clear."""
     found = ways.ways(joint, known)
-    if not found or found[0].cost - ways.parted(known).cost >= constants.BROKEN:
+    before, after = ways.parted(known), ways.parted(dict(known) | {joint: found[0].names}) if found else None
+    if after is None or after.cost - before.cost >= constants.BROKEN or after.count > max(before.count, 1) + 1:
         return None
     ahead = found[1].cost - found[0].cost if len(found) > 1 else np.inf
     named = {ways.assembly.parts_of(name)[0] for name in ways.joints[joint].between if name}
     named |= {name for names in known.values() for name in names}
-    if ahead < constants.BROKEN and any(len(side) == 1 and not side & named for side in found[0].bodies):
+    if any(len(side) == 1 and not side & named and ways.round(joint, *side) for side in found[0].bodies):
         return None
     return (found[0], ahead) if ahead >= constants.ONLY_WAY else None
 

@@ -11,6 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
+from kinform.foundation.algebra.vectors import perpendicular
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.bodies.merging import Merger
 from kinform.kinematics.partition import constants
@@ -49,6 +52,8 @@ class Parted:
     sides: Mapping[int, Labels]
     """Of joints, by number."""
     cost: float
+    count: int
+    """How many bodies there are."""
 
 
 class Ways:
@@ -101,7 +106,7 @@ class Ways:
                 if first is not None and second is not None:
                     cost += edge.price(first, second)
             body = {name: labels[piece] for name, piece in graph.piece_of.items()}
-            self._parted[key] = Parted(body, dict(zip(numbers, graph.sides, strict=True)), cost)
+            self._parted[key] = Parted(body, dict(zip(numbers, graph.sides, strict=True)), cost, len(graph.names))
         return self._parted[key]
 
     def ways(self, number: int, known: Mapping[int, Names]) -> list[Way]:
@@ -189,6 +194,21 @@ class Ways:
         (a, b), (c, d) = one.bodies, other.bodies
         odd = min(self._size((a ^ c) | (b ^ d)), self._size((a ^ d) | (b ^ c)))
         return odd < constants.ALIKE * smallest
+
+    def round(self, number: int, name: PartName) -> bool:
+        """Whether a part goes round a joint's axis, as rings and wheels do: the middle of its surface lies on it, and
+        its spread across it is the same on all sides."""
+        joint, part = self.joints[number], self.assembly.part(name)
+        if joint.axis is None or joint.point is None or part.mesh is None:
+            return False
+        corners = (part.mesh.vertices @ part.X_WP[:3, :3].T + part.X_WP[:3, 3])[part.mesh.faces] - joint.point
+        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        across = corners.mean(axis=1) @ np.column_stack(perpendicular(joint.axis))
+        middle = areas @ across / areas.sum()
+        spread = np.linalg.eigvalsh((across - middle).T @ ((across - middle) * areas[:, None]) / areas.sum())
+        off = float(np.linalg.norm(middle))
+        even = float(spread[0]) > (1.0 - constants.ROUND_OFF) * float(spread[1])
+        return even and off < constants.ROUND_OFF * float(spread[1]) ** 0.5
 
     def _size(self, names: frozenset[PartName]) -> float:
         return sum(self.volume.get(name, 0.0) for name in sorted(names))
