@@ -30,13 +30,20 @@ _BOUNDS = ("lower", "upper", "effort", "velocity", "range", "ctrlrange", "forcer
 _ENTITY = re.compile(rb"<!\s*(ENTITY|DOCTYPE[^>\[]*\b(SYSTEM|PUBLIC)\b)")
 
 
+def declares_entities(data: bytes, file: str, problems: Problems) -> bool:
+    """Whether an XML text declares entities or an external document type, which is noted: they are refused."""
+    refused = _ENTITY.search(data)
+    if refused is None:
+        return False
+    line = data.count(b"\n", 0, refused.start()) + 1
+    problems.add("declares an entity or an external document type, which is refused", file, line,
+                 "write the text in place of the entity, and remove the declaration")  # fmt: skip
+    return True
+
+
 def parse_xml(data: bytes, file: str, problems: Problems) -> Element | None:
     """The root element of an XML text; None after noting what is wrong with it."""
-    refused = _ENTITY.search(data)
-    if refused is not None:
-        line = data.count(b"\n", 0, refused.start()) + 1
-        problems.add("declares an entity or an external document type, which is refused", file, line,
-                     "write the text in place of the entity, and remove the declaration")  # fmt: skip
+    if declares_entities(data, file, problems):
         return None
     if len(data) > XML_BYTES:
         problems.add(f"has {len(data):,} bytes, and {XML_BYTES:,} are the most", file, None, "split the description")

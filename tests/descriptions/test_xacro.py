@@ -1,0 +1,109 @@
+"""xacro: what it expands to is read as the URDF that says the same; what is wrong is told at its line."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinform import form
+from kinform.errors import InputError
+from kinform.form.sources import Reading
+
+pytest.importorskip("xacrodoc", reason="xacrodoc expands xacro: pip install 'kinform[xacro]'")
+
+PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:property name="half" value="${0.5 * 0.04}"/>
+<xacro:macro name="bar" params="name length mass:=0">
+<link name="${name}"><visual><origin xyz="0 0 ${length / 2}"/><geometry><box size="0.04 ${2 * half} ${length}"/>
+</geometry></visual><xacro:if value="${mass > 0}"><inertial><mass value="${mass}"/>
+<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></xacro:if></link>
+</xacro:macro>
+</robot>
+"""
+ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="{include}"/>
+<xacro:arg name="reach" default="0.3"/>
+<xacro:bar name="base" length="0.1" mass="{mass}"/>
+<xacro:bar name="arm" length="$(arg reach)"/>
+<joint name="turn" type="revolute"><parent link="base"/><child link="{child}"/><origin xyz="0 0 0.1"/>
+<axis xyz="0 0 1"/><limit lower="${{radians(-60)}}" upper="1" effort="1" velocity="1"/></joint>
+</robot>
+"""
+INCLUDES = ("parts.xacro", "../urdf/parts.xacro", "$(find arm_description)/urdf/parts.xacro")
+
+
+def write(folder, include="parts.xacro", child="arm", mass="${2 * 1.5}"):
+    """A package with the file in its folder `urdf`."""
+    home = folder / "somewhere"
+    (home / "urdf").mkdir(parents=True, exist_ok=True)
+    (home / "package.xml").write_text("<package><name>arm_description</name></package>")
+    (home / "urdf" / "parts.xacro").write_text(PARTS)
+    path = home / "urdf" / "arm.urdf.xacro"
+    path.write_text(ARM.format(include=include, child=child, mass=mass))
+    return path
+
+
+@pytest.mark.parametrize("include", INCLUDES)
+def test_macros_properties_arguments_and_includes_are_expanded(tmp_path, include):
+    assembly = form.load(write(tmp_path, include))
+    low, high = assembly.part("arm box").mesh.placed_box(assembly.part("arm box").X_WP)
+    assert np.allclose(np.r_[low, high], [-0.02, -0.02, 0.1, 0.02, 0.02, 0.4])
+    assert next(g.override.mass for g in assembly.groups if g.name == "base") == 3.0
+    (joint,) = assembly.function.joints
+    assert joint.range == pytest.approx((-np.pi / 3, 1.0)) and joint.line == 6
+    assert "parts.xacro" in {name.rsplit("/", 1)[-1] for name in assembly.files}
+
+
+def test_packages_are_found_where_the_user_says_and_not_where_another_robot_had_them(tmp_path):
+    other = write(tmp_path / "other")
+    path = write(tmp_path, "$(find bars)/urdf/parts.xacro")
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    (problem,) = caught.value.problems
+    assert (problem.line, problem.remedy.split(",")[0]) == (2, "add --package bars=FOLDER")
+    for factor, folder in ((1.0, other.parent.parent), (2.0, other.parent.parent.with_name("changed"))):
+        (folder / "urdf").mkdir(parents=True, exist_ok=True)
+        (folder / "urdf" / "parts.xacro").write_text(PARTS.replace("0.5 * 0.04", f"{factor} * 0.5 * 0.04"))
+        assembly = form.load(path, reading=Reading(packages=(("bars", str(folder)),)))
+        assert np.ptp(assembly.part("base box").mesh.vertices[:, 1]) == pytest.approx(0.04 * factor)
+
+
+BAD = {
+    "a name that is none": ({"mass": "${nothing}"}, "arm.urdf.xacro", 4, "'nothing' is not defined"),
+    "no file": ({"include": "gone.xacro"}, "arm.urdf.xacro", 2, "No such file"),
+    "itself": ({"include": "arm.urdf.xacro"}, "arm.urdf.xacro", 1, "contain themselves"),
+    "no link": ({"child": "amr"}, "arm.urdf.xacro", 6, 'its child "amr" is no link'),
+    "no number": ({"mass": "1e999"}, "arm.urdf.xacro", 4, "no finite number"),
+    "the system": ({"mass": "${__import__('os').getpid()}"}, "arm.urdf.xacro", 4, "invalid name"),
+    "files": ({"mass": "${open('/etc/hostname').read()}"}, "arm.urdf.xacro", 4, "'open' is not defined"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_wrong_is_told_with_file_line_and_remedy(tmp_path, case):
+    changed, file, line, words = BAD[case]
+    with pytest.raises(InputError) as caught:
+        form.load(write(tmp_path, **changed))
+    problem = caught.value.problems[0]
+    assert words in problem.message and problem.remedy
+    assert (problem.file, problem.line) == (file, line)
+    form.load(write(tmp_path))  # nothing of it is left behind
+
+
+def test_entities_are_refused_before_anything_is_expanded(tmp_path):
+    path = write(tmp_path)
+    path.write_text(
+        '<?xml version="1.0"?>\n<!DOCTYPE r [<!ENTITY a SYSTEM "file:///etc/hostname">]>\n' + path.read_text()
+    )
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    assert [(p.line, "refused" in p.message) for p in caught.value.problems] == [(2, True)]
+
+
+def test_what_is_wrong_in_an_included_file_is_told_there(tmp_path):
+    path = write(tmp_path)
+    parts = path.with_name("parts.xacro")
+    parts.write_text(parts.read_text().replace("</robot>", ""))
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    assert caught.value.problems[0].file == "parts.xacro"
