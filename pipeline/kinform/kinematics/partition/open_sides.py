@@ -1,11 +1,10 @@
 """The sides of joints that name one part, or none: type, axis and point are enough where only one way of parting is
 possible. Where there are several, or none, it is an error that lists them: nothing is guessed.
 
-Joints whose sides are known cut first. A way of parting is taken where every other one would part what is dearer by the
-price of a pocket, where it breaks no contact that no joint may part, and where it does not just take out a single part
-that goes round the axis, as the ring of a bearing does. It makes at
-most one body more: else what it names was not found to be of a body that others name. What was taken while other
-joints were open is asked again with all of them.
+Joints whose sides are known cut first. A way of parting is taken where every other one would part what is dearer by
+the price of a pocket, where it breaks no contact that no joint may part, and where it does not just take out a single
+part that goes round the axis, as the ring of a bearing does. It divides the bodies that the other joints leave, and
+rearranges none of them. What was taken while other joints were open is asked again with all of them.
 """
 
 from __future__ import annotations
@@ -79,12 +78,13 @@ def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, flo
     """The only way of parting, with by how much the next is dearer; None where it is not clear."""
     found = ways.ways(joint, known)
     before, after = ways.parted(known), ways.parted(dict(known) | {joint: found[0].names}) if found else None
-    if after is None or after.cost - before.cost >= constants.BROKEN or after.count > max(before.count, 1) + 1:
+    if after is None or after.cost - before.cost >= constants.BROKEN or not ways.divides(before, after):
         return None
     ahead = found[1].cost - found[0].cost if len(found) > 1 else np.inf
     named = {ways.assembly.parts_of(name)[0] for name in ways.joints[joint].between if name}
     named |= {name for names in known.values() for name in names}
-    if any(len(side) == 1 and not side & named and ways.round(joint, *side) for side in found[0].bodies):
+    lone = [name for side in found[0].bodies if len(side) == 1 for name in side - named]
+    if any(ways.round(joint, name) for name in lone) and ways.held_about(joint, found[0]):
         return None
     return (found[0], ahead) if ahead >= constants.ONLY_WAY else None
 

@@ -195,6 +195,23 @@ class Ways:
         odd = min(self._size((a ^ c) | (b ^ d)), self._size((a ^ d) | (b ^ c)))
         return odd < constants.ALIKE * smallest
 
+    def divides(self, before: Parted, after: Parted) -> bool:
+        """Whether each body with a joint is next to all of one body without it, and there is one more at most: else it
+        was not found of which body the parts are that it names."""
+        if after.count > max(before.count, 1) + 1:
+            return False
+        shares: dict[int, dict[int | None, float]] = {}
+        for name, body in sorted(after.body.items()):
+            if body is not None:
+                of = shares.setdefault(body, {})
+                of[before.body[name]] = of.get(before.body[name], 0.0) + self.volume.get(name, 0.0)
+        return all(max(of.values()) >= (1.0 - constants.ALIKE) * sum(of.values()) for of in shares.values())
+
+    def held_about(self, number: int, way: Way) -> bool:
+        """Whether others touch about the axis as well that a way does not part: the joint might be there."""
+        first, second = way.bodies
+        return any((set(pair) & first == set()) or (set(pair) & second == set()) for pair in self.about(number, False))
+
     def round(self, number: int, name: PartName) -> bool:
         """Whether a part goes round a joint's axis, as rings and wheels do: the middle of its surface lies on it, and
         its spread across it is the same on all sides."""
