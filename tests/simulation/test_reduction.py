@@ -7,7 +7,9 @@ import pytest
 from support.port_models import DOWN, bricard, four_bars, hung_chain, squeezer
 
 from kinform.simulation import Course, SolverSettings, of_system, simulate_system
+from kinform.simulation.kernel import layout
 from kinform.simulation.kernel.calls import engine
+from kinform.simulation.kernel.loops import eliminate
 from kinform.simulation.kernel.tables import address, addresses
 from kinform.simulation.solver.run_state import Run
 
@@ -47,6 +49,17 @@ def test_rates_are_corrected_least_by_mass_in_any_pose(name, monkeypatch):
         whole = np.block([[matrix, rows.T], [rows, np.zeros((len(rows), len(rows)))]])
         expected = np.linalg.lstsq(whole, np.concatenate([matrix @ v, np.zeros(len(rows))]), rcond=1e-12)[0]
         np.testing.assert_allclose(got, expected[: len(v)], atol=1e-9 * np.abs(v).max())
+
+
+@pytest.mark.parametrize("number", [np.nan, 0.0])
+def test_rows_that_are_no_numbers_have_no_pivots(number, monkeypatch):
+    """As after a trial step of a stiff spring: a division by zero would end the run."""
+    dynamics, start = begun(four_bars(1), monkeypatch)
+    Run(dynamics, start, np.array([0.0, 1.0]), SolverSettings()).open_stretch(0.0, 1.0)
+    tables = dynamics.tables
+    tables.work[layout.ROWS][:] = number
+    assert eliminate(tables.ints, tables.nums, tables.work) == 0.0
+    assert tables.work[layout.VECTORS][layout.KEPT][0] == 0.0
 
 
 @pytest.mark.parametrize("make", [lambda: four_bars(4), hung_chain])

@@ -141,10 +141,12 @@ def eliminate(ints: Ints, nums: Nums, work: Work) -> float:
         upper = rows[k]
         pivot = upper[k]
         size = abs(pivot) * scale[mode[ORDER][k]][0]
+        if not size > 0.0:
+            # nothing, or no number: a trial step went beyond what numbers can be
+            vectors[KEPT][0] = 0.0
+            return 0.0
         low, high = min(low, size), max(high, size)
         vectors[KEPT][0] = min(vectors[KEPT][0], size / vectors[REFERENCE][k])
-        if pivot == 0.0:
-            return 0.0
         vectors[PIVOT][k] = 1.0 / pivot
         reach = highest[k]
         for i in range(k + 1, last + 1):
