@@ -10,6 +10,7 @@ from support.slots import SLOT, block_in_slot, derived, moved
 from support.solids import box, random_pose, rod
 
 from kinform import collisions
+from kinform.collisions import run_collisions
 
 
 def loose_block_in_slot():
@@ -112,3 +113,14 @@ def test_what_is_passed_between_two_outputs_has_a_depth():
     assert met.time == pytest.approx(20 / 80, abs=1e-3)
     # in the middle of the wall, 2 mm from its faces and the less deep in the block
     assert 0.002 < met.depth < 0.012
+
+
+def test_a_crossing_of_which_no_point_is_inside_is_not_known_to_be_a_collision(monkeypatch):
+    """As far from the origin, where files round: links that slide flush along each other."""
+    rail = box(-30, 120, -8, 8, -6, 0) + box(30, 34, -8, 8, -1, 10)
+    made, known, touching, kin = derived({"rail": rail, "block": box(-10, 10, -5, 5, 0, 8)}, ground="rail")
+    run = moved(kin, [0.0, 0.080], np.eye(4))
+    monkeypatch.setattr(run_collisions, "_depth", lambda *asked: 0.0)
+    met, ((first, second, reason),) = collisions.along(made, known, touching, kin, run)
+    assert (met, first, second) == ((), "block", "rail")
+    assert "no point of one is found in the other" in reason

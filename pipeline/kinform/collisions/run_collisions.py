@@ -17,7 +17,7 @@ from kinform.collisions.pair.prepared_pair import PairTest
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.progress import Progress
 from kinform.model.arrays import Array
-from kinform.model.assembly import Assembly
+from kinform.model.assembly import Assembly, Part
 from kinform.model.collisions import Collision
 from kinform.model.contacts import Contacts
 from kinform.model.kinematics import Kinematics
@@ -72,12 +72,21 @@ def along(
             if crossing.before > 0.0 and depth <= constants.OVERLAP_SAME * crossing.before + test.scrape:
                 untested.append((first, second, "they overlap from the start, and again later"))
                 continue
+            if depth <= 0.0 and all(_closed(assembly.part(name)) for name in test.part_names):
+                reason = f"facets cross at t = {crossing.hit:.6g} s, but no point of one is found in the other"
+                untested.append((first, second, reason))
+                continue
             out.append(Collision(test.part_names, crossing.hit, place, depth))
     if coarse:
         untested += [(*pair, coarse) for pair in _apart(shapes, names, {c.parts for c in out})]
     if progress is not None:
         progress(len(pairs), len(pairs))
     return tuple(sorted(out, key=lambda c: (c.time, c.parts))), tuple(sorted(untested))
+
+
+def _closed(part: Part) -> bool:
+    """Whether it has an inside."""
+    return part.mesh is not None and part.mesh.health.watertight
 
 
 def _followed(simulation: Simulation, size: float, finer: Callable[[int], Simulation] | None) -> tuple[Simulation, str]:
