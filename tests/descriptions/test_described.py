@@ -140,6 +140,34 @@ def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_with
     assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
 
 
+SDF_TWINS = {
+    "nothing": (lambda walker: None, None, 0, None),
+    "inertia in g·mm²": (lambda w: setattr(w.links["torso"], "inertia_factor", 1e9), "KF123", 2, "torso"),
+    "mass of another unit": (lambda w: setattr(w.links["torso"], "mass_factor", 40.0), "KF123", 2, "torso"),
+    "centre outside": (lambda w: setattr(w.links["torso"], "centre_shift", (0.0, 0.0, 0.15)), "KF124", 2, "torso"),
+    "no body": (lambda w: w.links["torso"].products.update(izz=0.5), "KF121", 2, "torso"),
+    "bare": (lambda w: setattr(w.links["left_shin"], "collision", w.links["left_shin"].boxes[:1]), "KF130", 5,
+             "left_shin"),
+    "not mirrored": (lambda w: setattr(w.links["right_thigh"], "centre_shift", (0.0, 0.012, 0.0)), "KF132", 4,
+                     "right_thigh"),
+    "exchanged": (lambda w: w.limits.update(left_hip='lower="1" upper="-1"'), "KF415", 7, "left_hip"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SDF_TWINS)
+def test_what_an_sdf_states_is_judged_as_that_of_a_urdf(tmp_path, case):
+    change, code, line, subject = SDF_TWINS[case]
+    walker = Walker()
+    change(walker)
+    (tmp_path / "walker.sdf").write_text(walker.sdf())
+    context = Context(Design(form.load(tmp_path / "walker.sdf")))
+    found = [f for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
+    told = [(f.code, f.line, f.subject[0]) for f in found]
+    assert told == ([] if code is None else [(code, line, subject)])
+    same = [(f.code, f.subject, f.severity, f.found) for f in findings(tmp_path, walker)]
+    assert same == [(f.code, f.subject, f.severity, f.found) for f in found]
+
+
 def test_a_visual_mesh_that_is_not_there_is_an_error_and_the_rest_is_judged(tmp_path):
     """Without it nothing is said of the mass of its link; where no mesh is there nothing can be said at all."""
     walker = Walker()

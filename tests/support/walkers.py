@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from lxml import etree
 
 DENSITY = 1000.0
 
@@ -104,3 +106,37 @@ class Walker:
             f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/>'
             f'<origin xyz="{at[0]:.17g} {at[1]:.17g} {at[2]:.17g}"/><axis xyz="0 1 0"/>{stated}</joint>'
         )
+
+    def sdf(self) -> str:
+        """The same robot as an SDF, a link or joint a line."""
+        places = {"torso": np.zeros(3)}
+        for side, hip in self.hips.items():
+            places |= {f"{side}_thigh": np.array(hip), f"{side}_shin": np.array(hip) + (0.0, 0.0, -0.21)}
+        root = etree.fromstring(self.text())
+        lines = ['<sdf version="1.9"><model name="walker">']
+        for link in root.iter("link"):
+            inner = "".join(_sdf_element(element, k) for k, element in enumerate(link))
+            name = link.get("name")
+            lines.append(f'<link name="{name}">{_pose(places[name])}{inner}</link>')
+        for joint in root.iter("joint"):
+            ends = "".join(f"<{end}>{joint.find(end).get('link')}</{end}>" for end in ("parent", "child"))
+            limit = joint.find("limit")
+            bounds = "" if limit is None else "".join(f"<{key}>{value}</{key}>" for key, value in limit.attrib.items())
+            axis = f"<axis><xyz>{joint.find('axis').get('xyz')}</xyz><limit>{bounds}</limit></axis>"
+            lines.append(f'<joint name="{joint.get("name")}" type="revolute">{ends}{axis}</joint>')
+        return "\n".join([*lines, "</model></sdf>"]) + "\n"
+
+
+def _pose(at: np.ndarray) -> str:
+    return "<pose>" + " ".join(f"{v:.17g}" for v in at) + " 0 0 0</pose>"
+
+
+def _sdf_element(element: Any, number: int) -> str:
+    """A visual, collision or inertial of a URDF as an SDF has it."""
+    pose = _pose(np.array(element.find("origin").get("xyz").split(), dtype=float))
+    if element.tag == "inertial":
+        six = "".join(f"<{key}>{value}</{key}>" for key, value in element.find("inertia").attrib.items())
+        return f"<inertial>{pose}<mass>{element.find('mass').get('value')}</mass><inertia>{six}</inertia></inertial>"
+    size = element.find("geometry/box").get("size")
+    box = f"<geometry><box><size>{size}</size></box></geometry>"
+    return f'<{element.tag} name="{element.tag} {number}">{pose}{box}</{element.tag}>'
