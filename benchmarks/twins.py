@@ -22,7 +22,7 @@ from lxml import etree
 
 import kinform
 from kinform.consistency.comparisons.answers import answers
-from kinform.consistency.comparisons.sides import sides_of
+from kinform.consistency.comparisons.sides import Pair, sides_of
 from kinform.design import Design
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.model.findings import Finding
@@ -40,6 +40,8 @@ ROBOTS = {
 }
 AXIS_OFF = 0.003
 """m."""
+NEAR = math.radians(3.0)
+"""Ends of joints that are nearer to the drawn pose are left alone."""
 
 Break = Callable[["Twin"], tuple[str, str] | None]
 """Breaks a number; the code that is expected and the name that it is about, or None where the robot has no place."""
@@ -68,6 +70,10 @@ class Twin:
             if e.find("inertial") is not None and e.find("visual") is not None and e.get("name") not in told
         ]  # fmt: skip
         return max(links, key=lambda e: float(e.find("inertial/mass").get("value")))
+
+    def weight(self, pair: Pair) -> float:
+        """The stated mass of the right one of two links; 0 without."""
+        return 0.0 if pair.right.stated is None else pair.right.stated.value
 
     def agreeing(self) -> Iterator[str]:
         """Joints that contact confirms."""
@@ -144,14 +150,15 @@ def mesh_in_millimetres(twin: Twin) -> tuple[str, str] | None:
 
 def limit_too_wide(twin: Twin) -> tuple[str, str] | None:
     """A limit 30° beyond the end that the parts leave."""
-    known = {finding.subject[0] for finding in twin.whole.report.findings if finding.code == "KF412"}
+    told = [finding for finding in twin.whole.report.findings if finding.code in ("KF412", "KF415")]
+    known = {name for finding in told for name in finding.subject}
     run = twin.whole.simulation
     derived = {a.joint: a.name for a in answers(twin.whole) if a.answer in ("agrees", "not held", "no contact")}
     for reach in () if run is None or run.ranges is None else run.ranges:
         name = derived.get(reach.joint)
         limit = None if name is None else twin.joint(name).find("limit")
         ends = [end.value for end in (reach.lower, reach.upper) if end is not None and end.status == "found"]
-        if limit is not None and name not in known and ends and max(map(abs, ends)) < math.radians(150.0):
+        if limit is not None and name not in known and ends and NEAR < max(map(abs, ends)) < math.radians(150.0):
             wide = max(map(abs, ends)) + math.radians(30.0)
             limit.set("lower", repr(-wide))
             limit.set("upper", repr(wide))
@@ -210,7 +217,7 @@ def not_mirrored(twin: Twin) -> tuple[str, str] | None:
     """A right link with the centre of mass of the left one, as far to the wrong side."""
     for description in twin.whole.assembly.descriptions:
         sides = sides_of(description)
-        for pair in () if sides is None else sides.pairs:
+        for pair in () if sides is None else sorted(sides.pairs, key=twin.weight, reverse=True):
             origin = twin.link(pair.right.name).find("inertial/origin")
             shift = pair.right.rotation.T @ (sides.mirror.A @ [0.0, 1.0, 0.0])
             if origin is not None and sides.agrees(pair):

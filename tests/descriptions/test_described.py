@@ -292,3 +292,27 @@ def test_the_numbers_of_an_sdf_are_looked_at_too(tmp_path, ixx, lower, code):
     context = Context(Design(form.load(tmp_path / "m.sdf")))
     found = [f.code for rule in RULES if rule.code in CODES for f in rule.outcome(context).findings]
     assert found == ([] if code is None else [code])
+
+
+ARM = """<robot name="arm">
+<link name="base"><visual><origin xyz="0 0 -0.05"/><geometry><box size="0.1 0.1 0.06"/></geometry></visual>
+<visual><origin xyz="0.02 {wall} 0.02"/><geometry><box size="0.02 0.02 0.2"/></geometry></visual></link>
+<link name="arm"><visual><origin xyz="0.1 0 0"/><geometry><box size="0.2 0.02 0.02"/></geometry></visual></link>
+<joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="{upper}" effort="1" velocity="1"/></joint></robot>
+"""
+
+
+@pytest.mark.parametrize(("wall", "upper", "told"), [(0.05, 1.4, True), (0.05, 0.5, False), (0.0201, 1.4, False)])
+def test_a_limit_beyond_what_the_parts_allow_is_told_also_where_nothing_holds_the_joint(tmp_path, wall, upper, told):
+    """The arm of half width 10 mm meets the edge of the wall, at (10, 40) or (30, 40) mm from the axis; a wall that is
+    nearly touched as it is drawn is no stop."""
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM.format(wall=wall, upper=upper))
+    design = run(path, ranges=True).design
+    found = [f for f in design.report.findings if f.code == "KF412"]
+    assert [f.severity for f in found] == (["warning"] if told else [])
+    if told:
+        x, y = 0.03, wall - 0.01
+        meeting = np.degrees(np.arctan2(y, x) - np.arcsin(0.01 / np.hypot(x, y)))
+        assert float(found[0].found.rstrip("°")) == pytest.approx(meeting, abs=0.1)

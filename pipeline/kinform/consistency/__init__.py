@@ -35,4 +35,4 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 22
+CODE_VERSION: int = 23

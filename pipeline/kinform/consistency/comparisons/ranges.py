@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from kinform.consistency import constants
 from kinform.consistency.comparisons.intended_joints import Comparison, bodies_of
 from kinform.consistency.context import Context
 from kinform.foundation.words import angle, length, quoted
@@ -66,15 +67,38 @@ def _beside_ends(context: Context, intended: IntendedJoint, comparison: Comparis
     reach = next((item for item in run.ranges if item.joint == joint.name), None)
     if reach is None:
         return RangeComparison(intended, reason="no range was computed for it")
-    ends = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
-    return RangeComparison(intended, *ends, sign=sign, left_out=reach.left_out)
+    lower, upper = (reach.lower, reach.upper) if sign > 0.0 else (reach.upper, reach.lower)
+    taken = comparison.state == "taken"
+    return RangeComparison(
+        intended,
+        _clear(intended, lower) if taken else lower,
+        _clear(intended, upper) if taken else upper,
+        sign=sign,
+        left_out=reach.left_out,
+    )
+
+
+def _clear(intended: IntendedJoint, end: RangeEnd) -> RangeEnd | None:
+    """The end of a joint that contact does not hold; None where it is at the drawn pose: what meets there touches as it
+    is drawn, as teeth and bars of loops do, and a drive of this joint alone does not part it."""
+    if end.value is None:
+        return end
+    lower, upper = intended.range or (-math.inf, math.inf)
+    near = constants.DRAWN_SLIDE * (upper - lower) if intended.type == "prismatic" else constants.DRAWN_TURN
+    return None if abs(end.value) <= near else end
+
+
+def _doubted(joint: Joint | None) -> bool:
+    """Whether contact leaves undecided what the joint is."""
+    return joint is not None and bool(joint.readings) and joint.readings[0].cause == "doubt"
 
 
 def joint_as_intended(comparison: Comparison) -> tuple[Joint, float] | None:
     """The joint that is as intended, directly between its bodies or taken from the function, and −1 where the
     designer's values run against those of kinform, else 1; None where there is none."""
     intended, joint = comparison.intended, comparison.joint
-    if not (comparison.right_type or comparison.state == "stated") or joint is None or joint.type != intended.type:
+    taken = comparison.state == "stated" or (comparison.state == "taken" and not _doubted(joint))
+    if not (comparison.right_type or taken) or joint is None or joint.type != intended.type:
         return None
     if joint.axis is None or intended.axis is None:
         return None

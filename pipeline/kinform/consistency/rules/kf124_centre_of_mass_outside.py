@@ -30,8 +30,11 @@ def check(context: Context) -> Findings:
 
 
 def _outside(context: Context) -> Iterator[Ranked]:
+    doubted = {name for doubt in context.doubts for name in doubt.subject}  # of another size than they are drawn
     for body in context.weighed:
         if body.hull is None or not np.isfinite(body.centre).all():
+            continue
+        if doubted & {body.name, *(part.name for part in body.parts)}:
             continue
         out = float(body.hull.outside(body.centre[None])[0])
         if out > CENTRE_OUTSIDE * body.size:
