@@ -179,6 +179,23 @@ def test_a_start_in_a_singular_pose_is_refused_with_its_joints(make):
     assert all(joint.name in run.reason for joint in make().system().joints)
 
 
+def test_a_rigid_structure_that_is_to_move_is_said_to_leave_no_freedom():
+    """Two bars and the base make a triangle, which nothing moves."""
+    model = Model()
+    model.rod("a", (0, 0, 0), (1, 1, 0))
+    model.rod("b", (1, 1, 0), (3, 0, 0))
+    for name, a, b, point in (
+        ("j0", "base", "a", (0, 0, 0)),
+        ("j1", "a", "b", (1, 1, 0)),
+        ("j2", "base", "b", (3, 0, 0)),
+    ):
+        model.joint(name, a, b, point=point)
+    for initial in ({"j0": (0.0, 1.0)}, {"j0": (0.3, 0.0)}):
+        run = simulate_system(model.system(), Course(1.0, 0.1, DOWN), initial=initial)
+        assert run.status == "refused"
+        assert "leave no freedom" in run.reason and "contradict" not in run.reason
+
+
 def hung(*drives):
     model = Model()
     model.rod("a", (0, 0, 0), (1, 0, 0))

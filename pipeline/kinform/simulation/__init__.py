@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "Course", "SolverSettings", "port_model", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 12
+CODE_VERSION: int = 13
 
 _SOLVED = ("Course", "simulate_system")
 

@@ -21,6 +21,8 @@ OVERDRIVEN = (
     "or the mechanism starts in a singular pose (a dead point)"
 )
 
+RIGID = "the loops leave no freedom here, as `kinform show F.h5 mobility` has it, and a motion is asked for"
+
 
 @dataclass(frozen=True)
 class Stated:
@@ -63,6 +65,7 @@ def begin(
         stop = follower.go(0.0, 1.0)
         if stop is not None:
             why = OVERDRIVEN if follower.overdriven else f"the loops cannot be brought there: {stop.reason}"
+            why = RIGID if _rigid(mechanism, q, settings) else why
             names = ", ".join(mechanism.joints_of(path.v))
             return Start(q, np.zeros(mechanism.rates), notes, (names, f"initial positions: {why}"))
         q = follower.q
@@ -75,6 +78,7 @@ def begin(
     v = follower.rates(0.0)
     if _opens(follower, v):
         why = OVERDRIVEN if follower.overdriven else "the loops cannot move so"
+        why = RIGID if _rigid(mechanism, q, settings) else why
         return Start(q, v, notes, (", ".join(mechanism.joints_of(follower.led.v)), f"initial velocities: {why}"))
     still = [value for value in loose if value.velocity == 0.0 and value.v in follower.undetermined]
     if still:
@@ -86,6 +90,12 @@ def begin(
     if coasting:
         notes += _notes_of_rest(mechanism, stated, led, q, v) + _notes_of_least(mechanism, follower, v)
     return Start(q, v, notes)
+
+
+def _rigid(mechanism: Mechanism, q: Array, settings: SolverSettings) -> bool:
+    """Whether nothing can move there: of all joints that loops tie together, and there are no others."""
+    rows = mechanism.closure_at(q)
+    return bool(rank_of(rows, mechanism.scale, settings.free) == mechanism.rates)
 
 
 def _notes_of_rest(
