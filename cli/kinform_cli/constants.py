@@ -112,3 +112,5 @@ SHOWN_TURN = 1e-5
 
 MOST_MOVES = 12
 """Joints that were moved that are listed; the JSON has them all. A choice."""
+INSET = 2
+"""Blanks before the columns that stand below what heads them; a choice."""

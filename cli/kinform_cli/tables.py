@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import Literal
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
-from rich.padding import Padding
-from rich.table import Table
+from rich.segment import Segment
+from rich.style import Style
 from rich.text import Text
 
 from kinform.foundation.words import shortened_ends
-from kinform_cli.constants import GAP, INDENT, LEAST_NAME, LEAST_TEXT, MOST_LINES
+from kinform_cli.constants import GAP, INDENT, INSET, LEAST_NAME, LEAST_TEXT, MOST_LINES
 from kinform_cli.text import NONE
 
 
@@ -60,18 +59,18 @@ class Rows:
         rest = [k for k in every if k not in self._shared]
         natural = {k: self._natural(k) for k in every}
         if _across(natural.values()) <= width:
-            yield self._columns(self._rows, natural)
-        elif self._shared and _across(natural[k] for k in rest) <= width - 2:
+            yield from self._columns(console, self._rows, natural)
+        elif self._shared and _across(natural[k] for k in rest) <= width - INSET:
             for shared, rows in groupby(self._rows, lambda row: [row[k] for k in self._shared]):
                 yield _Hanging(Text("  ".join(shared), style="bold"))
-                yield Padding(self._columns(list(rows), {k: natural[k] for k in rest}), (0, 0, 0, 2))
+                yield from self._columns(console, rows, {k: natural[k] for k in rest}, INSET)
         elif (widths := self._fitted(every, width)) is not None:
-            yield self._columns(self._rows, widths)
-        elif (widths := self._fitted(every[self._keys :], width - 2)) is not None:
-            yield Padding(self._columns([], widths), (0, 0, 0, 2))
+            yield from self._columns(console, self._rows, widths)
+        elif (widths := self._fitted(every[self._keys :], width - INSET)) is not None:
+            yield from self._columns(console, [], widths, INSET)
             for row in self._rows:
                 yield _Hanging(Text("  ".join(row[: self._keys]), style="bold"))
-                yield Padding(self._columns([row], widths, headed=False), (0, 0, 0, 2))
+                yield from self._columns(console, [row], widths, INSET, headed=False)
         else:
             for row in self._rows:
                 yield from self._block(row, width)
@@ -107,17 +106,31 @@ class Rows:
         """Cells that the widest value of a column takes."""
         return max(map(cell_len, (self._headings[k], *(row[k] for row in self._rows))))
 
-    def _columns(self, rows: Iterable[Sequence[str]], widths: Mapping[int, int], *, headed: bool = True) -> Table:
-        """The columns that have a width, with names shortened to it."""
-        grid = Table(box=None, header_style="bold cyan", pad_edge=False, show_header=headed)
-        for k, width in widths.items():
-            heading = self._headings[k]
-            side: Literal["right", "left"] = "right" if heading in self._right else "left"
-            grid.add_column(heading, justify=side, overflow="fold", min_width=width, max_width=width)
+    def _columns(
+        self,
+        console: Console,
+        rows: Iterable[Sequence[str]],
+        widths: Mapping[int, int],
+        indent: int = 0,
+        *,
+        headed: bool = True,
+    ) -> Iterator[Segment]:
+        """Lines of the columns that have a width, with names shortened to it.
+
+        Made here, for all values have their width already: rich's table measures and wraps each again, which took
+        seconds for thousands of rows.
+        """
+        names = [k for k in widths if self._headings[k] in self._names]
+        heading = console.get_style("bold cyan")
+        if headed:
+            yield from _row_lines(console, self._cells(self._headings, widths), indent, heading)
         for row in rows:
-            names = {k: shortened_ends(row[k], widths[k]) for k in widths if self._headings[k] in self._names}
-            grid.add_row(*(names.get(k, row[k]) for k in widths))
-        return grid
+            short = {k: shortened_ends(row[k], widths[k]) for k in names}
+            yield from _row_lines(console, self._cells([short.get(k, v) for k, v in enumerate(row)], widths), indent)
+
+    def _cells(self, values: Sequence[str], widths: Mapping[int, int]) -> list[tuple[str, int, bool]]:
+        """Value, width, and whether it stands to the right, of each column that has a width."""
+        return [(values[k], width, self._headings[k] in self._right) for k, width in widths.items()]
 
     def _block(self, row: Sequence[str], width: int) -> Iterable[RenderableType]:
         """The keys, and below them what is known of the rest."""
@@ -134,6 +147,28 @@ class Rows:
                 line += (" " * GAP if line else "") + fact
         if line:
             yield _Hanging(Text(" " * INDENT + line))
+
+
+def _row_lines(
+    console: Console, cells: Sequence[tuple[str, int, bool]], indent: int, style: Style | None = None
+) -> Iterator[Segment]:
+    """The lines of one row: what is wider than its column goes on below."""
+    columns = [_pieces(console, value, width) for value, width, _ in cells]
+    for k in range(max(map(len, columns), default=0)):
+        if indent:
+            yield Segment(" " * indent)
+        for n, (pieces, (_, width, right)) in enumerate(zip(columns, cells, strict=True)):
+            piece = pieces[k] if k < len(pieces) else ""
+            blank = " " * (width - cell_len(piece))
+            yield Segment(("  " if n else "") + (blank + piece if right else piece + blank), style)
+        yield Segment.line()
+
+
+def _pieces(console: Console, value: str, width: int) -> list[str]:
+    """The value in lines no wider than this."""
+    if "\n" not in value and cell_len(value) <= width:
+        return [value]
+    return [line.plain.rstrip() for line in Text(value).wrap(console, width, overflow="fold")]
 
 
 def _across(widths: Iterable[int]) -> int:

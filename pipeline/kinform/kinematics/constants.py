@@ -495,6 +495,13 @@ LEAST_ROW = 1e-3
 """Length below which what is left of a unit row says nothing."""
 EQUAL_ROWS = 1e-6
 """A row counts as tight below this, and two rows as one."""
+SURELY_HELD = 1e-5
+"""Singular value of what is held in a block from which on HiGHS, whose rows are good to 1e-7, moves nothing so."""
+SURELY_STILL = 1e-7
+"""Share of a row that what is held leaves below which it opens by less than counts: LARGEST_TWIST times it is 5e-5."""
+MOST_CERTIFIED = 120
+"""Components of twists up to which it is first asked whether anything opens in a block: dense algebra of a
+millisecond, where importing and calling a linear program takes hundreds."""
 CERTIFICATE_SHARE = 1e-6
 """Least λ over the greatest of a certificate."""
 NEWTON_STEPS = 25

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from kinform.foundation import constants
 from kinform.model.arrays import Array
@@ -41,6 +40,8 @@ def hull_of(points: Array) -> Hull | None:
     size = float(np.ptp(points, axis=0).max())
     if size <= 0.0:
         return None
+    from scipy.spatial import ConvexHull, QhullError
+
     scaled = (points - middle) / size
     try:
         hull = ConvexHull(scaled)

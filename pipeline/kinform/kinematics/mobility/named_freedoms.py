@@ -196,7 +196,7 @@ class Motions:
         """Twists (ω; v at the world's origin) of the bodies that move, ground at rest."""
         moving: dict[int, Array] = {}
         rates = self._relative_twists(freedom)
-        for node in self.tree.order:
+        for node in self._carried(freedom, rates):
             up, edge = self.tree.parent[node], self.tree.edge[node]
             if up < 0:
                 if freedom.driver is None and node == self.graph.node[freedom.body]:
@@ -211,6 +211,33 @@ class Motions:
             if twist is not None:
                 moving[node] = twist
         return {self.graph.bodies[node].name: twist for node, twist in sorted(moving.items())}
+
+    @cached_property
+    def _below(self) -> tuple[dict[int, int], list[list[int]], list[int]]:
+        """The node that each edge of the tree carries, the nodes above each, and the place of each in their order."""
+        carried = {edge: node for node, edge in enumerate(self.tree.edge) if self.tree.parent[node] >= 0}
+        above: list[list[int]] = [[] for _ in self.tree.parent]
+        for node, up in enumerate(self.tree.parent):
+            if up >= 0:
+                above[up].append(node)
+        place = [0] * len(above)
+        for k, node in enumerate(self.tree.order):
+            place[node] = k
+        return carried, above, place
+
+    def _carried(self, freedom: Freedom, rates: Mapping[int, Array]) -> list[int]:
+        """Nodes that a freedom may move, in the order of the tree: those that its joints carry."""
+        carried, above, place = self._below
+        waiting = [carried[edge] for edge in rates if edge in carried]
+        if freedom.driver is None:
+            waiting.append(self.graph.node[freedom.body])
+        found: set[int] = set()
+        while waiting:
+            node = waiting.pop()
+            if node not in found:
+                found.add(node)
+                waiting += above[node]
+        return sorted(found, key=place.__getitem__)
 
     def relative(self, first: str, second: str) -> Array:
         """(k, 6) twists of the second body relative to the first, of the freedoms that have one."""

@@ -72,7 +72,7 @@ def split_directions(rows: Array) -> tuple[Array, Array]:
 
 
 def held_for_certain(pairs: Sequence[Array]) -> Flags:
-    """For each pair of bodies with unit rows (n, 6): is there λ > 0 with Rᵀλ = 0, so that nothing can leave?
+    """For each pair of bodies with unit rows (n, d), d = 6: is there λ > 0 with Rᵀλ = 0, so that nothing can leave?
 
     True is proven. False says only that no such λ was primal.
     """
@@ -85,7 +85,8 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
     values, vectors = np.linalg.eigh(grams(rows, np.ones(len(rows)), counts))
     loose = values < constants.CONE_FREE**2 * counts[:, None]
     still = np.einsum("pik,pk,pjk->pij", vectors, loose.astype(float), vectors)
-    at = np.zeros((len(active), 6))
+    size = rows.shape[1]
+    at = np.zeros((len(active), size))
     for _ in range(constants.NEWTON_STEPS):
         exponent = np.einsum("ij,ij->i", rows, np.repeat(at, counts, axis=0))
         weight = np.exp(-np.clip(exponent, -constants.FAR_EXPONENT, constants.FAR_EXPONENT))
@@ -94,7 +95,7 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         pull -= np.einsum("pij,pj->pi", still, pull)
         system = grams(rows, weight, counts)
         scale = np.trace(system, axis1=1, axis2=2)[:, None, None]
-        step = np.linalg.solve(system + scale * (still + 1e-15 * np.eye(6)), pull[:, :, None])[:, :, 0]
+        step = np.linalg.solve(system + scale * (still + 1e-15 * np.eye(size)), pull[:, :, None])[:, :, 0]
         change = np.einsum("ij,ij->i", rows, np.repeat(step, counts, axis=0))
         certificate = weight * (1.0 - change)
         # where all rows agree on a side the certificate cancels to rounding: it must keep some of its weight
@@ -110,6 +111,27 @@ def held_for_certain(pairs: Sequence[Array]) -> Flags:
         chosen = np.repeat(keep, counts)
         rows, counts, active, at, still = rows[chosen], counts[keep], active[keep], at[keep], still[keep]
     return held
+
+
+def nothing_opens(rows: Array, fixed: Array) -> bool:
+    """Whether V with fixed V = 0 and R V ≥ 0 has R V = 0 for certain; rows (n, d) and (m, d). False says nothing.
+
+    For programs whose components are up to LARGEST_TWIST and where what counts opens by a half: each tolerance is
+    so small that neither rounding nor what HiGHS admits comes near that.
+    """
+    free = np.eye(rows.shape[1])
+    if len(fixed):
+        _, values, right = np.linalg.svd(fixed)
+        free = right[np.append(values, np.zeros(len(right) - len(values))) < constants.SURELY_HELD]
+    inner = rows @ free.T
+    size = np.linalg.norm(inner, axis=1)
+    inner = inner[size > constants.SURELY_STILL] / size[size > constants.SURELY_STILL, None]
+    if not len(inner):
+        return True
+    values = np.linalg.eigvalsh(inner.T @ inner) / len(inner)
+    if ((values > constants.SURELY_STILL**2) & (values < constants.CONE_FREE**2)).any():
+        return False
+    return bool(held_for_certain([inner])[0])
 
 
 def grams(rows: Array, weight: Array, counts: Ints) -> Array:

@@ -23,8 +23,15 @@ from kinform.foundation.algebra.screws import Frame, scaled, twist_at_origin
 from kinform.foundation.algebra.vectors import cross
 from kinform.foundation.graphs.graph import UnionFind, blocks
 from kinform.kinematics.answers import Answers, ask
-from kinform.kinematics.constants import CONE_HELD, LARGEST_TWIST, MOST_OPENING_ROWS, MOST_TOGETHER, ROUNDED_ROW
-from kinform.kinematics.separation.cone import rows_beside, split_directions, unit_rows
+from kinform.kinematics.constants import (
+    CONE_HELD,
+    LARGEST_TWIST,
+    MOST_CERTIFIED,
+    MOST_OPENING_ROWS,
+    MOST_TOGETHER,
+    ROUNDED_ROW,
+)
+from kinform.kinematics.separation.cone import nothing_opens, rows_beside, split_directions, unit_rows
 from kinform.kinematics.separation.contact_rows import Cone, ContactRows, is_stated
 from kinform.kinematics.separation.releases import certainly_held, leaving_of, release_of
 from kinform.model.arrays import Array
@@ -114,8 +121,6 @@ def separations(
 
 def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
     """Indices of the links of one block that can open together; None where the program is too large or fails."""
-    from scipy.optimize import linprog
-
     nodes = {n: k for k, n in enumerate(sorted({n for link in links for n in link.ends}))}
     loose = [k for k, link in enumerate(links) if link.cone is not None]
     frame = _common([link.cone.frame for link in links if link.cone is not None])
@@ -133,6 +138,12 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
             equal.append((rows_in_frame(link.cone.fixed, link.cone.frame, frame), a, b, -1))
             less.append((-turned[k], a, b, -1))
             less.append((-turned[k].mean(axis=0, keepdims=True), a, b, width + loose.index(k)))
+    if width <= MOST_CERTIFIED and nothing_opens(
+        -_dense([item for item in less if item[3] < 0], width), _dense(equal, width)
+    ):
+        return ()
+    from scipy.optimize import linprog
+
     columns = width + len(loose)
     upper, fixed = _stack(less, columns), _stack(equal, columns)
     bound = np.concatenate([np.full(width, LARGEST_TWIST), np.ones(len(loose))])
@@ -146,6 +157,18 @@ def _links_that_open(links: Sequence[Link]) -> tuple[int, ...] | None:
     if solved.status != 0:
         return None
     return tuple(loose[k] for k in np.flatnonzero(solved.x[width:] > 0.5))
+
+
+def _dense(items: list[tuple[Array, int, int, int]], columns: int) -> Array:
+    """The rows of items as `_stack` has them, without the columns of speeds."""
+    out = np.zeros((sum(len(rows) for rows, *_ in items), columns))
+    count = 0
+    for rows, a, b, _ in items:
+        for sign, column in ((-1.0, a), (1.0, b)):
+            if column >= 0:
+                out[count : count + len(rows), column : column + 6] = sign * rows
+        count += len(rows)
+    return out
 
 
 def _stack(items: list[tuple[Array, int, int, int]], columns: int) -> csr_matrix | None:

@@ -7,7 +7,7 @@ speaks of it was left undecided, and what was found is what was asked for.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from kinform.consistency import Comparison, compare_joint
@@ -15,7 +15,6 @@ from kinform.design import Design
 from kinform.foundation import words
 from kinform.function import resolve_joint
 from kinform.model.collisions import RangeEnd
-from kinform.model.findings import Finding
 from kinform.model.function import IntendedJoint, Requirement
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.reports.page.phrases import axis_words, contact, joint_sentence, point_words, requirement_words
@@ -59,6 +58,11 @@ class _Table:
         self.units = design.assembly.units
         self.findings = () if design.report is None else design.report.findings
         self.used: set[int] = set()
+        self.about: dict[str, list[int]] = {}
+        """Findings about each name."""
+        for k, finding in enumerate(self.findings):
+            for name in finding.subject:
+                self.about.setdefault(name, []).append(k)
         rules = () if design.report is None else design.report.rules
         self.undecided = {rule.code for rule in rules if rule.outcome == "inconclusive"}
 
@@ -107,7 +111,8 @@ class _Table:
         stated = assembly.function.mobility
         row = Row("mobility of the whole", form, behaviour, "" if stated is None else f"mobility {stated}")
         right = None if stated is None else stated == mobility.effective
-        return self._judged(row, lambda finding: finding.code[:4] == "KF30", right, "KF301")
+        about = [k for k, finding in enumerate(self.findings) if finding.code[:4] == "KF30"]
+        return self._judged(row, about, right, "KF301")
 
     def _intended(self, joint: IntendedJoint, found: Comparison) -> Row:
         derived = found.joint
@@ -168,20 +173,20 @@ class _Table:
             weighed = sum(part.mass is not None for part in design.mass.parts)
             form = f"masses of {weighed} of {len(design.assembly.parts)} parts"
         right = True if drives and run.status == "done" else None
-        of_motion = lambda finding: finding.code in ("KF409", "KF410") or finding.code[:3] == "KF5"
-        return self._judged(Row("motion", form, text, "; ".join(drives)), of_motion, right, "KF501")
+        about = [k for k, f in enumerate(self.findings) if f.code in ("KF409", "KF410") or f.code[:3] == "KF5"]
+        return self._judged(Row("motion", form, text, "; ".join(drives)), about, right, "KF501")
 
     def _judged_by_name(self, row: Row, names: set[str], right: bool | None) -> Row:
         """The row with the findings about any of the names."""
-        return self._judged(row, lambda finding: not names.isdisjoint(finding.subject), right)
+        about = sorted({k for name in names for k in self.about.get(name, ())})
+        return self._judged(row, about, right)
 
-    def _judged(self, row: Row, about: Callable[[Finding], bool], right: bool | None, rule: str = "") -> Row:
-        """The row with its findings and its mark.
+    def _judged(self, row: Row, findings: Sequence[int], right: bool | None, rule: str = "") -> Row:
+        """The row with its findings, by their positions in the report, and its mark.
 
         `right`: what was found is what was asked for; None: there is nothing to compare, or no answer. `rule` is the
         code of the rule that decides.
         """
-        findings = [k for k, finding in enumerate(self.findings) if about(finding)]
         self.used.update(findings)
         severities = {self.findings[k].severity for k in findings}
         undecided = rule in self.undecided or any(self.findings[k].code in self.undecided for k in findings)

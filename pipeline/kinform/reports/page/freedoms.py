@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
-from scipy.linalg import qr
 
 from kinform.foundation.algebra.displacements import carry, displacement, exponentials, inverse
 from kinform.foundation.graphs.graph import forest
@@ -71,6 +70,8 @@ def _drivers(rates: Array, turning: Array, size: float) -> tuple[list[int], Arra
     """Coordinates that can drive, and the mixes of freedoms (d, m) in which one of them moves alone at rate 1."""
     if not rates.shape[1]:
         return [], np.zeros((0, len(rates)))
+    from scipy.linalg import qr
+
     weighted = rates * np.where(turning, 1.0, 1.0 / size)
     _, triangle, order = qr(weighted, mode="economic", pivoting=True)
     diagonal = np.abs(np.diag(triangle))

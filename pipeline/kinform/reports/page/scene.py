@@ -49,6 +49,11 @@ class Scene:
         return _body_colours([body.ground for body in self.bodies])
 
     @cached_property
+    def body_number(self) -> dict[str, int]:
+        """The number of each body, by name."""
+        return {body.name: k for k, body in enumerate(self.bodies)}
+
+    @cached_property
     def body_index(self) -> dict[str, int]:
         """The number of each part's body."""
         return {part: k for k, body in enumerate(self.bodies) for part in body.parts}

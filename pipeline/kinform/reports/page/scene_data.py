@@ -79,7 +79,7 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
 
 
 def _joint(scene: Scene, joint: Joint) -> dict[str, Any]:
-    number = {body.name: k for k, body in enumerate(scene.bodies)}
+    number = scene.body_number
     point, size = scene.sign_of(joint)
     return {
         "name": joint.name,

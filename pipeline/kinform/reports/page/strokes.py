@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -81,21 +83,26 @@ def ring(image: Array, centre: Array, radius: float, width: float) -> None:
     if box is None:
         return
     away = np.abs(np.hypot(box[0] - centre[0], box[1] - centre[1]) - radius)
-    image[box[1][away < width], box[0][away < width]] = 1.0
+    _part(image, box)[away < width] = 1.0
     _paint(image, box, away < 0.6 * width)
 
+
+_SIGNAL = [*rgb(SIGNAL_COLOUR), 1.0]
 
 Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]
 
 
 def _box(image: Array, points: Array, margin: float) -> Pixels | None:
-    """Columns and rows of the pixels around some points; None outside of the image."""
-    low = np.maximum(np.floor(points.min(axis=0) - margin).astype(int), 0)
-    high = np.minimum(np.ceil(points.max(axis=0) + margin).astype(int) + 1, [image.shape[1], image.shape[0]])
-    if (high <= low).any():
+    """Columns (1, n) and rows (m, 1) of the pixels around two points; None outside of the image."""
+    (x, y), (u, v) = points.tolist()
+    if not math.isfinite(x + y + u + v):
         return None
-    rows, columns = np.mgrid[low[1] : high[1], low[0] : high[0]]
-    return columns, rows
+    left, top = max(math.floor(min(x, u) - margin), 0), max(math.floor(min(y, v) - margin), 0)
+    right = min(math.ceil(max(x, u) + margin) + 1, image.shape[1])
+    bottom = min(math.ceil(max(y, v) + margin) + 1, image.shape[0])
+    if right <= left or bottom <= top:
+        return None
+    return np.arange(left, right)[None, :], np.arange(top, bottom)[:, None]
 
 
 def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
@@ -107,4 +114,10 @@ def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
 
 
 def _paint(image: Array, box: Pixels, where: NDArray[np.bool_]) -> None:
-    image[box[1][where], box[0][where]] = [*rgb(SIGNAL_COLOUR), 1.0]
+    _part(image, box)[where] = _SIGNAL
+
+
+def _part(image: Array, box: Pixels) -> Array:
+    """The pixels of an image in a box, to be written to."""
+    columns, rows = box[0][0], box[1][:, 0]
+    return image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]

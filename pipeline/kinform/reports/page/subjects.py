@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
 
 from kinform.design import Design
+from kinform.model.function import IntendedJoint
+from kinform.model.kinematics import Joint
 from kinform.model.names import PartName
 
 
@@ -12,28 +16,48 @@ def subjects_of(design: Design, names: Iterable[str]) -> tuple[list[str], list[s
     """The parts and the derived joints that names stand for: parts, groups, bodies, joints, intended joints."""
     parts: dict[str, None] = {}
     joints: dict[str, None] = {}
-    assembly, kinematics = design.assembly, design.kinematics
-    names_of_parts = {part.name for part in assembly.parts}
-    groups = {group.name: group.parts for group in assembly.groups}
-    bodies: dict[str, tuple[PartName, ...]] = {}
-    if kinematics is not None:
-        bodies.update((body.name, body.parts) for body in kinematics.bodies)
-    derived = {} if kinematics is None else {joint.name: joint for joint in kinematics.joints}
-    wanted = {joint.name: joint for joint in assembly.function.joints}
+    assembly, kinematics, known = design.assembly, design.kinematics, _names(design)
     for name in names:
-        if name in names_of_parts:
+        if name in known.parts:
             parts.setdefault(name)
-        elif name in groups or name in bodies:
-            parts.update(dict.fromkeys(groups.get(name) or bodies[name]))
-        elif name in derived:
+        elif name in known.groups or name in known.bodies:
+            parts.update(dict.fromkeys(known.groups.get(name) or known.bodies[name]))
+        elif name in known.derived:
             joints.setdefault(name)
-        elif name in wanted and kinematics is not None:
+        elif name in known.wanted and kinematics is not None:
+            wanted = known.wanted
             ends = {kinematics.body_of(assembly.parts_of(side)[0]).name for side in wanted[name].between}
-            direct = [joint.name for joint in derived.values() if set(joint.bodies) == ends]
+            direct = [joint.name for joint in known.derived.values() if set(joint.bodies) == ends]
             joints.update(dict.fromkeys(direct))
             if not direct:
                 parts.update(dict.fromkeys(p for side in wanted[name].between for p in assembly.parts_of(side)))
     return list(parts), list(joints)
+
+
+@dataclass(frozen=True)
+class _Names:
+    """What there is in a design, by name."""
+
+    parts: frozenset[str]
+    groups: dict[str, tuple[PartName, ...]]
+    bodies: dict[str, tuple[PartName, ...]]
+    derived: dict[str, Joint]
+    wanted: dict[str, IntendedJoint]
+
+
+@lru_cache(maxsize=1)
+def _names(design: Design) -> _Names:
+    """Looked up once for all that findings name."""
+    assembly, kinematics = design.assembly, design.kinematics
+    bodies = () if kinematics is None else kinematics.bodies
+    joints = () if kinematics is None else kinematics.joints
+    return _Names(
+        frozenset(part.name for part in assembly.parts),
+        {group.name: group.parts for group in assembly.groups},
+        {body.name: body.parts for body in bodies},
+        {joint.name: joint for joint in joints},
+        {joint.name: joint for joint in assembly.function.joints},
+    )
 
 
 def wanted_names(design: Design) -> dict[str, list[str]]:
