@@ -8,6 +8,7 @@ elsewhere the command works in the process that was started, and native code is 
 
 from __future__ import annotations
 
+import mmap
 import os
 import signal
 import sys
@@ -19,10 +20,16 @@ from kinform_cli.constants import GRACE
 _FAILED = 2
 
 
+board: mmap.mmap | None = None
+"""Where the process that does the work notes what native code is at work on (`kinform.foundation.at_work`)."""
+
+
 def divide() -> None:
     """Returns in a new process, which does the work; this one ends with what that one ends with."""
+    global board
     if sys.platform != "linux":
         return
+    board = mmap.mmap(-1, mmap.PAGESIZE)
     awaited = {signal.SIGCHLD}
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as in the background of a shell: it stays so
         awaited.add(signal.SIGINT)
@@ -84,10 +91,19 @@ def _code(status: int, asked: bool) -> int:
         except ValueError:
             name = "unknown"
         _tell(
-            f"native code crashed (signal {-code}, {name}); an output file that existed is as it was\n"
+            f"native code crashed (signal {-code}, {name}){_subject()}; an output file that existed is as it was\n"
             "  remedy: run it again with KINFORM_DEBUG=1 to see where, and report it with its input"
         )
     return _FAILED
+
+
+def _subject() -> str:
+    """Of which parts native code was at work, where that was noted."""
+    if board is None:
+        return ""
+    length = int.from_bytes(board[:2], "little")
+    text = board[2 : 2 + length].decode("utf-8", "replace")
+    return f" at work on {''.join(c if c.isprintable() else '?' for c in text)}" if text else ""
 
 
 def _tell(text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -148,6 +149,47 @@ def test_a_crash_of_native_code_is_told_and_never_a_verdict(deed: str, folder: P
         "kinform: error: killed" if "9" in deed else "kinform: error: native code crashed (signal "
     )
     assert (folder / "r.h5").read_bytes() == before
+
+
+NATIVE = {
+    "kinform.collisions.pair.prepared_pair._hits": ("simulate", "r.h5", "-o", "new.h5", "--ranges"),
+    "kinform.collisions.pair.distance_bounds.fcl_distance": ("simulate", "r.h5", "-o", "new.h5", "--ranges"),
+    "kinform.contacts.find.pair_contacts": ("contacts", "r.h5", "-o", "new.h5", "--jobs", "1"),
+    "kinform.reports.page.overlaps._common": ("report", "r.h5", "-o", "r.html"),
+}
+"""Native code, or what calls it at once, in the stages that work in one process."""
+
+
+@pytest.fixture(scope="module")
+def overlapping(tmp_path_factory, derive_design) -> Path:
+    """A mechanism that moves, and two parts of which overlap, with its results."""
+    folder = tmp_path_factory.mktemp("overlapping")
+    results.write(derive_design(FIXTURES / "broken" / OVERLAPPING / f"{OVERLAPPING}.toml"), folder / "r.h5")
+    return folder
+
+
+OVERLAPPING = "seeker_gimbal_overlaps"
+
+
+@pytest.mark.parametrize("place", NATIVE)
+def test_a_crash_of_native_code_names_the_parts_it_was_at_work_on(place: str, overlapping: Path) -> None:
+    (overlapping / "begun").unlink(missing_ok=True)
+    running = begun(overlapping, place, *NATIVE[place], deed="os.kill(os.getpid(), signal.SIGSEGV)")
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 2
+    told = re.search(r"native code crashed \(signal 11, SIGSEGV\) at work on (?:contacts of )?(\S+) and (\S+);", errors)
+    assert told is not None, errors
+    assert {told[1], told[2]} <= {part.name for part in results.read(overlapping / "r.h5").assembly.parts}
+
+
+@pytest.mark.parametrize("place", ["kinform.collisions.pair.prepared_pair._hits"])
+def test_ctrl_c_is_heard_within_a_call_of_the_collisions(place: str, overlapping: Path) -> None:
+    (overlapping / "begun").unlink(missing_ok=True)
+    running = begun(overlapping, place, *NATIVE[place])
+    running.send_signal(signal.SIGINT)
+    out, errors = running.communicate(timeout=60)
+    assert (running.returncode, out) == (2, "")
+    assert "interrupted" in errors
 
 
 @pytest.mark.parametrize("signal_", [signal.SIGKILL, signal.SIGTERM])

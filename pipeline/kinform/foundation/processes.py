@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 from kinform.errors import KinformError
+from kinform.foundation import at_work
+from kinform.foundation.at_work import at_work_on
 from kinform.foundation.progress import Progress
 
 Item = TypeVar("Item")
@@ -57,7 +59,10 @@ def _results(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, name: Callable[[Item], str]
 ) -> Iterator[Result]:
     if jobs <= 1:
-        yield from map(function, items)
+        for item in items:
+            with at_work_on(name(item)):
+                result = function(item)
+            yield result
         return
     if len(items) < 2:
         yield from _one_by_one(function, items, name)
@@ -104,6 +109,7 @@ def _begin(function: Callable[[Any], Any]) -> None:
     """Remember what is to be done, and leave Ctrl-C to the process that waits for it."""
     global _function
     _function = function
+    at_work.board = None
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
@@ -146,6 +152,7 @@ def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
     code = 1
     try:
         os.close(reading)
+        at_work.board = None  # what ends this process is told by who asked for it
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
             answer = pickle.dumps((True, function()))

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import fcl
 import numpy as np
 
+from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.meshes.index import MeshIndex
 from kinform.function.constants import GRID
@@ -92,7 +93,8 @@ class Apart:
                 break
             if low > enough:
                 return Nearest(low, names, best.place)
-            distance, facets = _distance(a, pair.first.X_WP, b, X_second)
+            with at_work_on(*names):
+                distance, facets = _distance(a, pair.first.X_WP, b, X_second)
             if distance < best.distance:
                 place = _between(_corners_at(a, facets[0], pair.first.X_WP), _corners_at(b, facets[1], X_second))
                 best = Nearest(distance, names, place)
@@ -138,7 +140,8 @@ def _pair(
     if names not in contacts.tolerance or overlapping:
         tests = [(keep_a, keep_b)]
     else:
-        near_a, near_b = _near(a, keep_a, b, keep_b, contacts.tolerance[names])
+        with at_work_on(*names):
+            near_a, near_b = _near(a, keep_a, b, keep_b, contacts.tolerance[names])
         tests = [(keep_a & ~near_a, keep_b)]
         if near_a.any():
             tests.append((near_a, keep_b & ~near_b))

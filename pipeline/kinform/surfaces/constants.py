@@ -179,6 +179,10 @@ BOW = 1e-5
 """Depth (diagonals) to which a generator that leans may dip below the surface: the ends of slanted ridges lie on it,
 but a cut between them does not."""
 
+ROWS = 2**18
+"""Rows that are computed at a time where each is for itself: 16 MB of eight columns. It bounds memory and changes no
+bit."""
+
 APEX = 0.05
 """Distance from the axis, in radii, within which a vertex of a cone is its apex."""
 

@@ -5,6 +5,8 @@ Knows nothing of geometry. Groups are runs of consecutive rows, given by their s
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
@@ -29,6 +31,12 @@ class Ragged:
         first = np.cumsum(lengths) - lengths
         within = np.arange(len(owner)) - first[owner]
         return owner, self.items[self.starts[rows][owner] + within]
+
+
+def slices(count: int, size: int) -> Iterator[slice]:
+    """Rows 0 to `count`, so many at a time: what is computed row by row takes less memory so, and gives the same."""
+    for start in range(0, count, size):
+        yield slice(start, min(start + size, count))
 
 
 def starts_of(groups: Ints, count: int) -> Ints:
@@ -67,6 +75,12 @@ def group_mean(groups: Ints, values: Array, count: int, weight: Array | None = N
     return np.asarray(group_sum(groups, values * weight[:, None], count) / total[:, None])
 
 
+def group_mean_of(groups: Ints, columns: Sequence[Array], rows: Ints, count: int) -> Array:
+    """`group_mean` of these rows of k columns, one column at a time."""
+    size = np.maximum(np.bincount(groups, minlength=count), 1)
+    return np.stack([np.bincount(groups, column[rows], count) / size for column in columns], axis=1)
+
+
 def group_range(groups: Ints, values: Array, count: int) -> tuple[Array, Array]:
     """Least and greatest value of each group number, (count,) each; ∞ and −∞ for groups without."""
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
@@ -90,9 +104,17 @@ def spheres_through(groups: Ints, points: Array, count: int, *more: Array) -> tu
     |q|² = 2 q·c + k is linear in the centre c and in k = r² − |c|²; `more` columns take up what else the squared
     distance depends on.
     """
-    size = points.shape[1]
-    columns = np.stack([*points.T, np.ones(len(points)), *more], axis=1)
-    matrix, right = normal_equations(groups, columns, (points**2).sum(axis=1), count)
+    return spheres_of(groups, list(points.T), count, *more)
+
+
+def spheres_of(groups: Ints, coordinates: Sequence[Array], count: int, *more: Array) -> tuple[Array, Array]:
+    """As `spheres_through`, of points as d columns (n,), which takes half of the memory."""
+    size = len(coordinates)
+    square = coordinates[0] ** 2
+    for column in coordinates[1:]:
+        square += column**2
+    columns = [*coordinates, np.ones(len(square)), *more]
+    matrix, right = _normal_equations(groups, columns, square, count)
     solution = solve_normal(matrix, right)
     centre = solution[:, :size] / 2
     return centre, solution[:, size] + (centre**2).sum(axis=1)
@@ -100,15 +122,17 @@ def spheres_through(groups: Ints, points: Array, count: int, *more: Array) -> tu
 
 def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
     """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
-    k = jacobian.shape[1]
+    return _normal_equations(groups, list(jacobian.T), residual, count)
+
+
+def _normal_equations(groups: Ints, columns: Sequence[Array], residual: Array, count: int) -> tuple[Array, Array]:
+    k = len(columns)
     matrix: Array = np.empty((count, k, k))
     for i in range(k):
         for j in range(i, k):
-            matrix[:, i, j] = np.bincount(groups, jacobian[:, i] * jacobian[:, j], count)
+            matrix[:, i, j] = np.bincount(groups, columns[i] * columns[j], count)
             matrix[:, j, i] = matrix[:, i, j]
-    right: Array = np.stack(
-        [np.bincount(groups, jacobian[:, i] * residual, count).astype(float) for i in range(k)], axis=1
-    )
+    right: Array = np.stack([np.bincount(groups, columns[i] * residual, count).astype(float) for i in range(k)], axis=1)
     return matrix, right
 
 

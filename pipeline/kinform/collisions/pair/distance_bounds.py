@@ -16,6 +16,7 @@ import numpy as np
 from kinform.collisions.constants import CERTAIN, SHORT_STEP, SPHERES_FAR, STEPS_MOST, WHOLES_TOUCH
 from kinform.collisions.pair.course import Course
 from kinform.collisions.parts.shapes import Shapes
+from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array
 
@@ -33,7 +34,8 @@ class Wholes:
 
     @cached_property
     def _objects(self) -> tuple[fcl.CollisionObject, fcl.CollisionObject]:
-        first, second = (fcl.CollisionObject(self._shapes.model(name)) for name in self._names)
+        with at_work_on(*self._names):
+            first, second = (fcl.CollisionObject(self._shapes.model(name)) for name in self._names)
         return first, second
 
     def distance(self, D: Array) -> float:
@@ -46,7 +48,8 @@ class Wholes:
         if bound > SPHERES_FAR * self._size:
             return CERTAIN * bound
         self._objects[1].setTransform(fcl_pose(X))
-        return CERTAIN * fcl_distance(*self._objects)
+        with at_work_on(*self._names):
+            return CERTAIN * fcl_distance(*self._objects)
 
     def touch(self, D: Array) -> bool:
         """Whether they touch, or nearly."""

@@ -20,6 +20,7 @@ from kinform.collisions.pair.flush_entry import Probes, probes
 from kinform.collisions.pair.mate_surfaces import Mates, SurfacePair
 from kinform.collisions.parts.shapes import Shapes
 from kinform.foundation.algebra.vectors import perpendicular
+from kinform.foundation.at_work import at_work_on
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_pose
 from kinform.model.arrays import Array, Ints
 from kinform.model.contacts import Patch
@@ -69,9 +70,10 @@ class PairTest:
         """m: less deep, points of one may be in the other though the parts only mate."""
         self.empty = not (len(facets[0]) and len(facets[1]))
         if not self.empty:
-            self._objects = tuple(
-                fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
-            )
+            with at_work_on(*self.names):
+                self._objects = tuple(
+                    fcl.CollisionObject(shapes.model(n, f)) for n, f in zip(self.names, facets, strict=True)
+                )
 
     @property
     def part_names(self) -> tuple[PartName, PartName]:
@@ -101,14 +103,16 @@ class PairTest:
             return float("inf"), (0, 0)
         self._place(D)
         result = fcl.DistanceResult()
-        return fcl_distance(self._objects[0], self._objects[1], result), (result.b1, result.b2)
+        with at_work_on(*self.names):
+            return fcl_distance(self._objects[0], self._objects[1], result), (result.b1, result.b2)
 
     def hits(self, D: Array) -> Ints:
         """(n, 2) facets, as counted by FCL, that touch or cross at a displacement (4, 4)."""
         if self.empty:
             return np.zeros((0, 2), dtype=np.int64)
         self._place(D)
-        return _hits(*self._objects)
+        with at_work_on(*self.names):
+            return _hits(*self._objects)
 
     def height(self, D: Array, nearest: tuple[int, int]) -> float:
         """m: of the middle of one of the second's facets that count above the plane of one of the first's."""
@@ -254,14 +258,16 @@ class PairTest:
         X = self.pose(D)
         other = (middles - X[:3, 3]) @ X[:3, :3]
         first, second = self._shapes.index(self.names[0]), self._shapes.index(self.names[1])
-        inside = np.flatnonzero(first.contains(middles))
-        inside = inside[second.contains(other[inside])]
+        with at_work_on(*self.names):
+            inside = np.flatnonzero(first.contains(middles))
+            inside = inside[second.contains(other[inside])]
         inside = (
             inside[np.unique(np.linspace(0, len(inside) - 1, finer * constants.DEPTH_INSIDE).astype(int))]
             if len(inside)
             else inside
         )
-        total = first.whole().depths(middles[inside])[0] + second.whole().depths(other[inside])[0]
+        with at_work_on(*self.names):
+            total = first.whole().depths(middles[inside])[0] + second.whole().depths(other[inside])[0]
         deepest = float(total.max(initial=0.0))
         return deepest if deepest > least else 0.0
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import FAULTS_KEPT, FAULTS_SHOWN, LARGEST_NUMBER
+from kinform.form.constants import CUT_CORNERS, FACE_BYTES, FAULTS_KEPT, FAULTS_SHOWN, LARGEST_NUMBER
 from kinform.form.meshes.blocks import NEWLINE, blocks, coordinate, with_newlines
 from kinform.form.meshes.digits import written_step
 from kinform.form.meshes.polygons import triangulate
@@ -127,19 +127,19 @@ def parse_obj(data: bytes) -> RawMesh:
         raise MeshError([Fault("is empty: it has no face", REEXPORT)])
     faces, owner, crossed = triangulate(vertices, corners, sizes)
     if len(crossed):
-        raise MeshError([
-            Fault(
-                f"has a polygon of {counted(int(sizes[p]), 'corner')} that crosses itself, at line "
-                f"{face_lines[p]}", "export triangles", int(face_lines[p]),
-            )
-            for p in crossed[:FAULTS_SHOWN]
-        ])  # fmt: skip
+        raise MeshError([_uncut(int(sizes[p]), int(face_lines[p])) for p in crossed[:FAULTS_SHOWN]])
     labellings = (
         _labelling("object", contents.objects, objects[owner]),
         _labelling("group", contents.groups, groups[owner]),
     )
     written = written_step(_coordinates(data), vertices.ravel())
     return RawMesh(vertices, faces, tuple(x for x in labellings if x is not None), written)
+
+
+def _uncut(size: int, line: int) -> Fault:
+    """Why a polygon is not cut into triangles."""
+    why = "crosses itself" if size <= CUT_CORNERS else f"is not convex (of such {CUT_CORNERS:,} are the most)"
+    return Fault(f"has a polygon of {counted(size, 'corner')} that {why}, at line {line}", "export triangles", line)
 
 
 def _coordinates(data: bytes) -> Iterator[list[bytes]]:
@@ -159,7 +159,8 @@ def _labelling(kind: str, names: dict[str, int], labels: NDArray[np.integer]) ->
 def _blocks_of_lines(data: bytes) -> Iterator[list[tuple[int, bytes]]]:
     """Number and text of each line without its comment, block by block, lines that end in a backslash joined with the
     next."""
-    number, begun, held = 0, 0, b""
+    number, begun = 0, 0
+    held = bytearray()
     for _, block in blocks(data, len(_MARK) if data.startswith(_MARK) else 0, len(data), NEWLINE):
         lines: list[tuple[int, bytes]] = []
         # what is behind the last newline is a line only where it holds something
@@ -169,18 +170,22 @@ def _blocks_of_lines(data: bytes) -> Iterator[list[tuple[int, bytes]]]:
             if line.endswith(b"\\"):
                 held += line[:-1] + b" "
                 continue
-            whole = held + line
+            whole = bytes(held) + line if held else line
             lines.append((begun, whole.partition(b"#")[0] if b"#" in whole else whole))
-            begun, held = 0, b""
+            begun = 0
+            held.clear()
         yield lines
     if held:
-        yield [(begun, held)]
+        yield [(begun, bytes(held))]
 
 
 def _sort_line(number: int, line: bytes, contents: _Contents) -> None:
     """Take over what a line states; what cannot be read is among the faults."""
     word, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
-    if word == b"v":
+    if len(rest) > FACE_BYTES and word in (b"v", b"f", b"fo"):
+        message = f"has {_shown(word)!r} with {len(rest):,} characters at line {number}; {FACE_BYTES:,} are the most"
+        contents.faults.add(message, "export triangles", number)
+    elif word == b"v":
         contents.vertex(number, rest)
     elif word in (b"f", b"fo"):
         contents.face(number, rest)

@@ -9,19 +9,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinform.form.constants import CUT_AREA, NO_TRIANGLE
+from kinform.form.constants import CUT_AREA, CUT_CORNERS, FAULTS_SHOWN, NO_TRIANGLE
 from kinform.foundation.algebra.vectors import perpendicular
 from kinform.model.arrays import Array, Ints
 
 
 def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints, Ints]:
-    """Triangles (T, 3), the polygon of each (T,), and the polygons that cross themselves (k,).
+    """Triangles (T, 3), the polygon of each (T,), and the polygons that cannot be cut (k,): they cross themselves, or
+    are concave and have more than `CUT_CORNERS` corners. Of those the first are enough.
 
     vertices: (n, 3). corners: vertex indices of all polygons, one after the other. sizes: (P,) at least 3.
     Triangles come in the order of the polygons.
     """
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
-    triangles, owners, crossed = [], [], []
+    triangles, owners = [], []
+    crossed: list[int] = []
     for size in np.unique(sizes):
         which = np.flatnonzero(sizes == size)
         polygons = corners[starts[which][:, None] + np.arange(size)]
@@ -33,7 +35,9 @@ def triangulate(vertices: Array, corners: Ints, sizes: Ints) -> tuple[Ints, Ints
         triangles.append(fan[ok].reshape(-1, 3))
         owners.append(np.repeat(which[ok], size - 2))
         for polygon, index in zip(polygons[~ok], which[~ok], strict=True):
-            cut = _cut(vertices, polygon)
+            if len(crossed) >= FAULTS_SHOWN:
+                break
+            cut = _cut(vertices, polygon) if size <= CUT_CORNERS else None
             if cut is None:
                 crossed.append(index)
                 continue

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import fcl
 import numpy as np
 
+from kinform.foundation.at_work import at_work_on
 from kinform.foundation.graphs.graph import shortest_path
 from kinform.foundation.meshes.fcl_adapter import fcl_distance, fcl_model, fcl_pose
 from kinform.foundation.words import counted, quoted
@@ -188,7 +189,9 @@ def _nearest(
     best: tuple[float, PartName] | None = None
     for gap, _, other in sorted(apart)[: constants.NEAREST_TRIED]:
         if best is None or gap <= best[0]:
-            best = min(best or (np.inf, other), (fcl_distance(own, _object(assembly, other, models)), other))
+            with at_work_on(name, other):
+                distance = fcl_distance(own, _object(assembly, other, models))
+            best = min(best or (np.inf, other), (distance, other))
     return None if best is None else best[1]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from manifold3d import Error, Manifold, Mesh64
 
 from kinform.design import Design
+from kinform.foundation.at_work import at_work_on
 from kinform.model.assembly import Part
 from kinform.model.contacts import Interference
 from kinform.reports.constants import MOST_OVERLAPS
@@ -22,8 +23,9 @@ def overlap_shapes(design: Design) -> list[Shape | None]:
     solids: dict[str, Manifold | None] = {}
     shapes: list[Shape | None] = []
     for item in found[:MOST_OVERLAPS]:
-        both = [_solid(parts[name], solids, centre, scale) for name in item.parts]
-        shapes.append(_common(both[0], both[1], item, centre, scale))
+        with at_work_on(*item.parts):
+            both = [_solid(parts[name], solids, centre, scale) for name in item.parts]
+            shapes.append(_common(both[0], both[1], item, centre, scale))
     return shapes + [None] * (len(found) - len(shapes))
 
 

@@ -6,14 +6,17 @@ import numpy as np
 
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
+from kinform.surfaces import constants
 from kinform.surfaces.constants import CIRCLE_OF_NORMALS, LARGEST, LEAST_POINTS, LEAST_RADIUS, LEAST_TAPER, SAGITTA
 from kinform.surfaces.groups import (
     group_mean,
+    group_mean_of,
     group_range,
     group_sum,
     normal_equations,
+    slices,
     solve_normal,
-    spheres_through,
+    spheres_of,
 )
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.kind import Batch, Params
@@ -62,13 +65,19 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
     work, count = batch.patchwork, batch.count
     x, y = frames(axis)
     group = np.repeat(region, 2)
-    points = work.vertices[work.ends[edge].ravel()]
-    middle = group_mean(group, points, count)
-    offset = points - middle[group]
-    u, v, t = (dot(offset, direction[group]) for direction in (x, y, axis))
-    centre, _ = spheres_through(group, np.stack([u, v], axis=1), count, t, t * t)
+    vertex = work.ends[edge].ravel()
+    middle = group_mean_of(group, [work.vertices[:, k] for k in range(3)], vertex, count)
+    u, v, t = np.empty((3, len(vertex)))
+    for rows in slices(len(vertex), constants.ROWS):
+        mine = group[rows]
+        offset = work.vertices[vertex[rows]] - middle[mine]
+        for out, direction in ((u, x), (v, y), (t, axis)):
+            out[rows] = dot(offset, direction[mine])
+    centre, _ = spheres_of(group, (u, v), count, t, t * t)
     # two rings leave the size of the ring open above, but not its middle; the rest is a line
-    rho = np.hypot(u - centre[group, 0], v - centre[group, 1])
+    u -= centre[group, 0]
+    v -= centre[group, 1]
+    rho = np.hypot(u, v)
     line = solve_normal(*normal_equations(group, np.stack([np.ones_like(t), t], axis=1), rho, count))
     params = np.zeros((count, 8))
     params[:, :3] = axis

@@ -14,10 +14,11 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import distinct, normal_equations, quantile, solve_normal
+from kinform.surfaces.groups import distinct, normal_equations, quantile, slices, solve_normal
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
 from kinform.surfaces.kinds.kind import Batch, Kind, Params, Probe, distinct_angles
 from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.patchwork import Patchwork
 
 
 class Ruled(Kind, Protocol):
@@ -161,6 +162,14 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
     """(region, edge, inner, smooth) of the edges that run along a generator."""
     region, edge, inner = batch.edges
     work = batch.patchwork
+    use = np.empty(len(edge), bool)
+    for rows in slices(len(edge), constants.ROWS):
+        use[rows] = _along(work, params, region[rows], edge[rows])
+    return region[use], edge[use], inner[use], work.smooth[edge[use]]
+
+
+def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
+    """Whether each edge runs along a generator of its region's surface."""
     start, end = work.vertices[work.ends[edge, 0]], work.vertices[work.ends[edge, 1]]
     mine = params[region]
     radial = cylindrical(mine, (start + end) / 2).radial
@@ -169,8 +178,7 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
     forward = np.abs(dot(end - start, direction))
     aside = np.maximum(length * length - forward * forward, 0.0)
     straight = aside < 8 * constants.BOW * np.maximum(np.abs(mine[:, 6]), 1e-12)
-    use = (forward > constants.ALONG * length) & straight & (length > 0)
-    return region[use], edge[use], inner[use], work.smooth[edge[use]]
+    return np.asarray((forward > constants.ALONG * length) & straight & (length > 0))
 
 
 def with_apices(

@@ -1,0 +1,59 @@
+"""What is wrong with a large OBJ is said in seconds, and takes no more memory than its bytes."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from kinform.form import constants
+from kinform.form.meshes.obj import read_obj
+from kinform.form.meshes.raw import MeshError
+
+TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def _star(corners: int) -> bytes:
+    """A polygon of so many corners that is not convex."""
+    turn = np.arange(corners) * 2 * np.pi / corners
+    r = 1 + 0.5 * (np.arange(corners) % 2)
+    lines = [f"v {x:.9f} {y:.9f} 0\n" for x, y in np.column_stack([r * np.cos(turn), r * np.sin(turn)]).tolist()]
+    return ("".join(lines) + "f " + " ".join(map(str, range(1, corners + 1))) + "\n").encode()
+
+
+def test_a_concave_polygon_is_cut_up_to_a_number_of_corners_and_refused_beyond(monkeypatch) -> None:
+    monkeypatch.setattr("kinform.form.meshes.polygons.CUT_CORNERS", 200)
+    monkeypatch.setattr("kinform.form.meshes.obj.CUT_CORNERS", 200)
+    assert len(read_obj(_star(200)).faces) == 198
+    with pytest.raises(MeshError, match=r"polygon of 202 corners that is not convex \(of such 200 are the most\)"):
+        read_obj(_star(202))
+
+
+def test_a_convex_polygon_may_have_any_number_of_corners(monkeypatch) -> None:
+    monkeypatch.setattr("kinform.form.meshes.polygons.CUT_CORNERS", 10)
+    turn = np.arange(1000) * 2 * np.pi / 1000
+    text = "".join(f"v {np.cos(t):.17g} {np.sin(t):.17g} 0\n" for t in turn)
+    assert len(read_obj((text + "f " + " ".join(map(str, range(1, 1001))) + "\n").encode()).faces) == 998
+
+
+def test_of_many_polygons_that_cross_themselves_the_first_are_enough(monkeypatch) -> None:
+    tried = []
+    monkeypatch.setattr("kinform.form.meshes.polygons._cut", lambda vertices, polygon: tried.append(polygon))
+    bow = b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n" + b"f 1 2 3 4\n" * 500
+    with pytest.raises(MeshError, match="crosses itself"):
+        read_obj(bow)
+    assert len(tried) == constants.FAULTS_SHOWN
+
+
+@pytest.mark.parametrize(
+    "line", [b"f " + b"1 2 3 " * 1_000_000, b"f 1 2 3" + b" \\\n1" * 2_000_000, b"v 0 0 " + b"1" * 5_000_000]
+)
+def test_a_line_that_is_longer_than_any_is_refused_before_its_words_are_looked_at(line: bytes) -> None:
+    tracemalloc.start()
+    try:
+        with pytest.raises(MeshError, match=r"characters at line 5; 4,194,304 are the most"):
+            read_obj(TRIANGLE + line + b"\n")
+        assert tracemalloc.get_traced_memory()[1] < 20 * len(line)
+    finally:
+        tracemalloc.stop()
