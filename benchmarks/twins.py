@@ -36,6 +36,8 @@ ROBOTS = {
     "2wheels": "Rhoban+onshape-to-robot-examples/2wheels_urdf/robot.urdf",
     "cassie_like": "Gepetto+example-parallel-robots/robots/cassie_like/robot.urdf",
     "robot_delta": "Gepetto+example-parallel-robots/robots/robot_delta/robot.urdf",
+    "adjustable_height_arm": "Rhoban+onshape-to-robot-examples/adjustable_height_arm_urdf/robot.urdf",
+    "spot_mini_mini": "OpenQuadruped+spot_mini_mini/spotmicro/util/pybullet_data/assets/urdf/spot.urdf",
     "solo12": "Gepetto+example-robot-data/robots/solo_description/robots/solo12.urdf",
 }
 AXIS_OFF = 0.003

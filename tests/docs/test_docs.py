@@ -115,4 +115,8 @@ def test_the_readme_opens_with_a_picture_and_three_commands():
     assert data.startswith(b"\x89PNG")
     assert len(data) < 300_000
     commands = [line for line in head.splitlines() if line.startswith("kinform ")]
-    assert [line.split()[1] for line in commands] == ["init", "run", "report"]
+    assert [line.split()[1:3] for line in commands] == [
+        ["run", "robot.urdf"],
+        ["run", "arm.step"],
+        ["report", "robot.urdf"],
+    ]
