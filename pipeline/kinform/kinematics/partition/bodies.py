@@ -125,13 +125,13 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
 
 def _doubtful(graph: Graph, labelling: Labelling) -> set[int]:
     """Bodies that were guessed from parts with different names, where contact that was parted may as well say that
-    they are others: all of them then, with those that it lies between."""
-    out: set[int] = set()
+    they are others: all of them then, with those that it lies between, and those that joints connect with them."""
+    out: set[int] = set(graph.open)
     for edge in graph.edges if graph.guessed else ():
         first, second = (labelling.labels[end] for end in edge.ends)
         if first is not None and second is not None and edge.price(first, second) > constants.HELD_ACROSS:
             out |= {first, second, *graph.guessed}
-    return out
+    return out | {body for ends in graph.sides if out & set(ends) for body in ends}
 
 
 def _evidence(graph: Graph, placed: Mapping[PartName, Placed], one: Placed, standard: StandardPart | None) -> str:

@@ -52,6 +52,10 @@ PARTED = 100.0
 HELD_ACROSS = 250.0
 """Price beyond which contact that was parted, a flat beside the axis or more, says that bodies guessed from different
 names are not sure."""
+MOVES_TRIED = 6
+"""Of the bodies that a name may be moved to, so many are tried: those that contact joins most firmly."""
+MOST_CUTS = 600
+"""So many ways of joining names are cut at most; then the best so far is taken."""
 LOOK_AHEAD = 4
 """Up to so many sets of joints that hang together all ways of joining their names are looked at."""
 TOUCH_WORTH = 0.5

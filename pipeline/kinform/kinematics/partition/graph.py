@@ -37,6 +37,8 @@ class Graph:
     prices: Prices
     guessed: frozenset[int] = frozenset()
     """Labels of bodies of which joints name several parts that only contact says to be one."""
+    open: frozenset[int] = frozenset()
+    """Labels of bodies whose names could be joined otherwise at nearly the same cost."""
 
     @cached_property
     def pairs_of(self) -> dict[PartName, list[PartPair]]:
@@ -95,27 +97,57 @@ def graph_of(
         sets.union(number[by_root.setdefault(merger.root(name), name)], number[name])
     at = {number[by_root[root]]: label for root, label in label_of.items()}
     least = one_body(sets, at, _holds(number, costs, contacts.patches), sides)
-    _contract(sets, number, costs, {node: least[label] for node, label in at.items()})
-    order: dict[int, int] = {}
-    for name in parts:
-        order.setdefault(sets.find(number[name]), len(order))
-    piece_of = {name: order[sets.find(number[name])] for name in parts}
-    sides = [(least[a], least[b]) for a, b in sides]
-    seeds = {order[sets.find(node)]: least[label] for node, label in at.items()}
-    edges = _edges(piece_of, sides, costs, contacts.patches)
-    final = joined_by_cost(seeds, edges, sides, least)
+    final, close = _searched(sets, number, at, sides, costs, contacts.patches, least)
     kept = {label: k for k, label in enumerate(sorted(set(final)))}
     new = [kept[label] for label in final]
+    sides = [(new[a], new[b]) for a, b in sides]
+    pieces = _pieces(sets, number, costs, {node: new[label] for node, label in at.items()})
     return Graph(
         tuple(first_name[roots[new.index(k)]] for k in range(len(kept))),
-        piece_of,
-        {node: new[label] for node, label in seeds.items()},
-        tuple(edge.relabelled(new) for edge in edges),
-        tuple((new[a], new[b]) for a, b in sides),
+        pieces,
+        {pieces[parts[node]]: new[label] for node, label in at.items()},
+        tuple(_edges(pieces, sides, costs, contacts.patches)),
+        tuple(sides),
         tuple((a, b) for a, b in named),
         costs,
         guessed=frozenset(label for label in new if new.count(label) > 1),
+        open=frozenset(new[label] for label in close),
     )
+
+
+def _searched(
+    sets: UnionFind,
+    number: Mapping[PartName, int],
+    at: Mapping[int, int],
+    sides: Sequence[Labels],
+    costs: Prices,
+    patches: Sequence[Patch],
+    least: Sequence[int],
+) -> tuple[list[int], set[int]]:
+    """Which labels are one body, beginning with those that are by contact (`least`), and which could be joined
+    otherwise; pieces have one label at most."""
+    pieces = _pieces(sets, number, costs, at)
+    names = sorted(number)
+    return joined_by_cost(
+        {pieces[names[node]]: label for node, label in at.items()},
+        _edges(pieces, sides, costs, patches),
+        sides,
+        least,
+    )
+
+
+def _pieces(
+    sets: UnionFind, number: Mapping[PartName, int], costs: Prices, seeds: Mapping[int, int]
+) -> dict[PartName, int]:
+    """The piece of every part: what is one anyway, and what no joint may part; seeds of two labels are never one."""
+    joined = UnionFind(len(number))
+    for node in number.values():
+        joined.union(node, sets.find(node))
+    _contract(joined, number, costs, seeds)
+    order: dict[int, int] = {}
+    for name in sorted(number):
+        order.setdefault(joined.find(number[name]), len(order))
+    return {name: order[joined.find(number[name])] for name in sorted(number)}
 
 
 def _areas(patches: Sequence[Patch]) -> dict[PartPair, float]:

@@ -10,6 +10,7 @@ drawn touching, too: that they touch is reported, and a group says that they are
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.kinematics.partition import constants
@@ -50,22 +51,12 @@ def one_body(one: UnionFind, seeds: Mapping[int, int], holds: Sequence[Hold], jo
 
 def joined_by_cost(
     seeds: Mapping[int, int], edges: Sequence[Edge], joints: Sequence[Labels], together: Sequence[int]
-) -> list[int]:
+) -> tuple[list[int], set[int]]:
     """The same of labels that only journals lie between: those are joined that leave the least to be parted, all ways
-    looked at where these are few, else again and again the best two. Those `together` are known to be one body.
+    looked at where these are few, else again and again the best two. Those `together` are one body by contact; what of
+    them costs less elsewhere is moved there. With the labels that could be joined otherwise at nearly the same cost.
     """
-    now = list(together)
-    search = _Search(seeds, edges, joints)
-    while True:
-        ways = search.ways(now)
-        if not ways:
-            return now
-        hanging = len(search.hanging(now))
-        deep = hanging <= constants.LOOK_AHEAD
-        cost, best = min((search.least(way) if deep else search.cost(way), way) for way in ways)
-        if cost >= search.cost(now):
-            return now
-        now = best
+    return _Search(seeds, edges, joints).settled(list(together))
 
 
 class _Search:
@@ -98,6 +89,93 @@ class _Search:
             self._parted[key] = _parted_between(label_all(self.nodes, seeds, current, self._solved).labels, current)
         return self._parted[key]
 
+    def joined(self, now: list[int]) -> list[int]:
+        """Labels with those joined that leave the least to be parted."""
+        while True:
+            ways = self.ways(now)
+            if not ways:
+                return now
+            deep = len(self.hanging(now)) <= constants.LOOK_AHEAD
+            cost, best = min((self.least(way) if deep else self.cost(way), way) for way in ways)
+            if cost >= self.cost(now):
+                return now
+            now = best
+
+    def settled(self, start: list[int]) -> tuple[list[int], set[int]]:
+        """The best that is found from there by joining labels and moving them, and what could be elsewhere."""
+        now = self.joined(start)
+        while True:
+            better, close = self.moved(now)
+            if better is None:
+                return now, close
+            now = better
+
+    def moved(self, now: Sequence[int]) -> tuple[list[int] | None, set[int]]:
+        """Labels with one taken from those that it is one with and joined to others, where that costs less; else None,
+        and the labels that this would touch at nearly the same cost. If only journals part, all stay."""
+        if not self.dear(now):
+            return None, set()
+        cost = self.cost(now)
+        close: set[int] = set()
+        for label in range(len(now)):
+            rest = [k for k, other in enumerate(now) if other == now[label] and k != label]
+            if not rest:
+                continue
+            apart = [label if k == label else rest[0] if k in rest else one for k, one in enumerate(now)]
+            if len(self._parted) > constants.MOST_CUTS:
+                return None, close
+            for way in self._likely(apart):
+                there = self.cost(way)
+                if there < cost - constants.TOUCH_WORTH:
+                    return way, close
+                if there < cost + constants.PARTED:
+                    close |= _differing(now, way)
+        return None, close
+
+    def dear(self, now: Sequence[int]) -> bool:
+        """Whether anything is parted that costs more than serrations."""
+        current = [edge.relabelled(now) for edge in self.edges]
+        seeds = {node: now[label] for node, label in self.seeds.items()}
+        labels = label_all(self.nodes, seeds, current, self._solved).labels
+        ends = [(edge, labels[edge.ends[0]], labels[edge.ends[1]]) for edge in current]
+        return any(a is not None and b is not None and edge.price(a, b) > constants.PARTED for edge, a, b in ends)
+
+    def _likely(self, now: Sequence[int]) -> list[list[int]]:
+        """Labels with two joined that joints do not hang together: the few with most between them, and those that
+        contact joins most firmly."""
+        sets = self.hanging(now)
+        bodies = sorted(set(now))
+        ranked = []
+        for k, first in enumerate(bodies):
+            for second in bodies[k + 1 :]:
+                if not any({first, second} <= labels for labels in sets):
+                    ones, others = ([j for j, body in enumerate(now) if body == label] for label in (first, second))
+                    ranked.append((-max(self.firm[a][b] for a in ones for b in others), first, second))
+        firm = [(first, second) for _, first, second in sorted(ranked)[: constants.MOVES_TRIED]]
+        across = sorted((-price, pair) for pair, price in self.parted(now).items())
+        free = [pair for _, pair in across if not any(set(pair) <= labels for labels in sets)]
+        best = dict.fromkeys([*free[: constants.MOVES_TRIED], *firm])
+        return [[first if label == second else label for label in now] for first, second in best]
+
+    @cached_property
+    def firm(self) -> list[list[float]]:
+        """By how firm a chain of contacts each two labels are joined: the weakest of it, whatever is parted."""
+        count = len(self.joints) and 1 + max(max(pair) for pair in self.joints)
+        out = [[0.0] * count for _ in range(count)]
+        sets = UnionFind(self.nodes)
+        inside = {node: [label] for node, label in self.seeds.items()}
+        for edge in sorted(self.edges, key=lambda edge: (-min([edge.broken, *edge.parted.values()]), edge.ends)):
+            a, b = (sets.find(end) for end in edge.ends)
+            if a == b:
+                continue
+            hold = min([edge.broken, *edge.parted.values()])
+            for first in inside.get(a, ()):
+                for second in inside.get(b, ()):
+                    out[first][second] = out[second][first] = hold
+            sets.union(a, b)
+            inside[sets.find(a)] = [*inside.pop(a, ()), *inside.pop(b, ())]
+        return out
+
     def cost(self, now: Sequence[int]) -> float:
         """All that is parted."""
         return sum(self.parted(now).values())
@@ -114,6 +192,12 @@ class _Search:
     def least(self, now: Sequence[int]) -> float:
         """The cost of the best that may follow."""
         return min([self.cost(now), *(self.least(way) for way in self.ways(now))])
+
+
+def _differing(one: Sequence[int], other: Sequence[int]) -> set[int]:
+    """Labels that are one with others here than there."""
+    sets = [[frozenset(k for k, body in enumerate(way) if body == label) for label in way] for way in (one, other)]
+    return {k for k, (here, there) in enumerate(zip(*sets, strict=True)) if here != there}
 
 
 def _parted_between(labels: Sequence[int | None], edges: Sequence[Edge]) -> dict[Labels, float]:
