@@ -10,6 +10,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support import linkages
@@ -19,8 +20,10 @@ from support.png import pixels
 
 from kinform import stages
 from kinform.reports.page import Scene
+from kinform.reports.page.canvas import layer, nearness, over, paint
+from kinform.reports.page.figures import Figure
 from kinform.reports.page.freedoms import freedom_motions
-from kinform.reports.page.meshes import shape_of
+from kinform.reports.page.meshes import shape_of, shape_of_facets
 from kinform.reports.page.packing import Blob, quantised, restored
 from kinform.reports.page.pictures import Artist
 from kinform.reports.page.plots import Plot, Series, plot_svg
@@ -217,3 +220,44 @@ def test_a_finding_is_shown_in_red_and_the_overview_of_a_sound_design_is_not(der
     assert 0.05 < (image[..., 3] > 0).mean() < 0.95
     sound = pixels(Artist(Scene(derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml"))).overview())
     assert red(sound) == 0
+
+
+class TestFigures:
+    """Shapes that are drawn once for all pictures."""
+
+    @staticmethod
+    def ball(scale=1.0):
+        solid = trimesh.creation.icosphere(subdivisions=4, radius=0.01 * scale)
+        return Figure(shape_of_facets(np.asarray(solid.triangles)), np.eye(4), closed=True)
+
+    @staticmethod
+    def view(scale, x=0.0, y=0.0):
+        return View(np.array([x, y, 0.0]), scale, 200, 160)
+
+    @pytest.mark.parametrize("finest", [0.0, 23_000.0])
+    def test_a_ball_is_as_near_as_a_ball_whatever_it_was_drawn_for(self, finest):
+        figure = self.ball()
+        figure.expect(finest or 1.0)
+        view = self.view(7_000.0, x=0.002)
+        for column, row in ((100, 80), (60, 90), (110, 40), (85, 130)):
+            x = 0.002 + (column + 0.5 - 100) / 7_000.0
+            y = -(row + 0.5 - 80) / 7_000.0
+            assert nearness(view, figure, column, row) == pytest.approx(np.sqrt(1e-4 - x * x - y * y), abs=2e-4)
+        assert nearness(view, figure, 190, 80) == -np.inf
+
+    def test_what_is_too_large_is_drawn_where_it_is_looked_at(self):
+        figure, small = self.ball(1000.0), self.ball()
+        view = self.view(20_000.0, x=0.5, y=-0.3)  # of ten metres, eight millimetres
+        assert nearness(view, figure, 100, 80) == pytest.approx(np.sqrt(100.0 - 0.34), abs=0.02)
+        assert figure.samples(view).near.shape[0] < 400
+        assert small.samples(self.view(20_000.0)).near.shape[0] > 399
+
+    def test_a_layer_over_a_part_of_a_picture_is_the_layer_over_the_whole(self):
+        figure, other, view = self.ball(), self.ball(0.3), self.view(4_000.0)
+        below = layer(view, [(figure, (0.2, 0.4, 0.6))])
+        whole = over(layer(view, [(other, (1.0, 0.0, 0.0))]), below, 0.5)
+        painted = below.copy()
+        paint(painted, view, [(other, (1.0, 0.0, 0.0))], 0.5)
+        seen = whole[..., 3] > 0.0
+        assert np.abs(whole - painted)[seen].max() < 1e-6
+        assert seen.sum() == pytest.approx(np.pi * 40.0**2, rel=0.02)

@@ -119,6 +119,8 @@ LINE_ANGLE = math.radians(18.0)
 
 # packing
 
+PACKING_EFFORT = 6
+"""Of zlib: 9 takes twice the time."""
 STEPS = 65535
 """Steps across a box: 16 bits."""
 
@@ -167,6 +169,9 @@ TINT = 0.4
 """Share of red in parts that meet."""
 OVERLAP_WEIGHT, FINDING_OVERLAP_WEIGHT = 0.75, 0.8
 """Weights of overlaps over the whole, and over what a finding is about."""
+MOST_SAMPLED = 4_000_000
+"""Samples of a whole shape: 80 MB. Of larger ones, as of a machine beside the screw that a picture is about, only what
+the picture shows is drawn."""
 BAND = 1 << 15
 """Pixels that are shaded at once: they stay in the processor's cache."""
 OUTLINE_STEP = 6.0

@@ -34,6 +34,8 @@ class Hull:
 def hull_of(points: Array) -> Hull | None:
     """The hull of points (n, 3) m; of points in a plane, that of a slab as thin as nothing. None of fewer than three,
     or of points that are all in one place."""
+    from scipy.spatial import ConvexHull, QhullError  # takes a third of a second, which looking at results need not pay
+
     if len(points) < 3:
         return None
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))

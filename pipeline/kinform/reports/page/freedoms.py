@@ -211,27 +211,28 @@ class _Linkage:
         """(B, 4, 4) motion of each body at joint coordinates q."""
         return self._moved(self._across(q))
 
-    def _across(self, q: Array) -> list[Array]:
-        """(4, 4) of each joint: its second body in the first, from where the meshes are."""
-        steps = [np.eye(4)] * len(q)
+    def _across(self, q: Array) -> Array:
+        """(J, 4, 4) of each joint: its second body in the first, from where the meshes are."""
+        still = np.eye(4)
+        steps = [still] * len(q)
         moving = np.flatnonzero(q)
         if len(moving):
             angles = np.where(self.turning, self.speed * q, q)
             made = exponentials(self.units[moving], angles[None, moving])[0]
             for i, step in zip(moving, made, strict=True):
                 steps[i] = step
-        return [
-            reduce(np.matmul, steps[first:last], np.eye(4))
-            for first, last in zip(self.start, self.start[1:], strict=False)
-        ]
+        spans = zip(self.start, self.start[1:], strict=False)
+        made = [reduce(np.matmul, steps[first:last]) if last > first else still for first, last in spans]
+        return np.array(made).reshape(-1, 4, 4)
 
-    def _moved(self, across: list[Array]) -> Array:
+    def _moved(self, across: Array) -> Array:
         """(B, 4, 4) motion of each body, from that of each joint."""
         out = np.broadcast_to(np.eye(4), (len(self.tree.parent), 4, 4)).copy()
+        back = inverse(across)
         for node in self.tree.order:
             k = self.tree.edge[node]
             if k >= 0:
-                step = across[k] if self.edges[k][1] == node else inverse(across[k])
+                step = across[k] if self.edges[k][1] == node else back[k]
                 out[node] = out[self.tree.parent[node]] @ step
         return out
 
@@ -239,9 +240,10 @@ class _Linkage:
         """(6 chords,) by how much the loops are open: turns (rad), then distances over the size."""
         across = self._across(q)
         poses, out = self._moved(across), []
+        back = inverse(poses)
         for k in self.chords:
             a, b = self.edges[k]
-            gap = poses[a] @ across[k] @ inverse(poses[b])
+            gap = poses[a] @ across[k] @ back[b]
             turn = 0.5 * (gap[:3, :3] - gap[:3, :3].T)
             out += [turn[2, 1], turn[0, 2], turn[1, 0], *(gap[:3, 3] / self.size)]
         return np.array(out)
@@ -251,12 +253,13 @@ class _Linkage:
         after it on its way about its screw, carried to where that is now."""
         across = self._across(q)
         poses = self._moved(across)
-        screws = np.zeros((len(q), 6))
+        carried = np.empty((len(q), 4, 4))
         for k, (a, _) in enumerate(self.edges):
             before = poses[a]
             for i in range(self.start[k], self.start[k + 1]):
-                screws[i] = carry(before, self.screws[i : i + 1])[0]
+                carried[i] = before
                 before = before @ displacement(self.screws[i] * q[i]) if self.start[k + 1] - i > 1 else before
+        screws = carry(carried, self.screws)
         out = np.zeros((len(self.chords), 6, len(q)))
         for row, k in zip(out, self.chords, strict=True):
             for end, sign in zip(self.edges[k], (1.0, -1.0), strict=True):

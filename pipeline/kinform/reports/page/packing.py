@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinform.model.arrays import Array, Ints
-from kinform.reports.constants import STEPS
+from kinform.reports.constants import PACKING_EFFORT, STEPS
 
 
 def quantised(values: Array, low: Array, size: Array) -> Ints:
@@ -56,4 +56,4 @@ class Blob:
 
     def text(self) -> str:
         """All of it, deflated, as base64."""
-        return base64.b64encode(zlib.compress(b"".join(self.sections), 9)).decode("ascii")
+        return base64.b64encode(zlib.compress(b"".join(self.sections), PACKING_EFFORT)).decode("ascii")

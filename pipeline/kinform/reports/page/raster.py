@@ -111,15 +111,15 @@ def _rows(view: View, corners: Array) -> _Rows:
     row = np.arange(len(facet)) - np.repeat(np.cumsum(count) - count, count) + top[facet]
     middle = row + 0.5
     left, right = np.full(len(facet), np.inf), np.full(len(facet), -np.inf)
+    xs, ys = (np.ascontiguousarray(corners[..., k].T) for k in (0, 1))
     for k in range(3):
-        a, b = corners[facet, k], corners[facet, (k + 1) % 3]
-        rise = b[:, 1] - a[:, 1]
+        run, rise = xs[(k + 1) % 3] - xs[k], ys[(k + 1) % 3] - ys[k]
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = (middle - a[:, 1]) / rise
-            x = a[:, 0] + share * (b[:, 0] - a[:, 0])
-        met = (share >= 0.0) & (share <= 1.0) & (rise != 0.0)
-        left = np.where(met, np.minimum(left, x), left)
-        right = np.where(met, np.maximum(right, x), right)
+            share = (middle - ys[k][facet]) / rise[facet]  # not a number, or infinite, along a level edge
+            x = xs[k][facet] + share * run[facet]
+        met = (share >= 0.0) & (share <= 1.0)
+        np.minimum(left, x, out=left, where=met)
+        np.maximum(right, x, out=right, where=met)
     seen = left <= right
     facet, row, left, right = facet[seen], row[seen], left[seen], right[seen]
     first = np.clip(np.ceil(left - 0.5), 0, view.width).astype(np.int64)

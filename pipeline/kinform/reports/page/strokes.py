@@ -11,6 +11,9 @@ from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.reports.constants import ARC_PIECES, SIGNAL_COLOUR
 
+Image = NDArray[np.float32]
+"""(height, width, 4)."""
+
 TURNING = ("revolute", "cylindrical", "screw", "planar")
 SLIDING = ("prismatic", "cylindrical", "screw")
 
@@ -59,7 +62,7 @@ def _head(tip: Array, direction: Array, size: float) -> list[Array]:
     return [np.array([root + side * 0.42 * size * w, tip]) for w in _across(unit) for side in (-1.0, 1.0)]
 
 
-def polyline(image: Array, points: Array, width: float) -> None:
+def polyline(image: Image, points: Array, width: float) -> None:
     """A line through points (n, 2) px of this width, on an image (height, width, 4)."""
     for a, b in zip(points[:-1], points[1:], strict=True):
         box = _box(image, np.array([a, b]), width)
@@ -68,7 +71,7 @@ def polyline(image: Array, points: Array, width: float) -> None:
             _paint(image, box, (aside < width / 2) & (along > -width / 2) & (along < length + width / 2))
 
 
-def dashed(image: Array, ends: Array, width: float) -> None:
+def dashed(image: Image, ends: Array, width: float) -> None:
     """A dashed and dotted line between two ends (2, 2) px, as axes are drawn."""
     box = _box(image, ends, width)
     if box is not None:
@@ -77,7 +80,7 @@ def dashed(image: Array, ends: Array, width: float) -> None:
         _paint(image, box, (aside < width / 2) & (along > 0) & (along < length) & on)
 
 
-def ring(image: Array, centre: Array, radius: float, width: float) -> None:
+def ring(image: Image, centre: Array, radius: float, width: float) -> None:
     """A ring with white borders."""
     box = _box(image, np.array([centre - radius, centre + radius]), 2.0 * width)
     if box is None:
@@ -92,7 +95,7 @@ _SIGNAL = [*rgb(SIGNAL_COLOUR), 1.0]
 Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]
 
 
-def _box(image: Array, points: Array, margin: float) -> Pixels | None:
+def _box(image: Image, points: Array, margin: float) -> Pixels | None:
     """Columns (1, n) and rows (m, 1) of the pixels around two points; None outside of the image."""
     (x, y), (u, v) = points.tolist()
     if not math.isfinite(x + y + u + v):
@@ -113,11 +116,11 @@ def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
     return (x * way[0] + y * way[1]) / length, np.abs(x * way[1] - y * way[0]) / length, length
 
 
-def _paint(image: Array, box: Pixels, where: NDArray[np.bool_]) -> None:
+def _paint(image: Image, box: Pixels, where: NDArray[np.bool_]) -> None:
     _part(image, box)[where] = _SIGNAL
 
 
-def _part(image: Array, box: Pixels) -> Array:
+def _part(image: Image, box: Pixels) -> Image:
     """The pixels of an image in a box, to be written to."""
     columns, rows = box[0][0], box[1][:, 0]
     return image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
