@@ -42,7 +42,6 @@ def hull_of(points: Array) -> Hull | None:
     size = float(np.ptp(points, axis=0).max())
     if size <= 0.0:
         return None
-    from scipy.spatial import ConvexHull, QhullError
 
     scaled = (points - middle) / size
     try:
