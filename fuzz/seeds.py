@@ -288,9 +288,24 @@ REPLICAS = """<mujoco><worldbody><body name="a"><geom size="0.1"/>
 """
 
 
+ATTACH = """<mujoco model="top"><compiler angle="radian"/>
+<asset><model name="m" file="hand.xml"/></asset>
+<worldbody><body name="base"><geom size="0.1"/>
+<frame pos="0 0 1"><attach model="m" body="palm" prefix="l_"/></frame>
+<replicate count="2" offset="1 0 0"><attach model="m" prefix="r_"/></replicate></body></worldbody>
+<equality><joint joint1="l_bend"/></equality></mujoco>
+"""
+HAND = """<mujoco model="hand"><compiler angle="degree"/><worldbody><geom size="0.2"/><body name="palm" pos="0 0 0.2">
+<joint name="bend" range="-40 50"/><geom type="box" size="0.1 0.2 0.3"/><body name="tip"><geom size="0.1"/></body>
+</body>
+</worldbody></mujoco>
+"""
+"""The model that `ATTACH` names."""
+
+
 def mjcf() -> list[bytes]:
-    """A model of three bodies."""
-    return [MJCF.encode(), REPLICAS.encode()]
+    """A model of three bodies, one with copies, one with models that are attached."""
+    return [MJCF.encode(), REPLICAS.encode(), ATTACH.encode()]
 
 
 def xacro() -> list[bytes]:

@@ -86,7 +86,7 @@ def _manifest(data: bytes) -> None:
 def _beside() -> None:
     """Write what a manifest may name; no reader writes."""
     files = {"below.toml": seeds.BELOW.encode(), "a.stl": seeds.stl()[0], "a.obj": seeds.obj()[0]}
-    files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH}
+    files |= {"t.csv": seeds.LAW, "p.csv": seeds.PATH, "hand.xml": seeds.HAND.encode()}
     for name, content in files.items():
         (_FOLDER / name).write_bytes(content)
 
@@ -340,7 +340,7 @@ _GLTF_WORDS = (b'"children":[0]', b'"mesh":0', b'"matrix":[', b"glTF", *_JSON_WO
 _XML_WORDS = (
     b"<link name='x'/>", b"<body>", b"</", b"/>", b"<!ENTITY a 'b'>", b"&#0;", b"&a;", b"<![CDATA[", b"xmlns:a='b'",
     b"name=", b"rpy=", b"${1/0}", b"${[0]*9}", b"<xacro:include filename='robot.urdf.xacro'/>", b"<freejoint/>",
-    b"<!--", b"<?x?>",
+    b"<!--", b"<?x?>", b"<attach model='m' prefix='a'/>", b"<model name='m' file='robot.xml'/>", b"body='palm'",
 )  # fmt: skip
 _STEP_WORDS = (
     b"#1", b"$", b"*", b"(", b"()", b";", b"'", b"/*", b"ENDSEC;", b"CARTESIAN_POINT", b"1.E400", b"-0.", b".T.",
