@@ -10,9 +10,11 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.devices import intended
 from support.export_models import ALL, known, model_of
 from support.places import ROOT
 from support.validators import package
@@ -50,6 +52,21 @@ def test_joints_csv_has_position_velocity_and_effort_of_each_joint():
     np.testing.assert_array_equal(rows[:, 1::3], run.joint_position)
     np.testing.assert_array_equal(rows[:, 2::3], run.joint_velocity)
     np.testing.assert_array_equal(rows[:, 3::3], run.joint_effort)
+
+
+def test_joints_csv_has_the_designers_names_and_senses():
+    found = known("seeker")
+    first, second = found.kinematics.body_of("outer").name, found.kinematics.body_of("base").name
+    stated = replace(found.assembly.function, joints=(intended("pan", first, second, "revolute"),))
+    turned = replace(found, assembly=replace(found.assembly, function=stated))
+    header, rows = table(export(turned, "csv").files["joints.csv"])
+    as_before, values = table(export(found, "csv").files["joints.csv"])
+    mine = [k for k, name in enumerate(as_before) if name.startswith("base~outer.")]
+    assert [header[k] for k in mine] == ["pan.position", "pan.velocity", "pan.effort"]
+    np.testing.assert_array_equal(rows[:, mine], -values[:, mine])
+    rest = [k for k in range(len(header)) if k not in mine]
+    assert [header[k] for k in rest] == [as_before[k] for k in rest]
+    np.testing.assert_array_equal(rows[:, rest], values[:, rest])
 
 
 def test_joints_with_several_coordinates_have_columns_for_each():

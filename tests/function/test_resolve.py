@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from support.devices import HERE, Z, assembly, body, intended, joint, kinematics
 
-from kinform.function import resolve_joint
+from kinform.function import as_intended, designers_joints, resolve_joint
 from kinform.model.assembly import Group
+from kinform.model.collisions import JointRange, RangeEnd
 from kinform.model.function import Function
 from kinform.model.kinematics import Body
+from kinform.model.simulation import DriveUse, Simulation
 
 PARTS = [body("arm"), body("base"), body("cover"), body("plate"), body("tool")]
 DOWN = (0.0, 0.0, -1.0)
@@ -89,3 +92,38 @@ def test_a_group_that_is_spread_over_bodies_is_no_side():
     made, chain = design(intended("yaw", "pair", "frame", "revolute", Z))
     made = replace(made, groups=(*made.groups, Group("pair", ("arm", "tool"), HERE)))
     assert "spread over the bodies arm, tool" in resolve_joint(made, chain, "yaw").reason
+
+
+def made_run(design, rng):
+    """A run of the two joints, with a drive and a range on the first."""
+    run = Simulation(
+        "done", "", "dynamic", np.arange(3.0), (), np.zeros((3, 0, 3)), np.zeros((3, 0, 4)),
+        ("arm~frame", "cover~frame"), ("revolute", "spherical"), np.array([0, 1, 5]),
+        *rng.normal(size=(3, 3, 5)), np.zeros((3, 3)), np.zeros(3), np.zeros(3, dtype=np.int64), (),
+    )  # fmt: skip
+    ends = RangeEnd("found", -1.0), RangeEnd("found", 3.0, leaves=4.0)
+    use = DriveUse("arm~frame", "servo", 1.0, 1.0, 1.0, 1.0)
+    return replace(run, drives=(use,), ranges=(JointRange("arm~frame", *ends),))
+
+
+@pytest.mark.parametrize(("axis", "sign"), [(Z, 1), (DOWN, -1)])
+def test_a_run_has_the_designers_names_and_senses(axis, sign):
+    made, derived = design(intended("yaw", "arm", "base", "revolute", axis))
+    run = made_run(made, np.random.default_rng(3))
+    seen = as_intended(run, designers_joints(made, derived))
+    assert seen.joint_names == ("yaw", "cover~frame")
+    signs = [sign, 1, 1, 1, 1]
+    for name in ("joint_position", "joint_velocity", "joint_effort"):
+        np.testing.assert_array_equal(getattr(seen, name), signs * getattr(run, name))
+    assert seen.drives[0].joint == "yaw"
+    (item,) = seen.ranges
+    assert (item.joint, item.lower.value, item.upper.value) == ("yaw", *((-1.0, 3.0) if sign > 0 else (-3.0, 1.0)))
+    assert item.upper.leaves == (4.0 if sign > 0 else None) and item.lower.leaves == (None if sign > 0 else -4.0)
+
+
+def test_what_has_no_one_sense_keeps_the_name_that_kinform_gives_it():
+    twice = intended("one", "arm", "frame", "revolute", Z), intended("two", "arm", "frame", "revolute", Z)
+    assert designers_joints(*design(*twice)) == {}
+    assert designers_joints(*design(intended("ball", "frame", "cover", "spherical"))) == {}
+    assert set(designers_joints(*design(intended("ball", "cover", "frame", "spherical")))) == {"cover~frame"}
+    assert designers_joints(*design(intended("cover~frame", "arm", "frame", "revolute", Z))) == {}

@@ -10,6 +10,7 @@ from rich.text import Text
 
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.function import as_intended, designers_joints
 from kinform.model.simulation import Simulation
 from kinform.reports.values.runs import coordinates
 from kinform_cli.constants import BALANCED, REST
@@ -26,6 +27,8 @@ def render(design: Design) -> RenderableType:
     """One sentence, one row a joint coordinate, then what was assumed and what failed."""
     run, lengths = design.simulation, Lengths.of(design.assembly)
     assert run is not None
+    if design.kinematics is not None:
+        run = as_intended(run, designers_joints(design.assembly, design.kinematics))
     items: list[RenderableType] = [Text(headline(run), style="bold")]
     if len(run.time) and run.joint_names:
         rows = Rows("joint", "type", *_NUMBERS, right=_NUMBERS, names=["joint"])

@@ -11,6 +11,7 @@ import numpy as np
 from kinform.behaviour.joints import KINDS
 from kinform.exports.exported import Exported, ExportError
 from kinform.exports.model import ExportModel
+from kinform.function import as_intended, designers_joints
 from kinform.model.arrays import Array
 from kinform.model.simulation import Simulation
 
@@ -18,13 +19,14 @@ from kinform.model.simulation import Simulation
 def export(model: ExportModel) -> Exported:
     """`bodies.csv`: time, then NAME.x … NAME.qz. `joints.csv`: time, then NAME.position, .velocity, .effort.
 
-    A joint with several coordinates has them as NAME.angle.position and so on. Raises ExportError without
-    a motion.
+    Joints have the names and the sense that the function gives them. One with several coordinates has them as
+    NAME.angle.position and so on. Raises ExportError without a motion.
     """
     run = model.simulation
     if run is None:
         raise ExportError("there is no motion to export: nothing was simulated; see `kinform show F.h5 simulation`")
-    return Exported({"bodies.csv": _table(*_bodies(run)), "joints.csv": _table(*_joints(run))})
+    known = designers_joints(model.assembly, model.kinematics)
+    return Exported({"bodies.csv": _table(*_bodies(run)), "joints.csv": _table(*_joints(as_intended(run, known)))})
 
 
 def _bodies(run: Simulation) -> tuple[list[str], Array]:

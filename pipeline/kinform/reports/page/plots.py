@@ -15,8 +15,8 @@ import numpy as np
 
 from kinform.design import Design
 from kinform.foundation.units import metres_per
-from kinform.function import stated_ranges
-from kinform.model.arrays import Array
+from kinform.function import designers_joints, stated_ranges
+from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation
 from kinform.reports import constants
 from kinform.reports.page.subjects import wanted_names
@@ -49,7 +49,7 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
     titles = {name: f"{', '.join(known)}, {name}" for name, known in wanted_names(design).items()}
     groups = [
         ("Joint values", _values(design, run, titles)),
-        ("Drive efforts", _efforts(run, titles)),
+        ("Drive efforts", _efforts(design, run, titles)),
         ("Reactions in the joints", _reactions(run, titles)),
         ("Energy", _energy(run)),
     ]
@@ -69,10 +69,12 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
 def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
     metres = metres_per(design.assembly.units)
     stated = [] if design.kinematics is None else list(stated_ranges(design.assembly, design.kinematics))
+    signs = _signs(design, run)
     out = []
     for name, kind, unit, column in coordinates(run):
         scale, shown = _scale(unit, design.assembly.units, metres)
-        values = run.joint_position[:, column] * scale
+        scale *= signs[column]
+        values = run.joint_position[:, column] * scale + 0.0
         limits: list[tuple[str, float]] = []
         if "." not in name and kind in ("revolute", "prismatic") and design.ranged is not None:
             found = next((j for j in design.ranged.joints if j.name == name), None)
@@ -103,10 +105,18 @@ def _without_far_limits(plot: Plot) -> Plot:
     return replace(plot, title=plot.title + far, limits=near)
 
 
-def _efforts(run: Simulation, titles: dict[str, str]) -> list[Plot]:
+def _signs(design: Design, run: Simulation) -> Ints:
+    """(n,) of the designer's values in kinform's, by coordinate of the run."""
+    known = {} if design.kinematics is None else designers_joints(design.assembly, design.kinematics)
+    signs = [known[name].sign if name in known else 1 for name in run.joint_names]
+    return np.repeat(np.array(signs, dtype=np.int64), np.diff(run.joint_offset))
+
+
+def _efforts(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
+    signs = _signs(design, run)
     out = []
     for name, _, unit, column in coordinates(run):
-        values = run.joint_effort[:, column] if run.joint_effort.size else np.zeros(0)
+        values = signs[column] * run.joint_effort[:, column] + 0.0 if run.joint_effort.size else np.zeros(0)
         if len(values) and np.isfinite(values).any() and np.nanmax(np.abs(values)) > 0.0:
             out.append(_with_prefix(Plot(titles.get(name, name), "N" if unit == "m" else "N·m", (Series("", values),))))
     return out

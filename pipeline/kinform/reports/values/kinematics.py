@@ -8,6 +8,7 @@ from typing import Any
 
 from kinform.consistency.comparisons.answers import Answer, answer_counts, answers
 from kinform.design import Design
+from kinform.function import designers_joints
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Joint, Kinematics, Mobility, Release
 from kinform.reports.freedom_phrases import freedom_text, metres
@@ -19,9 +20,14 @@ def joint_values(design: Design) -> dict[str, Any]:
     kinematics = design.ranged or _kinematics(design)
     computed = ranged(design)
     given = answers(design)
+    known = designers_joints(design.assembly, kinematics)
     return {
         "bodies": [fields(body, "name", "parts", "ground", "merged") for body in kinematics.bodies],
-        "joints": [one_joint(joint, joint.name in computed) for joint in kinematics.joints],
+        "joints": [
+            one_joint(joint, joint.name in computed)
+            | {"intended_name": known[joint.name].name if joint.name in known else None}
+            for joint in kinematics.joints
+        ],
         "intended": [asdict(answer) for answer in given],
         "answers": dict(answer_counts(given)) | {"share_undecided": _share(given)},
         "sides": [asdict(one) for one in kinematics.sides],

@@ -9,6 +9,7 @@ import numpy as np
 
 from kinform.behaviour.joints import KINDS
 from kinform.design import Design
+from kinform.function import as_intended, designers_joints
 from kinform.model.collisions import JointRange
 from kinform.model.simulation import Simulation
 from kinform.reports.values.plain import fields
@@ -45,7 +46,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
         "duration": run.time[-1] if ran else None,
         "samples": len(run.time),
         "bodies": run.body_names,
-        "joints": [_course(run, *coordinate) for coordinate in coordinates(run)] if ran else [],
+        "joints": _courses(design, run) if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
         "drives": [fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
@@ -83,6 +84,22 @@ def _range(item: JointRange) -> dict[str, Any]:
         "upper": fields(item.upper, *of_end),
         "left_out": item.left_out,
     }
+
+
+def _courses(design: Design, run: Simulation) -> list[dict[str, Any]]:
+    """Each coordinate as kinform has it, and with the name and in the sense that the function gives its joint."""
+    known = {} if design.kinematics is None else designers_joints(design.assembly, design.kinematics)
+    seen = as_intended(run, known)
+    out = []
+    for (name, kind, unit, column), (theirs, *_) in zip(coordinates(run), coordinates(seen), strict=True):
+        named = run.joint_names[int(np.searchsorted(run.joint_offset, column, side="right")) - 1] in known
+        course = _course(seen, theirs, kind, unit, column)
+        intended = {key: course[key] for key in ("start", "end", "lowest", "highest")} if named else None
+        out.append(
+            _course(run, name, kind, unit, column)
+            | {"intended_name": theirs if named else None, "intended_position": intended}
+        )
+    return out
 
 
 def _course(run: Simulation, name: str, kind: str, unit: str, column: int) -> dict[str, Any]:

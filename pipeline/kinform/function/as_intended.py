@@ -1,0 +1,81 @@
+"""A run as the designer sees it: joints by the names that the function gives them, values in the designer's sense."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinform.function.joint_names import resolve_joint
+from kinform.model.arrays import Array
+from kinform.model.assembly import Assembly
+from kinform.model.collisions import JointRange, RangeEnd
+from kinform.model.kinematics import Kinematics
+from kinform.model.simulation import Simulation
+
+ALONG_AN_AXIS = ("revolute", "prismatic", "cylindrical", "screw")
+"""Joints whose values turn their sign with the axis, and with the order of the bodies."""
+
+
+@dataclass(frozen=True)
+class DesignersJoint:
+    """What the function calls a derived joint, and the sign of the designer's value in kinform's."""
+
+    name: str
+    sign: int
+
+
+def designers_joints(assembly: Assembly, kinematics: Kinematics) -> dict[str, DesignersJoint]:
+    """By the names of derived joints, of those that just one intended joint stands for.
+
+    A joint without an axis of its own, whose bodies the designer lists the other way round, is left out: its values
+    are no one's but kinform's. So is a name that another joint has.
+    """
+    found = [resolve_joint(assembly, kinematics, intended.name) for intended in assembly.function.joints]
+    count = Counter(one.joint.name for one in found if one.joint is not None)
+    derived = {joint.name for joint in kinematics.joints}
+    out = {}
+    for one in found:
+        if one.joint is None or count[one.joint.name] > 1 or (one.name in derived and one.name != one.joint.name):
+            continue
+        if one.sign > 0 or one.joint.type in ALONG_AN_AXIS:
+            out[str(one.joint.name)] = DesignersJoint(one.name, one.sign)
+    return out
+
+
+def as_intended(run: Simulation, known: Mapping[str, DesignersJoint]) -> Simulation:
+    """The run with the joints that are `known` under the designer's names, in the designer's sense. Wrenches stay those
+    on the bodies of the derived joints, and sentences what they were."""
+    named = {name: one.name for name, one in known.items()}
+    of_joint = [known[name].sign if name in known else 1 for name in run.joint_names]
+    signs = np.repeat(np.array(of_joint, dtype=np.int64), np.diff(run.joint_offset))
+
+    def turned(values: Array) -> Array:
+        return values * signs + 0.0 if values.size and values.shape[1] == len(signs) else values
+
+    return replace(
+        run,
+        joint_names=tuple(named.get(name, name) for name in run.joint_names),
+        joint_position=turned(run.joint_position),
+        joint_velocity=turned(run.joint_velocity),
+        joint_effort=turned(run.joint_effort),
+        joint_acceleration=turned(run.joint_acceleration),
+        drives=tuple(replace(use, joint=named.get(use.joint, use.joint)) for use in run.drives),
+        gear_names=tuple(named.get(name, name) for name in run.gear_names),
+        ranges=None if run.ranges is None else tuple(_range(item, known) for item in run.ranges),
+    )
+
+
+def _range(item: JointRange, known: Mapping[str, DesignersJoint]) -> JointRange:
+    one = known.get(item.joint)
+    if one is None:
+        return item
+    ends = (item.lower, item.upper) if one.sign > 0 else (_mirrored(item.upper), _mirrored(item.lower))
+    return replace(item, joint=type(item.joint)(one.name), lower=ends[0], upper=ends[1])
+
+
+def _mirrored(end: RangeEnd) -> RangeEnd:
+    value, leaves = (None if x is None else 0.0 - x for x in (end.value, end.leaves))
+    return replace(end, value=value, leaves=leaves)
