@@ -115,6 +115,20 @@ class View:
         return f'<iframe srcdoc="{source}" style="width:100%;height:{self._height}px;border:0"></iframe>'
 
 
+class Plots:
+    """Curves of a run over time, which a notebook shows."""
+
+    def __init__(self, html: str, count: int):
+        self._html = html
+        self._count = count
+
+    def __repr__(self) -> str:
+        return f"Plots({self._count} as SVG: a notebook shows them)"
+
+    def _repr_html_(self) -> str:
+        return self._html
+
+
 class Results:
     """Everything that is known of a design; what has not been computed yet raises StageError."""
 
@@ -183,6 +197,15 @@ class Results:
         """Trajectories, joint values and efforts, energy over time."""
         return _computed(self.design.simulation, "simulation", "simulate")
 
+    def plots(self) -> Plots:
+        """Joint values with their limits, efforts, reactions and energy over the simulated time, to be shown in the
+        cell of a notebook; they need no other package."""
+        from kinform.reports.page.plots import plots_html
+
+        _computed(self.design.simulation, "plots", "simulate")
+        html = plots_html(self.design)
+        return Plots(html, html.count("<svg"))
+
     @property
     def findings(self) -> Findings:
         """What is inconsistent, sorted by code and subject."""
@@ -206,7 +229,7 @@ class Results:
         return View(self.page(), height)
 
     def _repr_html_(self) -> str:
-        """Verdict, joints and findings."""
+        """Verdict, joints, findings and curves."""
         design = self.design
         shown = [f"<p><b>{escape(design.assembly.name)}</b>: {len(design.assembly.parts)} parts"]
         shown[0] += f"; {escape(self.verdict)}</p>" if design.report is not None else "</p>"
@@ -214,6 +237,8 @@ class Results:
             shown.append(self.joints._repr_html_())
         if design.report is not None and design.report.findings:
             shown.append(self.findings._repr_html_())
+        if design.simulation is not None and len(design.simulation.time) > 1:
+            shown.append(self.plots()._repr_html_())
         return "".join(shown)
 
     @property

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import html
+import re
+from xml.etree import ElementTree
 
 import pytest
 from support.places import FIXTURES
@@ -56,3 +58,29 @@ def test_without_pandas_it_says_what_to_install(results, monkeypatch):
     with pytest.raises(ImportError, match="pip install pandas"):
         results.joints.to_frame()
     assert kinform.open is not None
+
+
+@pytest.fixture(scope="module")
+def moving(derive_design):
+    return Results(derive_design(FIXTURES / "seeker" / "5_complete" / "seeker.toml"))
+
+
+def test_curves_of_a_run_are_drawings_in_the_cell(moving, results):
+    shown = moving.plots()._repr_html_()
+    for heading in ("Joint values", "Drive efforts", "Reactions in the joints", "Energy"):
+        assert f"<h4>{heading}</h4>" in shown
+    drawings = re.findall(r"<svg.*?</svg>", shown, re.DOTALL)
+    assert len(drawings) >= 8 and repr(moving.plots()).startswith(f"Plots({len(drawings)} ")
+    for drawing in drawings:
+        ElementTree.fromstring(drawing)
+    assert all(f".kinform-plots .plot .{kind}" in shown for kind in ("grid", "curve-0", "limit"))
+    assert shown in moving._repr_html_()
+
+
+def test_reprs_are_short(moving):
+    assert repr(moving.mobility).startswith("Mobility: effective 2, instantaneous 2, finite 2, idle 0")
+    assert "<tr><td>2</td><td>effective</td></tr>" in moving.mobility._repr_html_()
+    assert repr(moving.assembly) == "Assembly seeker: 12 parts, lengths shown in mm"
+    assert repr(moving.joints["base~gimbal"]) == "Joint base~gimbal: revolute (determined)"
+    assert repr(moving.simulation) == "Simulation: dynamic done, 201 samples"
+    assert len(repr(moving.mass)) < 400

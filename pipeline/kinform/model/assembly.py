@@ -254,6 +254,9 @@ class Assembly:
     descriptions: tuple[Description, ...] = field(default=())
     """What robot descriptions among the sources say word for word."""
 
+    def __repr__(self) -> str:
+        return f"Assembly {self.name}: {len(self.parts)} parts, lengths shown in {self.units}"
+
     @cached_property
     def lost(self) -> frozenset[PartName]:
         """Parts whose files have numbers too coarse for their shape."""

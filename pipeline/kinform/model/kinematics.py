@@ -156,6 +156,9 @@ class Joint:
     readings: tuple[Reading, ...] = ()
     """What else the contact may mean: of an ambiguous joint the other answers, of an inferred one those not chosen."""
 
+    def __repr__(self) -> str:
+        return f"Joint {self.name}: {self.type} ({self.status})"
+
 
 @dataclass(frozen=True, eq=False)
 class Separation:
@@ -322,6 +325,21 @@ class Mobility:
     """Instantaneous mobility of what contact alone gives, where joints are taken as the function states them."""
     redundancies: tuple[Redundancy, ...] = ()
     """Those of loops sum to `redundant`; those of pairs come first and are not counted there."""
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{name} {'not known' if value is None else value}" for name, value in self._counts())
+        return f"Mobility: {counts}"
+
+    def _repr_html_(self) -> str:
+        rows = (f"<tr><td>{'–' if value is None else value}</td><td>{name}</td></tr>" for name, value in self._counts())
+        return f"<table><tbody>{''.join(rows)}</tbody></table>"
+
+    def _counts(self) -> tuple[tuple[str, int | None], ...]:
+        """What is shown of it, by name."""
+        return (
+            ("effective", self.effective), ("instantaneous", self.instantaneous), ("finite", self.finite),
+            ("idle", self.idle), ("redundant", self.redundant), ("blocked", self.blocked),
+        )  # fmt: skip
 
     @property
     def gruebler(self) -> int:

@@ -97,3 +97,7 @@ class Simulation:
     """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
     uncollided: tuple[Annotated[tuple[str, str, str], columns("part_a", "part_b", "reason")], ...] = ()
     """(part, part, why it is not known whether they collide)."""
+
+    def __repr__(self) -> str:
+        level = f" {self.level}" if self.level else ""
+        return f"Simulation:{level} {self.status}, {len(self.time)} samples"

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,24 @@ def plot_groups(design: Design) -> list[tuple[str, list[str], str]]:
             )
             out.append((heading, [plot_svg(plot, run.time, events) for plot in found[: constants.MOST_PLOTS]], left))
     return out
+
+
+_CELL = (
+    ".kinform-plots{--line:#8884;--soft:#888;--bad:#c2410c;--c0:#3f7fbf;--c1:#c9772b;--c2:#2e9e76;"
+    "display:grid;grid-template-columns:repeat(auto-fill,minmax(330px,1fr));gap:14px 28px}"
+)
+"""Colours that are readable on white and on black: a notebook does not say which it is."""
+
+
+def plots_html(design: Design) -> str:
+    """All plots with their style, for a cell of a notebook."""
+    css = files("kinform.reports.page").joinpath("assets", "page.css").read_text(encoding="utf-8")
+    style = "".join(f".kinform-plots {line}" for line in css.splitlines() if line.startswith(".plot "))
+    shown = [
+        f'<h4>{escape(heading)}</h4><div class="kinform-plots">{"".join(drawn)}</div><p>{escape(left)}</p>'
+        for heading, drawn, left in plot_groups(design)
+    ]
+    return f"<style>{_CELL}{style}</style>{''.join(shown) or '<p>nothing was simulated</p>'}"
 
 
 def _values(design: Design, run: Simulation, titles: dict[str, str]) -> list[Plot]:
