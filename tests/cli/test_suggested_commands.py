@@ -137,3 +137,15 @@ def test_what_comes_next_works_as_it_is_written(tmp_path, monkeypatch, capsys):
     for command in following:
         assert main(shlex.split(command)) == 0
     assert (tmp_path / "my arm" / "arm.html").is_file()
+
+
+def test_where_nothing_was_kept_the_command_that_keeps_it_works(tmp_path, monkeypatch, capsys):
+    for mesh in (FIXTURES / "pairs" / "revolute_fork").glob("*.stl"):
+        (tmp_path / mesh.name).write_bytes(mesh.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    meshes = sorted(path.name for path in tmp_path.glob("*.stl"))
+    main(["run", *meshes, "--units", "mm"])
+    again = re.search(r"nothing was kept: kinform (.*?) keeps it", " ".join(capsys.readouterr().err.split()))
+    assert again is not None
+    assert main(shlex.split(again[1])) in (0, 1)
+    assert len(list(tmp_path.glob("*.h5"))) == 1

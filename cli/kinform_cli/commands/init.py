@@ -81,6 +81,8 @@ def init(
         jointed=None if hints is None else hints.joints,
     )
     _write(text, output)
+    if output is not None and "\n# doubtful: " in text:
+        console.say("for another unit: the same command with that --units, and --force")
 
 
 def _write(text: str, output: Path | None) -> None:

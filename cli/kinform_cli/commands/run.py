@@ -32,6 +32,7 @@ from kinform_cli.options import (
     reading,
 )
 from kinform_cli.progress import Working
+from kinform_cli.text import command
 
 EXAMPLES = examples(
     "kinform run arm.toml -o arm.h5",
@@ -94,7 +95,13 @@ def run(
         files.write_rule(depfile, output, outcome.gist, sources)
     code = Gate(how, fail_on, sources[0].parent if manifest else None).judge_run(outcome)
     if output is None:
-        console.say("nothing was kept: with -o F.h5 `kinform show` and `report` can look at it")
+        again = command("kinform", "run", *sources, *(["--units", units] if units else []), "-o", _results(sources[0]))
+        console.say(f"nothing was kept: {again} keeps it for `kinform show` and `kinform report`")
     elif first or (how.format is FindingsFormat.brief and code):
         console.say(next_look(output))
     raise typer.Exit(code)
+
+
+def _results(source: Path) -> Path:
+    """A name for the results of a source, in the present folder."""
+    return Path(f"{source.resolve().stem}.h5")

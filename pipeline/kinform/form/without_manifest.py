@@ -21,6 +21,7 @@ from kinform.form.readers.poses import shift
 from kinform.form.sources import states_units
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.foundation.units import METRES_PER_UNIT, UNITS, metres_per
+from kinform.foundation.words import length
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Part, Source
 from kinform.model.function import Function, IntendedJoint
@@ -135,7 +136,7 @@ def _joint_lines(joint: IntendedJoint, units: str) -> list[str]:
     lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
     lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
     if joint.axis is not None:
-        lines.append(f"axis = {_numbers(joint.axis, 9)}")
+        lines.append(f"axis = {_numbers(joint.axis, 6)}")
     if joint.point is not None:
         lines.append(f"point = {_numbers(joint.point / metres_per(units), 7)}")
     return lines
@@ -169,7 +170,7 @@ def doubts(assembly: Assembly) -> list[str]:
     least, most = USUAL_ASSEMBLY
     better = [u for u in UNITS if least <= size / METRES_PER_UNIT[units] * METRES_PER_UNIT[u] <= most]
     advice = f"; units = {' or '.join(_text(u) for u in better)} would be more usual" if better else ""
-    return [f"doubtful: in {units} the assembly is {size:.3g} m across{advice}"]
+    return [f"doubtful: in {units} the assembly is {length(size, 'mm', 3)} across{advice}"]
 
 
 def _text(value: str) -> str:
