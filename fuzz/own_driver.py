@@ -26,7 +26,10 @@ HANGS = 10.0
 """Seconds after which an input takes too long."""
 STUCK = 40.0
 """Seconds after which native code that does not hear of it is ended."""
+BEGINS = 600.0
+"""Seconds within which the first seed is read: importing and deriving take long on a machine with other work."""
 _HEAD = struct.Struct("<QI")
+"""Twice on the board: inputs done and the size of the present one; inputs refused and whether the first seed is read."""
 
 
 class Hang(Exception):
@@ -54,6 +57,7 @@ def run(target: Target, folder: Path, *, runs: int | None, seconds: float | None
     given = [data[:MOST] for data in target.seeds()]
     most = runs if runs is not None else 1 << 62
     while outcome.executions < most and time.monotonic() < end:
+        _HEAD.pack_into(board, _HEAD.size, _HEAD.unpack_from(board, _HEAD.size)[0], 0)
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
@@ -100,6 +104,7 @@ def _work(
         told: set[str] = set()
         with contextlib.suppress(Exception):
             target.run(given[0])  # imports and derives, which takes longer than any input may
+        _HEAD.pack_into(board, _HEAD.size, refused, 1)
         while done < most and time.monotonic() < end:
             data = mutated(rng.choice(given), given, target.words, rng) if done >= len(given) else given[done]
             place = 2 * _HEAD.size
@@ -108,7 +113,7 @@ def _work(
             what = attempt(target.run, data)
             if what == "refused":
                 refused += 1
-                _HEAD.pack_into(board, _HEAD.size, refused, 0)
+                _HEAD.pack_into(board, _HEAD.size, refused, 1)
             elif what and what not in told:
                 told.add(what)
                 text = what.encode()
@@ -172,7 +177,7 @@ def _watch(child: int, board: mmap.mmap, reading: int, outcome: Outcome, folder:
         done = _HEAD.unpack_from(board, 0)[0]
         if done != last:
             last, since = done, time.monotonic()
-        elif time.monotonic() - since > STUCK:
+        elif time.monotonic() - since > (STUCK if _HEAD.unpack_from(board, _HEAD.size)[1] else BEGINS):
             os.kill(child, signal.SIGKILL)
         time.sleep(0.05)
 
