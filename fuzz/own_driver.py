@@ -29,7 +29,7 @@ STUCK = 40.0
 BEGINS = 600.0
 """Seconds within which the first seed is read: importing and deriving take long on a machine with other work."""
 _HEAD = struct.Struct("<QI")
-"""Twice on the board: inputs done and the size of the present one; inputs refused and whether the first seed is read."""
+"""Twice on the board: inputs done and size of the present one; inputs refused and whether the first seed is read."""
 
 
 class Hang(Exception):
