@@ -16,7 +16,10 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
+
+from table import Row, peak
 
 ROOT = Path(__file__).resolve().parents[1]
 SEEKER = ROOT / "fixtures" / "seekers" / "seeker_2dof"
@@ -65,6 +68,26 @@ def written(folder, seconds, driven):
         sys.exit(f"{manifest}: one line with the duration is expected")
     manifest.write_text(text, encoding="utf-8")
     return manifest
+
+
+FLOOR = "import numpy, h5py, fcl, manifold3d, pydantic, typer"
+
+
+def rows(quick: bool) -> Iterator[Row]:
+    """The seeker from its meshes to the verdict: the least of some runs. `native` has what compiling takes."""
+    repeats = 3 if quick else 7
+    with tempfile.TemporaryDirectory() as scratch:
+        caches = Path(scratch) / "caches"
+        for design in ("seeker_1dof", "seeker_2dof"):
+            manifest = SEEKER.with_name(design) / f"{design}.toml"
+            worked, floor = [], []
+            for k in range(repeats + 1):
+                output = Path(scratch) / f"{design}{k}.h5"
+                worked.append(started(caches, "-m", "kinform_cli", "run", str(manifest), "-o", str(output))[1])
+                floor.append(started(caches, "-c", FLOOR)[1])
+            words = f"importing the packages alone {min(floor[1:]):.2f} s; without bytecode {worked[0]:.2f} s"
+            aim = 1.2 if design == "seeker_2dof" else None
+            yield Row(f"{design} from nothing to the verdict", min(worked[1:]), aim, "s", words, peak())
 
 
 def main(arguments) -> None:

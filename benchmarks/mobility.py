@@ -14,8 +14,10 @@ import resource
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 
 import numpy as np
+from table import Row
 
 from kinform.kinematics import derive
 from kinform.model.assembly import Assembly, Mesh, MeshHealth, Part, Source
@@ -165,6 +167,19 @@ def measured(kind, size):
     command = [sys.executable, __file__, "--one", kind, str(size)]
     single = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True, env=single).stdout)
+
+
+def rows(quick: bool) -> Iterator[Row]:
+    """All of derive on the mixed assembly."""
+    sizes, seconds = SIZES[:3] if quick else SIZES, []
+    for size in sizes:
+        found = measured("mixed", size)
+        seconds.append(found["seconds"])
+        aim = 10.0 if size == 5000 else None
+        words = f"{found['joints']} joints, {1e3 * found['seconds'] / found['joints']:.2f} ms a joint"
+        yield Row(f"joints and mobility, mixed, {size} parts", found["seconds"], aim, "s", words, found["MB"])
+    power = np.polyfit(np.log(sizes), np.log(seconds), 1)[0]
+    yield Row("joints and mobility, mixed: grows with parts to the power", power, unit="")
 
 
 def main(arguments):

@@ -195,8 +195,13 @@ class _Hanging:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """The line, or its pieces."""
-        if max(map(cell_len, self._text.plain.split("\n")), default=0) <= options.max_width:
-            yield self._text
+        lines = self._text.plain.split("\n")
+        if max(map(cell_len, lines), default=0) <= options.max_width:
+            if "\t" in self._text.plain:
+                yield self._text
+            else:
+                # nothing to wrap: as it is, for thousands of rows
+                yield from self._text.render(console, end="\n")
             return
         for line in self._text.split("\n", allow_blank=True):
             margin = len(line.plain) - len(line.plain.lstrip(" "))
