@@ -41,5 +41,5 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 28
+CODE_VERSION = 29
 """Bumped when the results of this stage change for the same input."""

@@ -54,7 +54,8 @@ def joined_by_cost(
 ) -> tuple[list[int], set[int]]:
     """The same of labels that only journals lie between: those are joined that leave the least to be parted, all ways
     looked at where these are few, else again and again the best two. Those `together` are one body by contact; what of
-    them costs less elsewhere is moved there. With the labels that could be joined otherwise at nearly the same cost.
+    them saves as much as screw holes cost elsewhere is moved there. With the labels that could be joined otherwise at
+    less or nearly the same cost.
     """
     return _Search(seeds, edges, joints).settled(list(together))
 
@@ -111,8 +112,9 @@ class _Search:
             now = better
 
     def moved(self, now: Sequence[int]) -> tuple[list[int] | None, set[int]]:
-        """Labels with one taken from those that it is one with and joined to others, where that costs less; else None,
-        and the labels that this would touch at nearly the same cost. If only journals part, all stay."""
+        """Labels with one taken from those that it is one with and joined to others, where that saves as much as screw
+        holes cost; else None, and the labels that this would touch at less or nearly the same cost. If only journals
+        part, all stay."""
         if not self.dear(now):
             return None, set()
         cost = self.cost(now)
@@ -126,7 +128,7 @@ class _Search:
                 return None, close
             for way in self._likely(apart):
                 there = self.cost(way)
-                if there < cost - constants.TOUCH_WORTH:
+                if there <= cost - constants.FASTENED["holes"]:
                     return way, close
                 if there < cost + constants.PARTED:
                     close |= _differing(now, way)

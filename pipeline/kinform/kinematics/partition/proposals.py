@@ -83,7 +83,7 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
         for sides in several
         if all(borne[number] & set(side) and not standard.keys() >= set(side) for side in sides)
     ]
-    total = sum(volume.values())
+    total = sum(volume.values()) or 1.0  # parts without any volume: nothing is substantial
     shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides in ways]
     out = []
     for (joint, sides), share in zip(ways, shares, strict=True):
