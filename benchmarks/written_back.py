@@ -62,7 +62,8 @@ def row(robot: Path) -> int:
     for joint in moving:
         expected = sum(weight[name] for name in truth["rigid_groups"][joint["child_group"]])
         ways = sorted(
-            (*away(joint, found), abs(masses[found[2]] / expected - 1.0), name) for name, found in unused.items()
+            (*away(joint, found), abs(masses.get(found[2], 0.0) / expected - 1.0), name)
+            for name, found in unused.items()
         )
         near = [way for way in ways if way[0] <= ANGLE and way[1] <= OFFSET]
         angle, offset, share, name = min(near, key=lambda way: way[2]) if near else ways[0]
