@@ -62,7 +62,8 @@ def way(ints: Ints, nums: Nums) -> None:
     """Decides whether articulated bodies are the way to solve with the rows and rates chosen, by what both ways cost,
     and writes what they make of each rate: all that is not led has mass to move, or follows from a row."""
     n, rank, led = ints[COUNTS][0][RATES], ints[COUNTS][0][RANK], ints[COUNTS][0][LED]
-    links, columns, mode = np.array(ints[LINKS]), np.array(ints[COLUMNS]).reshape(n, 3), ints[MODE]
+    links, columns = (np.array(ints[table], dtype=np.int64) for table in (LINKS, COLUMNS))
+    columns, mode = columns.reshape(n, 3), ints[MODE]
     heavy: Any = (np.array(nums[LINKS])[:, [WEIGHT, *range(TENSOR, TENSOR + 12, 4)]] > 0.0).any(axis=1)
     for link in range(len(links) - 1, 0, -1):
         heavy[links[link, PARENT]] |= heavy[link]
