@@ -15,7 +15,7 @@ from support.solids import box, part, rod
 
 from kinform import contacts, kinematics, surfaces
 from kinform.foundation.graphs.graph import UnionFind
-from kinform.kinematics import propose
+from kinform.kinematics import propose, proposed_joints
 from kinform.kinematics.partition.labelling import Edge
 from kinform.kinematics.partition.one_body import joined_by_cost, one_body
 from kinform.kinematics.partition.standard_parts import standard_parts
@@ -51,6 +51,18 @@ def test_every_joint_that_is_proposed_is_one(seed):
         assert nearest.name not in seen
         seen.add(nearest.name)
         assert abs(way.axis @ nearest.axis) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", SEEDS[:3])  # of the last nothing is proposed
+def test_what_is_proposed_holds_when_all_of_it_is_taken_over(seed):
+    _, assembly, found, contact = touching(seed)
+    bare = replace(assembly, function=type(assembly.function)())
+    joints = tuple(joint for joint, _ in proposed_joints(bare, found, contact))
+    K = kinematics.derive(replace(bare, function=replace(assembly.function, joints=joints)), found, contact)
+    assert len(K.bodies) == len(joints) + 1
+    assert K.mobility.instantaneous == len(joints)
+    pairs = [frozenset(str(K.body_of(name).name) for name in joint.between) for joint in joints]
+    assert sorted(map(sorted, pairs)) == sorted(sorted(joint.bodies) for joint in K.joints)
 
 
 def test_the_judge_tells_a_part_in_another_body():

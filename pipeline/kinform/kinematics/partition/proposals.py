@@ -10,7 +10,7 @@ only screws, pins or balls turn about. Sliders are not looked for.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from kinform.foundation.algebra.vectors import canonical_sign
 from kinform.foundation.graphs.graph import UnionFind
 from kinform.foundation.words import counted, quoted
 from kinform.kinematics.partition import constants
+from kinform.kinematics.partition.bodies import partition
 from kinform.kinematics.partition.parting import ROUND, Contact, PartPair, contact_of_pairs, hints_of, joint_twists
 from kinform.kinematics.partition.standard_parts import HOLDERS, standard_parts
 from kinform.model.arrays import Array
@@ -45,10 +46,12 @@ class Proposal:
     """The parts that would move relative to each other; the larger side first."""
     share: float
     """Volume of the smaller side, of all."""
+    borne: frozenset[PartName]
+    """Parts that touch about the axis."""
 
     def between(self, volume: Mapping[PartName, float]) -> tuple[PartName, PartName]:
-        """The largest part of either side."""
-        first, second = (max(side, key=lambda name: (volume[name], name)) for side in self.sides)
+        """The largest part of either side that touches about the axis: other joints may part the side further."""
+        first, second = (max(self.borne & set(side), key=lambda name: (volume[name], name)) for side in self.sides)
         return first, second
 
 
@@ -78,38 +81,46 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
         if not found.get(number) and not screwed[number]:
             found[number] = graph.sides(free[number], every)
     ways = [
-        (axes[number], sides)
+        (axes[number], sides, frozenset(borne[number]))
         for number, several in sorted(found.items())
         for sides in several
         if all(borne[number] & set(side) and not standard.keys() >= set(side) for side in sides)
     ]
     total = sum(volume.values()) or 1.0  # parts without any volume: nothing is substantial
-    shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides in ways]
+    shares = [min(sum(volume[name] for name in side) for side in sides) / total for _, sides, _ in ways]
     out = []
-    for (joint, sides), share in zip(ways, shares, strict=True):
-        largest = max(its for (other, _), its in zip(ways, shares, strict=True) if other is joint)
-        twice = any(other is not joint and graph.alike(sides, theirs) for other, theirs in ways)
+    for (joint, sides, touching), share in zip(ways, shares, strict=True):
+        largest = max(its for (other, _, _), its in zip(ways, shares, strict=True) if other is joint)
+        twice = any(other is not joint and graph.alike(sides, theirs) for other, theirs, _ in ways)
         if not twice and share >= constants.BESIDE * largest:
             assert joint.point is not None
-            out.append(Proposal(joint.type, joint.axis, joint.point, sides, share))
+            out.append(Proposal(joint.type, joint.axis, joint.point, sides, share, touching))
     return sorted(out, key=lambda one: (-one.share, one.sides))
 
 
 def proposed_joints(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
 ) -> list[tuple[IntendedJoint, str]]:
-    """Joints that may be meant as a function states them, named joint_1, joint_2 …, each with what it would move."""
+    """Joints that may be meant as a function states them, named joint_1, joint_2 …, each with what it would move.
+
+    Their sides are named by the largest part of the body that all of them together make of what touches about the axis.
+    """
     volume = volumes(assembly)
+    ways = propose(assembly, surfaces, contacts)
+    joints = [
+        IntendedJoint(f"joint_{number}", one.between(volume), one.type, one.axis, None, one.point, None, None, "", None)
+        for number, one in enumerate(ways, 1)
+    ]
+    found = partition(assembly, contacts, joints, surfaces)
+    largest = [max(names, key=lambda name: (volume.get(name, 0.0), name)) for names in found.parts]
     out = []
-    for number, one in enumerate(propose(assembly, surfaces, contacts), 1):
+    for one, joint in zip(ways, joints, strict=True):
+        bodies = [found.placed[PartName(name)].body for name in joint.between]
+        first, second = (largest[body] for body in bodies) if bodies[0] != bodies[1] else joint.between
         moving = sorted(one.sides[1])
         words = f"moves {counted(len(moving), 'part')}, {100 * one.share:.2g} % of the volume: "
         words += quoted(moving)
-        first, second = one.between(volume)
-        joint = IntendedJoint(
-            f"joint_{number}", (first, second), one.type, one.axis, None, one.point, None, None, "", None
-        )
-        out.append((joint, words))
+        out.append((replace(joint, between=(first, second)), words))
     return out
 
 
