@@ -19,6 +19,8 @@ FLAGS = (
     "--remote-debugging-pipe",
 )  # fmt: skip
 
+LEFT = ("Inspected target navigated or closed", "Cannot find context", "Execution context was destroyed")
+"""What the browser answers where a page left while it was asked."""
 
 START = """
 import os, sys, fcntl
@@ -123,12 +125,21 @@ class Browser:
         return got["result"].get("value")
 
     def until(self, expression: str, patience: float = 30.0) -> None:
-        """Wait until the expression is true."""
+        """Wait until the expression is true; a page that loads itself again meanwhile has not answered yet."""
         end = time.monotonic() + patience
-        while not self.run(f"Boolean({expression})"):
+        while not self.holds(expression):
             if time.monotonic() > end:
                 raise TimeoutError(expression)
             time.sleep(0.05)
+
+    def holds(self, expression: str) -> bool:
+        """Whether the expression is true; false where the page left while it was asked."""
+        try:
+            return bool(self.run(f"Boolean({expression})"))
+        except RuntimeError as error:
+            if any(text in str(error) for text in LEFT):
+                return False
+            raise
 
     def settle(self) -> None:
         """Wait for the next two frames."""
