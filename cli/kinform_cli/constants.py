@@ -32,6 +32,12 @@ LEAST_TEXT = 24
 MOST_LINES = 4
 """Lines that a text takes in a table at most; a row of which one takes more becomes a block. A choice."""
 
+# overview
+
+MOST_OF_TOPIC = 60
+"""Lines of a topic in the overview of a large design; a choice: a screen or two, after which one looks at the
+topic alone. A fifth more is shown whole."""
+
 # text
 
 FINE = 1e-5

@@ -57,16 +57,17 @@ def whole_design(
     return outcome.design
 
 
-def looked_at(source: Path) -> Design:
+def looked_at(source: Path, *, at_need: bool = False) -> Design:
     """The design in a results file, as it is; of a manifest, description or scene every stage, and nothing is kept.
 
+    With `at_need` a results file is read part by part, as it is looked at: for what is only shown.
     Raises as `whole_design`.
     """
     from kinform.form.sources import AS_IT_IS
     from kinform_cli.options import cores
 
     if source.suffix.lower() in RESULTS or not is_design(source):
-        return files.read(source)
+        return files.read(source, at_need=at_need)
     return whole_design(
         [source], units=None, reading=AS_IT_IS, allow_outside=False, jobs=cores(None), as_it_is=True
     )  # fmt: skip

@@ -124,8 +124,11 @@ def _try_writing(path: Path) -> None:
         ) from None
 
 
-def read(path: Path) -> Design:
-    """The design in a results file; raises ResultsError, or InputError for another kind of file."""
+def read(path: Path, *, at_need: bool = False) -> Design:
+    """The design in a results file; raises ResultsError, or InputError for another kind of file.
+
+    With `at_need` each part of it is read when it is first looked at: for what is only shown.
+    """
     if path.suffix.lower() in (".toml", *MESHES, *DESCRIPTIONS, *SCENES):
         raise refuse(
             "this command reads a results file",
@@ -134,7 +137,7 @@ def read(path: Path) -> Design:
         )
     from kinform import results
 
-    return results.read(path)
+    return results.read_at_need(path) if at_need else results.read(path)
 
 
 @contextlib.contextmanager

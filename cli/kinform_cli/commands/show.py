@@ -67,7 +67,7 @@ def show(
     if graph is not None:
         _draw(source, topic, graph)
         return
-    design = looked_at(source)
+    design = looked_at(source, at_need=True)
     from kinform import reports
     from kinform_cli.views import topics
 
@@ -80,7 +80,7 @@ def show(
         if format is TableFormat.json:
             console.emit(reports.summary_json(design, name))
         else:
-            console.out(topics.render(design, name))
+            console.out(topics.render(design, name, source))
 
 
 def _print_joint(design: Design, joint: str, source: Path, format: TableFormat) -> None:
@@ -107,7 +107,7 @@ def _draw(source: Path, topic: Topic | None, path: Path) -> None:
     if path.suffix not in (".svg", ".dot"):
         raise typer.BadParameter(f"{path.name!r} ends neither in .svg nor in .dot", param_hint="--graph")
     files.check_text_output(path, inputs=[source])
-    design = looked_at(source)
+    design = looked_at(source, at_need=True)
     from kinform.errors import StageError
     from kinform.exports.graph.drawing import graph_dot, graph_svg
 

@@ -5,6 +5,8 @@ The JSON is `kinform.reports.summary_json`.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from rich.console import RenderableType
 from rich.text import Text
 
@@ -12,7 +14,9 @@ from kinform.design import Design
 from kinform.foundation.words import counted
 from kinform.model.findings import SEVERITIES
 from kinform.reports.values.topics import TOPICS, require
+from kinform_cli.shortened import Shortened
 from kinform_cli.tables import stacked
+from kinform_cli.text import command
 from kinform_cli.views import (
     assembly,
     behaviour,
@@ -33,10 +37,13 @@ VIEWS = {
 """The module that shows a topic."""
 
 
-def render(design: Design, topic: str | None) -> RenderableType:
-    """The topic for people, or all in short; raises StageError where its stage has not run."""
+def render(design: Design, topic: str | None, source: str | Path) -> RenderableType:
+    """The topic for people, or all in short; raises StageError where its stage has not run.
+
+    `source` is the file of the design, for commands that are suggested.
+    """
     if topic is None:
-        return _overview(design)
+        return _overview(design, source)
     require(design, topic)
     view: RenderableType = VIEWS[topic].render(design)
     return view
@@ -48,16 +55,21 @@ def render_joint(design: Design, name: str) -> RenderableType:
     return evidence.render(design, name)
 
 
-def _overview(design: Design) -> RenderableType:
-    """Tree, joints, mobility, masses of the bodies, one line each for the rest, and what has not been computed yet."""
-    items: list[RenderableType] = [assembly.render(design), ""]
+def _overview(design: Design, source: str | Path) -> RenderableType:
+    """Tree, joints, mobility, masses of the bodies, the beginning of each where it is long, one line each for the rest,
+    and what has not been computed yet."""
+
+    def short(item: RenderableType, topic: str) -> RenderableType:
+        return Shortened(item, f"`{command('kinform', 'show', source, topic)}`")
+
+    items: list[RenderableType] = [short(assembly.render(design), "assembly"), ""]
     if design.contacts is not None:
         patches = counted(len(design.contacts.patches), "contact patch", "contact patches")
         items += [f"{patches}, {counted(len(design.contacts.interferences), 'overlap')}", ""]
     if design.kinematics is not None:
-        items += [joints.render(design), "", mobility.render(design), ""]
+        items += [short(joints.render(design), "joints"), "", short(mobility.render(design), "mobility"), ""]
     if design.mass is not None:
-        items += [mass.bodies(design), ""]
+        items += [short(mass.bodies(design), "mass"), ""]
     if design.simulation is not None:
         items.append(simulation.headline(design.simulation))
     if design.report is not None:

@@ -7,14 +7,19 @@ what a code means.
 
 from __future__ import annotations
 
-from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
-from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
-from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
-from kinform.consistency.inspection import amended, check
-from kinform.consistency.outcome import Outcome
-from kinform.consistency.rule import Rule
-from kinform.consistency.rules import RULES
+from typing import TYPE_CHECKING
+
+from kinform.foundation.lazily import first_used
 from kinform.model.findings import verdict
+
+if TYPE_CHECKING:
+    from kinform.consistency.baseline import Baseline, adopt, read_baseline, with_baseline
+    from kinform.consistency.comparisons.intended_joints import Comparison, compare_joint
+    from kinform.consistency.documentation import UnknownRuleError, explain, rules_markdown
+    from kinform.consistency.inspection import amended, check
+    from kinform.consistency.outcome import Outcome
+    from kinform.consistency.rule import Rule
+    from kinform.consistency.rules import RULES
 
 __all__ = [
     "CODE_VERSION",
@@ -36,3 +41,23 @@ __all__ = [
 ]
 
 CODE_VERSION: int = 23
+
+__getattr__ = first_used(
+    __name__,
+    {
+        "Baseline": "baseline",
+        "adopt": "baseline",
+        "read_baseline": "baseline",
+        "with_baseline": "baseline",
+        "Comparison": "comparisons.intended_joints",
+        "compare_joint": "comparisons.intended_joints",
+        "UnknownRuleError": "documentation",
+        "explain": "documentation",
+        "rules_markdown": "documentation",
+        "amended": "inspection",
+        "check": "inspection",
+        "Outcome": "outcome",
+        "Rule": "rule",
+        "RULES": "rules",
+    },
+)

@@ -16,12 +16,19 @@ which one reads them; each knows those before it and none after it (separation n
 Beside them `constants` has every number that decides, with its reason; `wording` puts spaces of motions and of forces
 in words; `answers` is how steps are found that an earlier run has taken."""
 
-from kinform.kinematics.derivation import derive, functional, mobility_within
-from kinform.kinematics.mobility.named_freedoms import Motions
-from kinform.kinematics.partition import propose, proposed_joints
-from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
-from kinform.kinematics.questions.joint_insight import Insight, insight
-from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinform.foundation.lazily import first_used
+
+if TYPE_CHECKING:
+    from kinform.kinematics.derivation import derive, functional, mobility_within
+    from kinform.kinematics.mobility.named_freedoms import Motions
+    from kinform.kinematics.partition import propose, proposed_joints
+    from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
+    from kinform.kinematics.questions.joint_insight import Insight, insight
+    from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
 
 __all__ = [
     "CODE_VERSION",
@@ -43,3 +50,23 @@ __all__ = [
 
 CODE_VERSION = 29
 """Bumped when the results of this stage change for the same input."""
+
+__getattr__ = first_used(
+    __name__,
+    {
+        "derive": "derivation",
+        "functional": "derivation",
+        "mobility_within": "derivation",
+        "Motions": "mobility.named_freedoms",
+        "propose": "partition",
+        "proposed_joints": "partition",
+        "IntendedAnswer": "questions.intended_freedoms",
+        "IntendedMotion": "questions.intended_freedoms",
+        "intended_answers": "questions.intended_freedoms",
+        "Insight": "questions.joint_insight",
+        "insight": "questions.joint_insight",
+        "QueryAnswer": "questions.motion_query",
+        "QueryBlocker": "questions.motion_query",
+        "query": "questions.motion_query",
+    },
+)

@@ -183,3 +183,5 @@ OUTLINE_SHADE = 0.52
 """Brightness of outlines."""
 ARC_PIECES = 28
 """Pieces of an arc."""
+MOST_AT_ONCE = 200_000
+"""Pixels times pieces of a line that are painted at one stroke: above it a pass for each piece is faster."""

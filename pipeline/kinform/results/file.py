@@ -83,6 +83,14 @@ def read(path: str | Path) -> Design:
         return found.design
 
 
+def read_at_need(path: str | Path) -> Design:
+    """The design in the results file at `path`, each part of it read when it is first looked at: to be looked at only.
+
+    Raises ResultsError as `read` does, of a part that makes no sense when that is looked at.
+    """
+    return cast(Design, Earlier(path))
+
+
 def earlier(path: str | Path, say: Callable[[str], None] | None = None) -> Earlier | None:
     """What an earlier run has left at `path`, which is about to be written; None where there is nothing.
 
@@ -222,6 +230,8 @@ class Earlier:
             )
         except NONSENSE as error:
             raise self._damaged(error) from error
+
+    ranged = Design.ranged
 
     @property
     def design(self) -> Design:

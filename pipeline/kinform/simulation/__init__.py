@@ -6,9 +6,9 @@ only when something is solved.
 
 from __future__ import annotations
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from kinform.foundation.lazily import first_used
 from kinform.simulation.request import simulate
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.subject import port_model
@@ -20,10 +20,4 @@ __all__ = ["CODE_VERSION", "Course", "SolverSettings", "port_model", "simulate",
 
 CODE_VERSION: int = 13
 
-_SOLVED = ("Course", "simulate_system")
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _SOLVED:
-        raise AttributeError(f"module 'kinform.simulation' has no attribute {name!r}")
-    return getattr(importlib.import_module("kinform.simulation.of_system"), name)
+__getattr__ = first_used(__name__, {"Course": "of_system", "simulate_system": "of_system"})

@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from kinform.foundation.algebra.vectors import cross
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
-from kinform.reports.constants import ARC_PIECES, SIGNAL_COLOUR
+from kinform.reports.constants import ARC_PIECES, MOST_AT_ONCE, SIGNAL_COLOUR
 
 Image = NDArray[np.float32]
 """(height, width, 4)."""
@@ -43,10 +44,10 @@ def strokes_of(joint: Joint, point: Array, size: float) -> list[Array]:
 
 
 def _across(axis: Array) -> tuple[Array, Array]:
-    aside = np.array([0.0, 0.0, 1.0] if abs(axis[2]) < 0.9 else [1.0, 0.0, 0.0])
-    u = np.cross(aside, axis)
+    x, y, z = axis.tolist()
+    u = np.array([-y, x, 0.0] if abs(z) < 0.9 else [0.0, -z, y])
     u /= np.linalg.norm(u)
-    return u, np.cross(axis, u)
+    return u, cross(axis, u)
 
 
 def _arc(centre: Array, axis: Array, radius: float, start: float, end: float) -> Array:
@@ -63,19 +64,24 @@ def _head(tip: Array, direction: Array, size: float) -> list[Array]:
 
 
 def polyline(image: Image, points: Array, width: float) -> None:
-    """A line through points (n, 2) px of this width, on an image (height, width, 4)."""
-    for a, b in zip(points[:-1], points[1:], strict=True):
-        box = _box(image, np.array([a, b]), width)
-        if box is not None:
-            along, aside, length = _along(box, a, b)
-            _paint(image, box, (aside < width / 2) & (along > -width / 2) & (along < length + width / 2))
+    """A line through points (n, 2) px of this width, on an image (height, width, 4); a small one at one stroke."""
+    box = _box(image, np.array([points.min(axis=0), points.max(axis=0)]), width)
+    if box is None:
+        return
+    if (len(points) - 1) * box[0].size * box[1].size > MOST_AT_ONCE and len(points) > 2:
+        for pair in zip(points[:-1], points[1:], strict=True):
+            polyline(image, np.array(pair), width)
+        return
+    along, aside, length = _along(box, points[:-1], points[1:])
+    on = (aside < width / 2) & (along > -width / 2) & (along < length + width / 2)
+    _paint(image, box, np.asarray(on.any(axis=0)))
 
 
 def dashed(image: Image, ends: Array, width: float) -> None:
     """A dashed and dotted line between two ends (2, 2) px, as axes are drawn."""
     box = _box(image, ends, width)
     if box is not None:
-        along, aside, length = _along(box, ends[0], ends[1])
+        along, aside, length = (item[0] for item in _along(box, ends[:1], ends[1:]))
         on = (along % 44.0 < 26.0) | ((along % 44.0 > 33.0) & (along % 44.0 < 37.0))
         _paint(image, box, (aside < width / 2) & (along > 0) & (along < length) & on)
 
@@ -108,12 +114,13 @@ def _box(image: Image, points: Array, margin: float) -> Pixels | None:
     return np.arange(left, right)[None, :], np.arange(top, bottom)[:, None]
 
 
-def _along(box: Pixels, a: Array, b: Array) -> tuple[Array, Array, float]:
-    """How far along and aside of the line from a to b each pixel is, and the line's length."""
-    way = b - a
-    length = max(float(np.linalg.norm(way)), 1e-9)
-    x, y = box[0] - a[0], box[1] - a[1]
-    return (x * way[0] + y * way[1]) / length, np.abs(x * way[1] - y * way[0]) / length, length
+def _along(box: Pixels, starts: Array, ends: Array) -> tuple[Array, Array, Array]:
+    """How far along and aside of each line between starts and ends (n, 2) px each pixel is, (n, rows, columns), and
+    the lines' lengths (n, 1, 1)."""
+    (u, v), (a, b) = (ends - starts).T[:, :, None, None], starts.T[:, :, None, None]
+    length = np.maximum(np.hypot(u, v), 1e-9)
+    x, y = box[0] - a, box[1] - b
+    return (x * u + y * v) / length, np.abs(x * v - y * u) / length, length
 
 
 def _paint(image: Image, box: Pixels, where: NDArray[np.bool_]) -> None:

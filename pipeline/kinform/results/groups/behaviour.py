@@ -166,7 +166,8 @@ def read(group: HeldGroup) -> Behaviour:
     system = flat(nested)
     names = _flat_names(systems, rows)
     order = [names[k] for k in sorted(range(len(rows)), key=lambda k: rows[k]["flat"])]
-    welds = [component.name for component in system.components if component.name not in set(names)]
+    named = set(names)
+    welds = [component.name for component in system.components if component.name not in named]
     return Behaviour(arranged(system, [*order, *welds]), nested, **REASONS.read_fields(group))
 
 
