@@ -48,14 +48,18 @@ def surfaces(
         ledger.keep(f"surfaces of {counted(len(result), 'mesh', 'meshes')}")
     if wanted:
         ledger.compute(f"surfaces of {counted(len(wanted), 'mesh', 'meshes')}", _why_meshes(view, wanted, ledger))
-    recover = functools.partial(surfaces_stage.recover, tolerances=view.tolerances)
+    recover = functools.partial(surfaces_stage.recover_all, tolerances=view.tolerances)
+    shapes = sorted({copies[k].of if k in copies else k for k in wanted} - set(result))
     # the largest first, so that no core is left with one of them at the end
-    shapes = sorted(
-        {copies[k].of if k in copies else k for k in wanted} - set(result), key=lambda k: (-len(meshes[k].faces), k)
-    )
-    name = lambda mesh: f"surfaces of {mesh.path}"
-    recovered = map_in_processes(recover, [meshes[k] for k in shapes], jobs, progress, name)
-    result.update(zip(shapes, recovered, strict=True))
+    packs = [[shapes[i] for i in pack] for pack in surfaces_stage.packs([len(meshes[k].faces) for k in shapes], jobs)]
+    name = lambda pack: f"surfaces of {few([mesh.path for mesh in pack])}"
+    recovered = map_in_processes(recover, [[meshes[k] for k in pack] for pack in packs], jobs, name=name)
+    done = 0
+    for pack, found in zip(packs, recovered, strict=True):
+        result.update(zip(pack, found, strict=True))
+        done += len(pack)
+        if progress is not None:
+            progress(done, len(shapes))
     for key in wanted:
         if key in copies:
             result[key] = surfaces_stage.surfaces_of_copy(result[copies[key].of], key, copies[key])

@@ -45,6 +45,10 @@ The steps, in the order of `recovery.recover`, which calls them:
     parallel, coaxial or in doubt. `chord` is how far facets stand off the surface: the most that contacts between
     facets may differ from contacts between surfaces.
 
+Meshes are recovered in packs (`recovery.packs`): steps 5 to 9 are done for all meshes of a pack at once, because most
+of the time of small meshes goes into beginning steps. Each mesh has its own lengths (`Scales`) and its own ends of
+iterations, so that it has to the last bit the surfaces that it has alone.
+
 Equal parts are recovered once: `copies` finds meshes that are one shape in several poses (Kabsch 1976).
 
 An example
@@ -67,9 +71,9 @@ A plate of 60 × 40 × 10 mm with a bore of 32 strips and 8 mm radius, 10 mm off
 """
 
 from kinform.surfaces.copies import rigid_copies, surfaces_of_copy
-from kinform.surfaces.recovery import recover
+from kinform.surfaces.recovery import packs, recover, recover_all
 
-__all__ = ["CODE_VERSION", "recover", "rigid_copies", "surfaces_of_copy"]
+__all__ = ["CODE_VERSION", "packs", "recover", "recover_all", "rigid_copies", "surfaces_of_copy"]
 
-CODE_VERSION: int = 8
+CODE_VERSION: int = 9
 """Bumped when results change."""

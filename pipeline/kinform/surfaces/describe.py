@@ -13,12 +13,12 @@ import numpy as np
 from kinform.foundation.algebra.vectors import canonical_sign, dot
 from kinform.model.arrays import Array, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import group_range, group_sum, members, normal_equations
+from kinform.surfaces.groups import columns_of, group_range, group_sum, members, normal_equations
 from kinform.surfaces.kinds.axial import angular_widths, azimuths, cylindrical
 from kinform.surfaces.kinds.kind import Batch, Kind, Params, widths
 from kinform.surfaces.kinds.ruled import with_apices
 from kinform.surfaces.polygons.coplanar import fit_planes
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
@@ -101,18 +101,20 @@ def freeform(work: Patchwork, polygons: Ints, numbers: Ints) -> Description:
     return Description("freeform", polygons, np.zeros(3), np.zeros(3), chord=chord)
 
 
-def curved(surfaces: Candidates, batch: Batch, scale: Scale) -> list[Description]:
+def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Description]:
     """Every region of one kind, with its final fit."""
     work, count, kind = batch.patchwork, batch.count, surfaces.kind
     params = surfaces.refine(batch, 6).params
     region = batch.region[batch.corners[0]]
-    low, high = group_range(region, dot(batch.points - params[region, 3:6], params[region, :3]), count)
+    low, high = group_range(
+        region, dot(batch.points - columns_of(params[:, 3:6], region), columns_of(params[:, :3], region)), count
+    )
     placed = _reference_points(kind.name, params, low, high)
     region, vertex = kind.defining(batch, params, surfaces.tolerance)
-    points = work.vertices[vertex]
-    distance = kind.probe(params[region], points).distance
+    points = work.at(vertex)
+    distance = kind.probe(columns_of(params, region), points).distance
     squares, samples, deepest = _deviations(region, distance, count)
-    columns, group = kind.jacobian(placed[region], points), region
+    columns, group = kind.jacobian(columns_of(placed, region), points), region
     if kind.name == "cone":
         tips = np.flatnonzero(cylindrical(params[region], points).rho < constants.APEX * params[region, 6])
         group, columns, _ = with_apices(placed[region], points, region, columns, distance, tips)
@@ -168,7 +170,7 @@ def _in_senses(
 
 
 def _uncertainties(
-    region: Ints, columns: Array, squares: Array, samples: Ints, scale: Scale, has_axis: bool
+    region: Ints, columns: Array, squares: Array, samples: Ints, scale: Scales, has_axis: bool
 ) -> tuple[Array, Array]:  # fmt: skip
     """(rad, unit lengths) of each region, from the least squares at the surface's point."""
     count, free = len(samples), columns.shape[1]
@@ -216,10 +218,13 @@ def angles_covered(params: Params, batch: Batch, width: Array) -> Array:
     region, low, high = region[order], low[order], high[order]
     wrapped = np.zeros(count)
     np.maximum.at(wrapped, region, high - turn)
-    apart = 10 * turn * region
-    first = np.r_[True, region[1:] != region[:-1]]
-    before = np.maximum.accumulate(high + apart)
-    reach = np.where(first, wrapped[region], np.r_[0.0, before[:-1]] - apart)
-    reach = np.maximum(reach, wrapped[region])
+    # the greatest angle reached before each polygon, by ranks: sums with the number of the region would be rounded
+    by_size = np.argsort(high, kind="stable")
+    rank = np.empty(len(high), np.int64)
+    rank[by_size] = np.arange(len(high))
+    before = np.maximum.accumulate(region * np.int64(len(high)) + rank)
+    reach = wrapped[region]
+    same = np.flatnonzero(region[1:] == region[:-1]) + 1
+    reach[same] = np.maximum(reach[same], high[by_size[before[same - 1] % len(high)]])
     covered = np.bincount(region, np.maximum(np.minimum(high, turn) - np.maximum(low, reach), 0), count) + wrapped
     return np.where(covered > turn - constants.FULL_TURN, turn, covered)

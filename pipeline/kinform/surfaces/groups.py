@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from kinform.model.arrays import Array, Ints
+from kinform.model.arrays import Array, Flags, Ints
 
 
 class Ragged:
@@ -20,17 +20,29 @@ class Ragged:
         self.items: Ints = items[order]
         self.starts: Ints = np.searchsorted(rows[order], np.arange(count + 1)).astype(np.int64)
 
+    @classmethod
+    def joined(cls, parts: Sequence[Ragged], offsets: Sequence[int]) -> Ragged:
+        """The rows of all the parts, one part after the other, with an offset added to the items of each."""
+        out = cls.__new__(cls)
+        out.items = np.concatenate([part.items + offset for part, offset in zip(parts, offsets, strict=True)])
+        first = np.cumsum([0, *(len(part.items) for part in parts)])
+        starts = [part.starts[:-1] + at for part, at in zip(parts, first, strict=False)]
+        out.starts = np.concatenate([*starts, first[-1:]])
+        return out
+
     def lengths(self, rows: Ints) -> Ints:
         """Number of items of each of these rows."""
         return self.starts[rows + 1] - self.starts[rows]
 
     def expand(self, rows: Ints) -> tuple[Ints, Ints]:
         """(position in `rows`, item) for every item of every row asked for, in order."""
-        lengths = self.lengths(rows)
+        start = self.starts[rows]
+        lengths = self.starts[rows + 1] - start
+        end = np.cumsum(lengths)
         owner = np.repeat(np.arange(len(rows)), lengths)
-        first = np.cumsum(lengths) - lengths
-        within = np.arange(len(owner)) - first[owner]
-        return owner, self.items[self.starts[rows][owner] + within]
+        at = np.repeat(start - end + lengths, lengths)
+        at += np.arange(len(at))
+        return owner, self.items[at]
 
 
 def slices(count: int, size: int) -> Iterator[slice]:
@@ -44,17 +56,38 @@ def starts_of(groups: Ints, count: int) -> Ints:
     return np.searchsorted(groups, np.arange(count + 1)).astype(np.int64)
 
 
+def heads(ordered: Ints) -> Flags:
+    """(n,) which of the ordered keys are the first of their value."""
+    out = np.ones(len(ordered), bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=out[1:])
+    return out
+
+
+def columns_of(table: Array, rows: Ints) -> Array:
+    """These rows of a table, in memory column by column: what reads single columns afterwards is twice as fast."""
+    return np.ascontiguousarray(table.T).take(rows, axis=1).T
+
+
+def parted(keys: Ints, count: int) -> tuple[Ints, Ints]:
+    """Quotient and remainder of keys that are not negative; the remainder by a product, which is faster."""
+    first = keys // count
+    return first, keys - first * count
+
+
 def distinct(keys: Ints) -> Ints:
     """The distinct keys, ascending: sorting integers is faster than numpy's hashing."""
     ordered = np.sort(keys)
-    return ordered[np.r_[True, ordered[1:] != ordered[:-1]]] if len(ordered) else ordered
+    return ordered[heads(ordered)]
 
 
 def occurrences(keys: Ints) -> tuple[Ints, Ints]:
     """The distinct keys, ascending, and how often each occurs."""
     ordered = np.sort(keys)
-    heads = np.flatnonzero(np.r_[True, ordered[1:] != ordered[:-1]]) if len(ordered) else np.zeros(0, np.int64)
-    return ordered[heads], np.diff(np.r_[heads, len(ordered)])
+    first = np.flatnonzero(heads(ordered))
+    times = np.empty(len(first), np.int64)
+    np.subtract(first[1:], first[:-1], out=times[:-1])
+    times[-1:] = len(ordered) - first[-1:]
+    return ordered[first], times
 
 
 def group_sum(groups: Ints, values: Array, count: int) -> Array:
@@ -95,7 +128,8 @@ def members(numbers: Ints) -> list[Ints]:
     if not len(numbered):
         return []
     ordered = numbered[np.argsort(numbers[numbered], kind="stable")]
-    return list(np.split(ordered, np.flatnonzero(np.diff(numbers[ordered])) + 1))
+    starts = [*np.flatnonzero(heads(numbers[ordered])).tolist(), len(ordered)]
+    return [ordered[i:j] for i, j in zip(starts, starts[1:], strict=False)]
 
 
 def spheres_through(groups: Ints, points: Array, count: int, *more: Array) -> tuple[Array, Array]:

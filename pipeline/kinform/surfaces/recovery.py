@@ -6,7 +6,8 @@ neither the size of a part nor the order in its file changes what is found.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,22 +15,19 @@ from kinform.model.arrays import Array, Ints, freeze
 from kinform.model.assembly import Mesh
 from kinform.model.surfaces import MeshSurfaces, Surface
 from kinform.model.tolerances import Tolerances
+from kinform.surfaces import constants
 from kinform.surfaces.constants import EPS32, THREAD_FACET
 from kinform.surfaces.describe import Description, curved, flat, freeform
 from kinform.surfaces.groups import distinct, members
 from kinform.surfaces.kinds.kind import Batch
 from kinform.surfaces.polygons.facets import Facets
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.merge import coincident_planes, coincident_regions
-from kinform.surfaces.regions.partition import CURVED, Partition, Region, partition
+from kinform.surfaces.regions.partition import CURVED, Region, partition
 from kinform.surfaces.swept.sliding import sliding
 from kinform.surfaces.swept.threads import threads
-
-LENGTHS = ("radius", "minor_radius", "pitch", "residual", "point_uncertainty", "chord")
-NUMBERS = ("kind", "half_angle", "side", "sweep", "axis_uncertainty")
-"""Fields of a description that are scaled with the mesh, and that are not."""
 
 
 def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
@@ -38,17 +36,63 @@ def recover(mesh: Mesh, tolerances: Tolerances) -> MeshSurfaces:
     Every facet belongs to exactly one surface. The mesh need not be closed. Results are in the part
     frame (m, rad), by descending area, then lowest facet index.
     """
-    diagonal = mesh.diagonal
-    if not len(mesh.faces) or diagonal <= 0 or not np.isfinite(mesh.vertices).all():
-        return MeshSurfaces(mesh.digest, (), np.zeros(0, np.int64), 0.0)
-    rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
-    centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
-    vertices, faces, order = _canonical_order((mesh.vertices - centre) / diagonal, mesh.faces)
-    facets = Facets.of(vertices, faces)
-    scale = Scale.of(facets, rounding / diagonal, tolerances)
-    work = Patchwork.of(facets, scale, tolerances)
-    descriptions = _describe(work, partition(work, scale), scale)
-    return _assemble(mesh, work, descriptions, order, centre, diagonal)
+    return recover_all([mesh], tolerances)[0]
+
+
+def recover_all(meshes: Sequence[Mesh], tolerances: Tolerances) -> list[MeshSurfaces]:
+    """`recover` of each mesh, to the same bits, in fewer and larger steps: most of the time of a small mesh goes into
+    beginning steps."""
+    solid = [_is_solid(mesh) for mesh in meshes]
+    starts = [_Start.of(mesh, tolerances) for mesh, there in zip(meshes, solid, strict=True) if there]
+    described = iter(_describe_all(starts)) if starts else iter(())
+    begun = iter(starts)
+    return [
+        _assemble(mesh, next(begun), next(described))
+        if there
+        else MeshSurfaces(mesh.digest, (), np.zeros(0, np.int64), 0.0)
+        for mesh, there in zip(meshes, solid, strict=True)
+    ]
+
+
+def packs(facets: Sequence[int], jobs: int = 1) -> list[list[int]]:
+    """Positions of meshes of so many facets, the largest first, in packs that `recover_all` takes at once: none of more
+    than `constants.PACK` facets in which there are several meshes, and as many as jobs where there is enough to do."""
+    most = min(constants.PACK, sum(facets) // max(jobs, 1)) if jobs > 1 else constants.PACK
+    out: list[list[int]] = []
+    held = most + 1
+    for k in sorted(range(len(facets)), key=lambda k: -facets[k]):
+        if held + facets[k] > most:
+            out.append([])
+            held = 0
+        out[-1].append(k)
+        held += facets[k]
+    return out
+
+
+def _is_solid(mesh: Mesh) -> bool:
+    return bool(len(mesh.faces) and mesh.diagonal > 0 and np.isfinite(mesh.vertices).all())
+
+
+@dataclass(frozen=True, eq=False)
+class _Start:
+    """A mesh in unit coordinates, in polygons."""
+
+    work: Patchwork
+    scale: Scale
+    order: Ints
+    """(F,) number in the file of each facet."""
+    centre: Array
+    diagonal: float
+
+    @classmethod
+    def of(cls, mesh: Mesh, tolerances: Tolerances) -> _Start:
+        """That of a mesh with extent."""
+        rounding = max(EPS32 * float(np.abs(mesh.vertices).max()), mesh.resolution)
+        centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+        vertices, faces, order = _canonical_order((mesh.vertices - centre) / mesh.diagonal, mesh.faces)
+        facets = Facets.of(vertices, faces)
+        scale = Scale.of(facets, rounding / mesh.diagonal, tolerances)
+        return cls(Patchwork.of(facets, scale, tolerances), scale, order, centre, mesh.diagonal)
 
 
 def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
@@ -64,16 +108,31 @@ def _canonical_order(vertices: Array, faces: Ints) -> tuple[Array, Ints, Ints]:
     return vertices[by_place], turned[order], order
 
 
-def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Description]:
-    """Merges what is one surface and measures every surface: curved ones, threads, planes, what slides on itself in one
-    way, and freeform patches, each among what those before it left."""
-    out: list[Description] = []
+def _describe_all(starts: Sequence[_Start]) -> list[list[Description]]:
+    """Merges what is one surface and measures every surface of every mesh."""
+    works = [start.work for start in starts]
+    joint, scales = Patchwork.joined(works), Scales.of([start.scale for start in starts])
+    parts = partition(joint, scales)
+    found: list[list[Description]] = [[] for _ in starts]
+    first = np.cumsum([0, *(work.count for work in works)])
     for kind in CURVED:
         regions = [region for region in parts.regions if region.kind is kind]
-        if regions:
-            out += _surfaces_of_kind(work, regions, scale)
-    rest, alone = parts.freeform.copy(), parts.planes.copy()
-    small = (alone >= 0) & (work.area < THREAD_FACET * work.area.sum())
+        regions.sort(key=lambda region: int(joint.mesh[region.polygons[0]]))
+        for surface in _surfaces_of_kind(joint, regions, scales) if regions else ():
+            mesh = int(joint.mesh[surface.polygons[0]])
+            found[mesh].append(replace(surface, polygons=surface.polygons - first[mesh]))
+    return [
+        _describe(start, curved, parts.planes[low:high], parts.freeform[low:high])
+        for start, curved, low, high in zip(starts, found, first[:-1], first[1:], strict=True)
+    ]
+
+
+def _describe(start: _Start, curved: list[Description], planes: Ints, patches: Ints) -> list[Description]:
+    """All surfaces of a mesh: curved ones, threads, planes, what slides on itself in one way, and freeform patches,
+    each among what those before it left."""
+    work, scale, out = start.work, start.scale, curved
+    rest, alone = patches.copy(), planes.copy()
+    small = (alone >= 0) & (work.area < THREAD_FACET * work.total[0])
     for thread in threads(work, (rest >= 0) | small, out, scale):
         out.append(thread)
         rest[thread.polygons] = alone[thread.polygons] = -1
@@ -86,23 +145,25 @@ def _describe(work: Patchwork, parts: Partition, scale: Scale) -> list[Descripti
     return out + [freeform(work, patch, _inner(work, rest, patch)) for patch in members(rest)]
 
 
-def _surfaces_of_kind(work: Patchwork, regions: list[Region], scale: Scale) -> list[Description]:
-    """The surfaces of regions of one kind, those that are one surface put together."""
+def _surfaces_of_kind(work: Patchwork, regions: list[Region], scales: Scales) -> list[Description]:
+    """The surfaces of regions of one kind, sorted by mesh, those that are one surface put together."""
+    fit = scales.fit[[work.mesh[region.polygons[0]] for region in regions]]
     polygons = [region.polygons for region in regions]
     surfaces = Candidates(
         regions[0].kind,
         np.array([region.params for region in regions]),
         np.array([region.side for region in regions]),
-        np.full(len(regions), scale.fit),
+        fit,
     )
-    root = coincident_regions(work, surfaces, polygons, scale)
+    root = coincident_regions(work, surfaces, polygons, scales)
     heads, group = np.unique(root, return_inverse=True)
     keys = np.repeat(group, [len(p) for p in polygons]) * np.int64(work.count) + np.concatenate(polygons)
     batch = Batch.of_keys(work, np.sort(keys), len(heads))
     loosest = np.zeros(len(heads))
     np.maximum.at(loosest, group, np.array([region.tolerance for region in regions]))
-    loosest[np.bincount(group) > 1] = scale.fit
-    return curved(surfaces.of(heads).within(loosest), batch, scale)
+    several = np.bincount(group) > 1
+    loosest[several] = fit[heads][several]
+    return curved(surfaces.of(heads).within(loosest), batch, scales.at(batch.mesh))
 
 
 def _inner(work: Patchwork, number: Ints, polygons: Ints) -> Ints:
@@ -114,10 +175,9 @@ def _inner(work: Patchwork, number: Ints, polygons: Ints) -> Ints:
     return inside
 
 
-def _assemble(
-    mesh: Mesh, work: Patchwork, descriptions: list[Description], order: Ints, centre: Array, diagonal: float
-) -> MeshSurfaces:
+def _assemble(mesh: Mesh, start: _Start, descriptions: list[Description]) -> MeshSurfaces:
     """Back to metres and to the mesh's own facets, in the promised order."""
+    work, order, centre, diagonal = start.work, start.order, start.centre, start.diagonal
     owner = np.full(work.count, -1)
     for number, item in enumerate(descriptions):
         owner[item.polygons] = number
@@ -140,14 +200,21 @@ def _assemble(
 
 
 def _surface(item: Description, area: float, faces: Ints, centre: Array, diagonal: float) -> Surface:
-    lengths = {name: getattr(item, name) * diagonal for name in LENGTHS}
-    numbers = {name: getattr(item, name) for name in NUMBERS}
     return Surface(
+        kind=item.kind,
         axis=freeze(item.axis + 0.0),
         point=freeze(item.point * diagonal + centre if item.kind != "freeform" else np.zeros(3)),
-        extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),
+        radius=item.radius * diagonal,
+        half_angle=item.half_angle,
+        side=item.side,
         area=area * diagonal**2,
+        extent=(item.extent[0] * diagonal, item.extent[1] * diagonal),
+        sweep=item.sweep,
+        residual=item.residual * diagonal,
+        axis_uncertainty=item.axis_uncertainty,
+        point_uncertainty=item.point_uncertainty * diagonal,
+        chord=item.chord * diagonal,
         faces=freeze(faces),
-        **numbers,
-        **lengths,
+        minor_radius=item.minor_radius * diagonal,
+        pitch=item.pitch * diagonal,
     )

@@ -12,6 +12,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array
 from kinform.surfaces.constants import ON_AXIS
+from kinform.surfaces.groups import columns_of
 from kinform.surfaces.kinds.kind import Batch, Params
 
 
@@ -22,7 +23,8 @@ def frames(axis: Array) -> tuple[Array, Array]:
     sign = np.where(az < 0, -1.0, 1.0)
     a = -1.0 / (sign + az)
     b = ax * ay * a
-    x, y = np.empty((len(axis), 3)), np.empty((len(axis), 3))
+    x, y = np.empty((2, 3, len(axis)))
+    x, y = x.T, y.T
     x[:, 0], x[:, 1], x[:, 2] = 1.0 + sign * ax * ax * a, sign * b, -sign * ax
     y[:, 0], y[:, 1], y[:, 2] = b, sign + ay * ay * a, -ay
     return x, y
@@ -52,7 +54,7 @@ def cylindrical(params: Params, points: Array) -> Cylindrical:
     z -= t * az
     rho = np.sqrt(x * x + y * y + z * z)
     scale = 1.0 / np.maximum(rho, 1e-300)
-    radial = np.empty((len(t), 3))
+    radial = np.empty((3, len(t))).T
     np.multiply(x, scale, out=radial[:, 0])
     np.multiply(y, scale, out=radial[:, 1])
     np.multiply(z, scale, out=radial[:, 2])
@@ -68,12 +70,12 @@ def azimuths(params: Params, radial: Array) -> Array:
 def angular_widths(batch: Batch, params: Params) -> Array:
     """(pairs,) angle about the axis that each polygon subtends."""
     owner, _ = batch.corners
-    mine = params[batch.region]
+    mine = columns_of(params, batch.region)
     _, _, middle = cylindrical(mine, batch.patchwork.centre[batch.polygon])
-    _, rho, radial = cylindrical(mine[owner], batch.points)
-    cos = dot(radial, middle[owner])
-    sin = dot(radial, cross(mine[:, :3], middle)[owner])
-    angle = np.where(rho > ON_AXIS * np.abs(mine[owner, 6]), np.arctan2(sin, cos), 0.0)
+    _, rho, radial = cylindrical(columns_of(mine, owner), batch.points)
+    cos = dot(radial, columns_of(middle, owner))
+    sin = dot(radial, columns_of(cross(mine[:, :3], middle), owner))
+    angle = np.where(rho > ON_AXIS * np.abs(mine[:, 6])[owner], np.arctan2(sin, cos), 0.0)
     high, low = np.zeros(len(batch.polygon)), np.zeros(len(batch.polygon))
     np.maximum.at(high, owner, angle)
     np.minimum.at(low, owner, angle)

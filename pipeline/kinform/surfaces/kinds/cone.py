@@ -21,7 +21,7 @@ from kinform.surfaces.groups import (
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 
 
 class Cone(Ruled):
@@ -47,7 +47,7 @@ class Cone(Ruled):
         params, usable = _taper(batch, axis, region, edge)
         return params, usable & (values[:, 0] < CIRCLE_OF_NORMALS * values[:, 1])
 
-    def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
+    def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """At least five generators, a sagitta above the tolerance, and a taper that no cylinder has."""
         lines, sweep, even = self.evident(batch, params, scale)
         region = batch.region[batch.corners[0]]

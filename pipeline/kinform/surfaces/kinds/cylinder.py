@@ -11,7 +11,7 @@ from kinform.surfaces.groups import group_mean, group_range, group_sum, occurren
 from kinform.surfaces.kinds.axial import frames
 from kinform.surfaces.kinds.kind import Batch, Params
 from kinform.surfaces.kinds.ruled import Ruled, generators
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 
 
 class Cylinder(Ruled):
@@ -42,7 +42,7 @@ class Cylinder(Ruled):
         ends = work.ends[edge[use]].ravel()
         return _circle(batch, axis, np.r_[np.repeat(region[use], 2), surrounded], np.r_[ends, vertex])
 
-    def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
+    def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """At least four generators, or three at equal steps; two strips of like width; and a sagitta well above the
         tolerance."""
         lines, sweep, even = self.evident(batch, params, scale)

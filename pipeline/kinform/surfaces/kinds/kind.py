@@ -14,8 +14,8 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import DAMPING, NEAR, RUN_OF_PAIRS
-from kinform.surfaces.groups import normal_equations, occurrences, solve_normal, starts_of
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.groups import columns_of, normal_equations, occurrences, parted, solve_normal
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 Params = Array
@@ -42,11 +42,12 @@ class Batch:
         self.region = region
         self.polygon = polygon
         self.count = count
-        self.size = np.diff(starts_of(region, count))
+        self.size: Ints = np.bincount(region, minlength=count)
         self._edges: tuple[Ints, Ints, Flags] | None = None
         self._corners: tuple[Ints, Ints] | None = None
         self._points: Array | None = None
         self._inner: dict[int, tuple[Ints, Ints]] = {}
+        self._mesh: Ints | None = None
 
     def parts(self) -> list[Batch]:
         """The batch cut into runs of pairs, so that what is computed for every corner stays small."""
@@ -61,12 +62,22 @@ class Batch:
     @classmethod
     def of_keys(cls, patchwork: Patchwork, keys: Ints, count: int) -> Batch:
         """The batch of sorted `keys`."""
-        return cls(patchwork, keys // patchwork.count, keys % patchwork.count, count)
+        return cls(patchwork, *parted(keys, patchwork.count), count)
 
     @property
     def keys(self) -> Ints:
         """(pairs,) one number for each region and polygon."""
         return self.region * np.int64(self.patchwork.count) + self.polygon
+
+    @property
+    def mesh(self) -> Ints:
+        """(R,) number of the mesh of each region; 0 of those without polygons."""
+        if self._mesh is None:
+            filled = np.flatnonzero(self.size)
+            self._mesh = np.zeros(self.count, np.int64)
+            first = (np.cumsum(self.size) - self.size)[filled]
+            self._mesh[filled] = self.patchwork.mesh[self.polygon[first]]
+        return self._mesh
 
     @property
     def corners(self) -> tuple[Ints, Ints]:
@@ -79,7 +90,7 @@ class Batch:
     def points(self) -> Array:
         """Coordinates of those vertices."""
         if self._points is None:
-            self._points = self.patchwork.vertices[self.corners[1]]
+            self._points = self.patchwork.at(self.corners[1])
         return self._points
 
     @property
@@ -89,7 +100,7 @@ class Batch:
             owner, edge = self.patchwork.sides.expand(self.polygon)
             total = np.int64(max(len(self.patchwork.a), 1))
             key, times = occurrences(self.region[owner] * total + edge)
-            self._edges = key // total, key % total, times == 2
+            self._edges = *parted(key, int(total)), times == 2
         return self._edges
 
     def inner_vertices(self, least: int = 3) -> tuple[Ints, Ints]:
@@ -98,13 +109,46 @@ class Batch:
             owner, vertex = self.corners
             total = np.int64(max(len(self.patchwork.vertices), 1))
             key, times = occurrences(self.region[owner] * total + vertex)
-            key = key[times >= least]
-            self._inner[least] = key // total, key % total
+            self._inner[least] = parted(key[times >= least], int(total))
         return self._inner[least]
 
     def select(self, keep: Flags) -> Batch:
         """The batch without some of its pairs."""
         return Batch(self.patchwork, self.region[keep], self.polygon[keep], self.count)
+
+
+class Moving:
+    """Which meshes have regions whose least squares go on: those of one mesh end together, when none of them moves any
+    more, so that a mesh has the same fits whatever other meshes are beside it."""
+
+    def __init__(self, batch: Batch):
+        self._batch = batch
+        self._mesh = np.ones(len(batch.patchwork.total), bool)
+
+    def only(self, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
+        """The vertices of meshes that go on; those without any do not."""
+        mesh = self._batch.mesh[region]
+        self._mesh &= np.bincount(mesh, minlength=len(self._mesh)) > 0
+        if self._mesh.all():
+            return region, vertex
+        keep = self._mesh[mesh]
+        return region[keep], vertex[keep]
+
+    def taken(self, stepped: Params, params: Params) -> Params:
+        """The parameters after a step: as they were where a mesh has ended."""
+        if self._mesh.all():
+            return stepped
+        return np.where(self._mesh[self._batch.mesh][:, None], stepped, params)
+
+    def after(self, change: Array, still: float, region: Ints, vertex: Ints) -> tuple[Ints, Ints]:
+        """The vertices of meshes that go on after a step by `change` (R, k)."""
+        largest = np.zeros(len(self._mesh))
+        np.maximum.at(largest, self._batch.mesh, np.abs(change).max(axis=1, initial=0.0))
+        ended = self._mesh & (largest < still)
+        if not ended.any():
+            return region, vertex
+        self._mesh &= ~ended
+        return self.only(region, vertex)
 
 
 class Kind(Protocol):
@@ -144,7 +188,7 @@ class Kind(Protocol):
         """(N, k) derivative of the distance by the free parameters."""
         ...
 
-    def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
+    def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """Whether there is evidence enough for this kind, not only agreement with it."""
         ...
 
@@ -165,28 +209,27 @@ class DoublyCurved(Kind, Protocol):
 
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over the free parameters."""
-        region, vertex = self.defining(batch, params, tolerance)
-        if not len(region):
-            return params
-        points = batch.patchwork.vertices[vertex]
+        moving = Moving(batch)
+        region, vertex = moving.only(*self.defining(batch, params, tolerance))
         for _ in range(min(steps, self.most_steps)):
-            mine = params[region]
+            if not len(region):
+                break
+            mine, points = columns_of(params, region), batch.patchwork.at(vertex)
             matrix, right = normal_equations(
                 region, self.jacobian(mine, points), self.probe(mine, points).distance, batch.count
             )
             change = -solve_normal(matrix, right, DAMPING)
             stepped = self.step(params, change)
-            params = np.where(np.isfinite(stepped).all(axis=1, keepdims=True), stepped, params)
-            if np.abs(change).max(initial=0.0) < self.still:
-                break
+            finite = np.isfinite(stepped).all(axis=1, keepdims=True)
+            params = moving.taken(np.where(finite, stepped, params), params)
+            region, vertex = moving.after(change, self.still, region, vertex)
         return params
 
     def widths(self, batch: Batch, params: Params) -> Array:
         """Twice the greatest angle between the normals at a polygon's middle and at a vertex of it."""
         owner, _ = batch.corners
-        mine = params[batch.region]
-        middle = self.probe(mine, batch.patchwork.centre[batch.polygon]).normal
-        apart = self.probe(mine[owner], batch.points).normal - middle[owner]
+        middle = self.probe(columns_of(params, batch.region), batch.patchwork.centre[batch.polygon]).normal
+        apart = self.probe(columns_of(params, batch.region[owner]), batch.points).normal - columns_of(middle, owner)
         square = np.zeros(len(batch.polygon))
         np.maximum.at(square, owner, dot(apart, apart))
         return np.asarray(4 * np.arcsin(np.minimum(np.sqrt(square) / 2, 1.0)))
@@ -194,7 +237,7 @@ class DoublyCurved(Kind, Protocol):
     def defining(self, batch: Batch, params: Params, tolerance: Array) -> tuple[Ints, Ints]:
         """Vertices that enough of the region's polygons share, where they lie on the surface."""
         region, vertex = batch.inner_vertices(self.shared)
-        distance = np.abs(self.probe(params[region], batch.patchwork.vertices[vertex]).distance)
+        distance = np.abs(self.probe(columns_of(params, region), batch.patchwork.at(vertex)).distance)
         keep = distance < NEAR * tolerance[region]
         return region[keep], vertex[keep]
 

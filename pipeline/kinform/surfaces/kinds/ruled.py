@@ -14,10 +14,10 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import distinct, normal_equations, quantile, slices, solve_normal
+from kinform.surfaces.groups import columns_of, distinct, normal_equations, parted, quantile, slices, solve_normal
 from kinform.surfaces.kinds.axial import Cylindrical, angular_widths, azimuths, cylindrical, frames
-from kinform.surfaces.kinds.kind import Batch, Kind, Params, Probe, distinct_angles
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.kinds.kind import Batch, Kind, Moving, Params, Probe, distinct_angles
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 
 
@@ -30,27 +30,29 @@ class Ruled(Kind, Protocol):
     def refine(self, batch: Batch, params: Params, tolerance: Array, steps: int) -> Params:
         """Gauss–Newton over offset, tilt, radius and, for cones, half-angle."""
         work, count = batch.patchwork, batch.count
+        moving = Moving(batch)
         for step in range(steps):
             if step in (0, 2):
-                region, vertex = self.defining(batch, params, tolerance)
+                region, vertex = moving.only(*self.defining(batch, params, tolerance))
             if not len(region):
-                return params
-            points = work.vertices[vertex]
-            at = cylindrical(params[region], points)
+                break
+            points = work.at(vertex)
+            at = cylindrical(columns_of(params, region), points)
+            before = params
             params, middle = _recentre(params, region, at.t, count)
             at.t[:] -= middle[region]
             radius, angle = params[region, 6], params[region, 7]
             x, y = frames(params[:, :3])
-            group, columns = region, self._columns(at, (x[region], y[region]), radius, angle)
+            frame = columns_of(x, region), columns_of(y, region)
+            group, columns = region, self._columns(at, frame, radius, angle)
             residual = (at.rho - radius) * np.cos(angle) - at.t * np.sin(angle) if self.tapers else at.rho - radius
             if self.tapers:
                 tips = np.flatnonzero(at.rho < constants.APEX * radius)
                 group, columns, residual = with_apices(params[region], points, region, columns, residual, tips)
             matrix, right = normal_equations(group, columns, residual, count)
             change = -solve_normal(matrix, right, constants.DAMPING)
-            params = self.step(params, change)
-            if np.abs(change).max(initial=0.0) < constants.CONVERGED:
-                break
+            params = moving.taken(self.step(params, change), before)
+            region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
 
     def probe(self, params: Params, points: Array) -> Probe:
@@ -82,15 +84,14 @@ class Ruled(Kind, Protocol):
         surrounded, vertex = batch.inner_vertices(3)
         keys = [surrounded * total + vertex]
         if len(region):
-            ends = work.ends[edge]
+            mine, ends = columns_of(params, region), work.ends[edge]
             distance = np.maximum(
-                np.abs(self.probe(params[region], work.vertices[ends[:, 0]]).distance),
-                np.abs(self.probe(params[region], work.vertices[ends[:, 1]]).distance),
+                np.abs(self.probe(mine, work.at(ends[:, 0])).distance),
+                np.abs(self.probe(mine, work.at(ends[:, 1])).distance),
             )
             use = inner | (distance < tolerance[region])
             keys.append(np.repeat(region[use], 2) * total + ends[use].ravel())
-        key = distinct(np.concatenate(keys))
-        return key // total, key % total
+        return parted(distinct(np.concatenate(keys)), int(total))
 
     def jacobian(self, params: Params, points: Array) -> Array:
         """By offset across the axis (2), tilt (2), radius and, for cones, half-angle."""
@@ -101,7 +102,7 @@ class Ruled(Kind, Protocol):
         (t, rho, radial), (x, y) = at, frame
         rx = radial[:, 0] * x[:, 0] + radial[:, 1] * x[:, 1] + radial[:, 2] * x[:, 2]
         ry = radial[:, 0] * y[:, 0] + radial[:, 1] * y[:, 1] + radial[:, 2] * y[:, 2]
-        out = np.empty((len(t), 6 if self.tapers else 5))
+        out = np.empty((6 if self.tapers else 5, len(t))).T
         if self.tapers:
             cos, sin = np.cos(angle), np.sin(angle)
             lever = cos * t + sin * rho
@@ -136,7 +137,7 @@ class Ruled(Kind, Protocol):
             out[:, 7] = np.clip(taper, -constants.STEEPEST_CONE, constants.STEEPEST_CONE)
         return np.where(np.isfinite(out).all(axis=1, keepdims=True), out, params)
 
-    def evident(self, batch: Batch, params: Params, scale: Scale) -> tuple[Ints, Array, Flags]:
+    def evident(self, batch: Batch, params: Params, scale: Scales) -> tuple[Ints, Array, Flags]:
         """What tells a round face from a few flats: the number of distinct generators that lie on each surface, apart
         by more than a fifth of a typical facet; the angle, π at most, that its facets subtend together; and whether its
         widest polygon has a second of like width, which a flat between two bevels has not."""
@@ -149,11 +150,11 @@ class Ruled(Kind, Protocol):
         several = np.diff(start) >= 2
         first = start[:-1][several]
         even[several] = width[order[first + 1]] >= constants.SECOND_STRIP * width[order[first]]
-        region, vertex = self.defining(batch, params, np.full(count, scale.fit))
+        region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, np.int64), sweep, even
-        mine = params[region]
-        angle = azimuths(mine, cylindrical(mine, batch.patchwork.vertices[vertex]).radial)
+        mine = columns_of(params, region)
+        angle = azimuths(mine, cylindrical(mine, batch.patchwork.at(vertex)).radial)
         step = constants.RING_APART * quantile(batch.region, width, count, 0.75)
         return distinct_angles(region, angle, step, count), sweep, even
 
@@ -170,8 +171,8 @@ def generators(batch: Batch, params: Params) -> tuple[Ints, Ints, Flags, Flags]:
 
 def _along(work: Patchwork, params: Params, region: Ints, edge: Ints) -> Flags:
     """Whether each edge runs along a generator of its region's surface."""
-    start, end = work.vertices[work.ends[edge, 0]], work.vertices[work.ends[edge, 1]]
-    mine = params[region]
+    start, end = work.at(work.ends[edge, 0]), work.at(work.ends[edge, 1])
+    mine = columns_of(params, region)
     radial = cylindrical(mine, (start + end) / 2).radial
     direction = np.cos(mine[:, 7])[:, None] * mine[:, :3] + np.sin(mine[:, 7])[:, None] * radial
     length = work.length[edge]

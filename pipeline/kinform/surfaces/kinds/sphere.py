@@ -9,7 +9,7 @@ from kinform.model.arrays import Array, Flags
 from kinform.surfaces.constants import LARGEST_SPHERE, LEAST_POINTS, SAGITTA
 from kinform.surfaces.groups import group_mean, group_sum, spheres_through
 from kinform.surfaces.kinds.kind import Batch, DoublyCurved, Params, Probe
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 
 
 class Sphere(DoublyCurved):
@@ -60,7 +60,7 @@ class Sphere(DoublyCurved):
         normal = self.probe(params, points).normal
         return np.concatenate([-normal, -np.ones((len(points), 1))], axis=1)
 
-    def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
+    def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """Several vertices surrounded by the surface, and curvature in both directions above the tolerance."""
         work = batch.patchwork
         region, _ = batch.inner_vertices(3)

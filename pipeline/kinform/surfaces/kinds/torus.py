@@ -11,10 +11,10 @@ import numpy as np
 from kinform.foundation.algebra.vectors import cross, dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
-from kinform.surfaces.groups import group_range, quantile, spheres_through
+from kinform.surfaces.groups import columns_of, group_range, quantile, spheres_through
 from kinform.surfaces.kinds.axial import azimuths, cylindrical, frames
 from kinform.surfaces.kinds.kind import Batch, DoublyCurved, Params, Probe, distinct_angles
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.slippage import slippage
 
 
@@ -37,7 +37,7 @@ class Torus(DoublyCurved):
         region, vertex = batch.inner_vertices(2)
         params = np.zeros((count, 8))
         params[:, :3], params[:, 3:6] = axis, point
-        t, rho, _ = cylindrical(params[region], batch.patchwork.vertices[vertex])
+        t, rho, _ = cylindrical(columns_of(params, region), batch.patchwork.at(vertex))
         size = np.maximum(np.bincount(region, minlength=count), 1)
         rho0, t0 = np.bincount(region, rho, count) / size, np.bincount(region, t, count) / size
         centre, square = spheres_through(region, np.stack([rho - rho0[region], t - t0[region]], axis=1), count)
@@ -81,15 +81,15 @@ class Torus(DoublyCurved):
         lever = params[:, 6] * up
         return np.stack([-out * rx, -out * ry, lever * rx, lever * ry, -up, -out, -np.ones_like(t)], axis=1)
 
-    def credible(self, batch: Batch, params: Params, scale: Scale) -> Flags:
+    def credible(self, batch: Batch, params: Params, scale: Scales) -> Flags:
         """Rings enough in the profile, places enough around the axis, and curved both ways: with neither a
         sphere nor a cylinder within the tolerance."""
         count = batch.count
-        region, vertex = self.defining(batch, params, np.full(count, scale.fit))
+        region, vertex = self.defining(batch, params, scale.fit)
         if not len(region):
             return np.zeros(count, bool)
-        mine = params[region]
-        t, rho, radial = cylindrical(mine, batch.patchwork.vertices[vertex])
+        mine = columns_of(params, region)
+        t, rho, radial = cylindrical(mine, batch.patchwork.at(vertex))
         tube = np.arctan2(t, rho - mine[:, 6])
         step = constants.RING_APART * quantile(batch.region, self.widths(batch, params), count, 0.75)
         rings = distinct_angles(region, tube, step, count)

@@ -9,6 +9,7 @@ scatter that repeats itself.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +50,29 @@ class Scale:
                 fit=max(fit, constants.FIT_SIGMAS * sigma),
             )
         return cls(rounding, 0.0, noise=noise, fit=fit)
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """The lengths of `Scale` that decide about several meshes, or regions, (n,) each."""
+
+    rounding: Array
+    noise: Array
+    fit: Array
+
+    @classmethod
+    def of(cls, scales: Sequence[Scale]) -> Scales:
+        """Those of several meshes."""
+        rounding, noise, fit = np.array([(s.rounding, s.noise, s.fit) for s in scales]).reshape(-1, 3).T
+        return cls(rounding, noise, fit)
+
+    def at(self, numbers: Ints) -> Scales:
+        """Those of the meshes of these numbers, in this order."""
+        return Scales(self.rounding[numbers], self.noise[numbers], self.fit[numbers])
+
+    def wider(self, factor: float) -> Scales:
+        """With so many times the noise, and fits as much looser."""
+        return Scales(self.rounding, factor * self.noise, factor * self.fit)
 
 
 def departures(mesh: Facets, edges: Ints) -> Array:

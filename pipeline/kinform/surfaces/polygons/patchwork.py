@@ -7,7 +7,10 @@ each joins the polygon across its longest edge, in whose plane it lies to within
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +26,8 @@ from kinform.surfaces.polygons.noise import Scale
 
 @dataclass(frozen=True, eq=False)
 class Patchwork:
-    """P polygons of a mesh in unit coordinates (diagonal 1), and the E edges between them."""
+    """P polygons of a mesh in unit coordinates (diagonal 1), and the E edges between them; or of several meshes, one
+    after the other, each in its own unit coordinates: then what is done for all takes fewer and larger steps."""
 
     vertices: Array
     facet_area: Array
@@ -51,6 +55,18 @@ class Patchwork:
     smooth: Flags
     sign: Ints
     """(E,) +1 convex, -1 concave, 0 too flat to tell."""
+    mesh: Ints
+    """(P,) number of the mesh of each polygon."""
+    total: Array
+    """(M,) area of each of the meshes."""
+
+    def at(self, vertices: Ints) -> Array:
+        """(N, 3) coordinates of these vertices, in memory column by column."""
+        return self._columns.take(vertices, axis=1).T
+
+    @cached_property
+    def _columns(self) -> Array:
+        return np.ascontiguousarray(self.vertices.T)
 
     def other(self, edges: Ints, polygons: Ints) -> Ints:
         """The polygon on the other side of each edge."""
@@ -98,4 +114,49 @@ class Patchwork:
             angle=angle,
             smooth=inner & (angle < allowed),
             sign=sign,
+            mesh=np.zeros(count, np.int64),
+            total=np.array([area.sum()]),
         )
+
+    @classmethod
+    def joined(cls, works: Sequence[Patchwork]) -> Patchwork:
+        """Those of several meshes as one."""
+        if len(works) == 1:
+            return works[0]
+        vertices = _offsets([len(work.vertices) for work in works])
+        facets = _offsets([work.count for work in works])
+        edges = _offsets([len(work.a) for work in works])
+
+        def together(name: str) -> Any:
+            return np.concatenate([getattr(work, name) for work in works])
+
+        def shifted(name: str, offsets: list[int]) -> Ints:
+            return np.concatenate([getattr(work, name) + at for work, at in zip(works, offsets, strict=True)])
+
+        b = together("b")
+        return cls(
+            vertices=together("vertices"),
+            facet_area=together("facet_area"),
+            polygon=shifted("polygon", facets),
+            count=sum(work.count for work in works),
+            area=together("area"),
+            normal=together("normal"),
+            centre=together("centre"),
+            slack=together("slack"),
+            corners=Ragged.joined([work.corners for work in works], vertices),
+            sides=Ragged.joined([work.sides for work in works], edges),
+            a=shifted("a", facets),
+            b=np.where(b < 0, b, shifted("b", facets)),
+            ends=shifted("ends", vertices),
+            length=together("length"),
+            angle=together("angle"),
+            smooth=together("smooth"),
+            sign=together("sign"),
+            mesh=np.repeat(np.arange(len(works)), [work.count for work in works]),
+            total=together("total"),
+        )
+
+
+def _offsets(counts: Sequence[int]) -> list[int]:
+    """Where each of several runs begins that follow each other."""
+    return [int(end) - count for end, count in zip(np.cumsum(counts), counts, strict=True)]

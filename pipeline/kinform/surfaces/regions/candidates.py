@@ -9,7 +9,7 @@ import numpy as np
 from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces.constants import FACET_ROUNDING, NORMAL_SLACK, TYPICAL_WIDTH, WIDER, WIDEST
-from kinform.surfaces.groups import ordered_quantile, quantile
+from kinform.surfaces.groups import columns_of, ordered_quantile, quantile
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
 from kinform.surfaces.kinds.kind import widths as widths_of
 
@@ -62,13 +62,13 @@ class Candidates:
         work, region = batch.patchwork, batch.region
         owner, _ = batch.corners
         group = region[owner]
-        held = self.kind.probe(self.params[group], batch.points)
+        held = self.kind.probe(columns_of(self.params, group), batch.points)
         chord = 1 - np.cos(np.minimum(reach, np.pi) / 2)
         allowed, limit = held.curvature_radius * chord[group], self.tolerance[group]
         off = np.zeros(len(region), bool)
         deepest = limit if self.kind.saddle else allowed + limit
         off[owner[(held.distance >= limit) | (held.distance <= -deepest)]] = True
-        middle = self.kind.probe(self.params[region], work.centre[batch.polygon])
+        middle = self.kind.probe(columns_of(self.params, region), work.centre[batch.polygon])
         # a flat has all its vertices on the surface, but is wider than the facets of it
         off |= middle.distance <= -middle.curvature_radius * chord[region] - self.tolerance[region]
         cosine = dot(middle.normal, work.normal[batch.polygon]) * self.side[region]
@@ -78,5 +78,5 @@ class Candidates:
     def scatter(self, batch: Batch) -> Array:
         """(R,) middle distance of each region's vertices from its surface."""
         region, vertex = self.kind.defining(batch, self.params, self.tolerance)
-        distance = np.abs(self.kind.probe(self.params[region], batch.patchwork.vertices[vertex]).distance)
+        distance = np.abs(self.kind.probe(columns_of(self.params, region), batch.patchwork.at(vertex)).distance)
         return quantile(region, distance, batch.count, 0.5)

@@ -15,27 +15,24 @@ import numpy as np
 from kinform.model.arrays import Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.describe import angles_covered
-from kinform.surfaces.groups import quantile
+from kinform.surfaces.groups import columns_of, quantile
 from kinform.surfaces.kinds.cylinder import Cylinder
 from kinform.surfaces.kinds.kind import Batch
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.growth import Growth, whole
 from kinform.surfaces.regions.territory import Territory
 
 
 def decimated(territory: Territory, kind: Cylinder, batch: Batch, side: Ints, factor: float) -> Growth:
     """Cylinders among the pieces `batch`, held to `factor` times the tolerance of fits."""
-    loose = _wider(territory.scale, factor)
+    loose = territory.scales.wider(factor)
     enough = batch.size >= constants.LEAST_CHORDS
-    growth = whole(replace(territory, scale=loose), kind, batch.select(enough[batch.region]), side)
-    return replace(growth, batch=growth.batch.select(_round(kind, growth, territory.scale)[growth.batch.region]))
+    growth = whole(replace(territory, scales=loose), kind, batch.select(enough[batch.region]), side)
+    regular = _round(kind, growth, territory.scales_of(growth.batch))
+    return replace(growth, batch=growth.batch.select(regular[growth.batch.region]))
 
 
-def _wider(scale: Scale, factor: float) -> Scale:
-    return replace(scale, noise=factor * scale.noise, fit=factor * scale.fit)
-
-
-def _round(kind: Cylinder, growth: Growth, scale: Scale) -> Flags:
+def _round(kind: Cylinder, growth: Growth, scale: Scales) -> Flags:
     """(R,) which regions go most of the way round, their vertices no farther off than chords of their facets."""
     batch, params = growth.batch, growth.surfaces.params
     _, _, even = kind.evident(batch, params, scale)
@@ -46,5 +43,5 @@ def _round(kind: Cylinder, growth: Growth, scale: Scale) -> Flags:
     owner, _ = batch.corners
     off = np.zeros(batch.count)
     region = batch.region[owner]
-    np.maximum.at(off, region, np.abs(kind.probe(params[region], batch.points).distance))
+    np.maximum.at(off, region, np.abs(kind.probe(columns_of(params, region), batch.points).distance))
     return np.asarray(even & (sweep >= constants.ROUND_CHORDS) & (off <= constants.ON_CHORD * chord))

@@ -14,7 +14,7 @@ from kinform.foundation.algebra.vectors import dot
 from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.kinds.kind import Batch, Kind, Params
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.regions.candidates import Candidates
 from kinform.surfaces.regions.territory import Territory, among
 
@@ -35,13 +35,13 @@ def whole(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth:
     params, usable = kind.propose(batch)
     pieces = batch.select(usable[batch.region])
     side = _facing(kind, pieces, params) if kind.saddle else side
-    fit = np.full(batch.count, territory.scale.fit)
+    fit = territory.scales_of(batch).fit
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(pieces, 2)
     fits = surfaces.conforms(pieces, surfaces.reach(pieces))
     share = np.bincount(pieces.region, fits, batch.count) / np.maximum(batch.size, 1)
     pieces, number = _compact(pieces.select(fits & (share >= constants.MAJORITY)[pieces.region]))
     kept = surfaces.of(number).within(fit[number]).refine(pieces, 2)
-    kept = kept.within(_justify(kept, pieces, territory.scale))
+    kept = kept.within(_justify(kept, pieces, territory.scales_of(pieces)))
     pieces = _large(kind, territory.connected(_conforming(kept, pieces)))
     return _credible(territory, surfaces, pieces, kept.refine(pieces, 1), number)
 
@@ -76,14 +76,14 @@ def pursue(territory: Territory, kind: Kind, batch: Batch, side: Ints) -> Growth
 
     A seed must conform to its own hypothesis with at least `kind.least` polygons.
     """
-    fit = np.full(batch.count, territory.scale.fit)
+    fit = territory.scales_of(batch).fit
     params, usable = kind.propose(batch)
     batch = batch.select(usable[batch.region])
     surfaces = Candidates(kind, params, side, constants.LOOSE * fit).refine(batch, 2)
     batch, surfaces = _grow(territory, surfaces, _settle(territory, surfaces, batch))
     batch, number = _compact(batch)
     kept = surfaces.of(number).refine(batch, 2)
-    kept = kept.within(_justify(kept, batch, territory.scale))
+    kept = kept.within(_justify(kept, batch, territory.scales_of(batch)))
     batch = _settle(territory, kept, batch)
     return _credible(territory, surfaces, batch, kept.refine(batch, 2), number)
 
@@ -92,7 +92,7 @@ def _grow(territory: Territory, surfaces: Candidates, batch: Batch) -> tuple[Bat
     """Rounds of fitting and growing. A region that did not change in a round is finished and leaves, so
     that the later rounds work on the few that still grow."""
     count, params = batch.count, surfaces.params.copy()
-    fit = np.full(count, territory.scale.fit)
+    fit = territory.scales_of(batch).fit
     finished = []
     batch, number = _compact(batch)
     growing = surfaces.of(number)
@@ -175,7 +175,7 @@ def _settle(territory: Territory, surfaces: Candidates, batch: Batch) -> Batch:
     return _large(surfaces.kind, kept)
 
 
-def _justify(surfaces: Candidates, batch: Batch, scale: Scale) -> Array:
+def _justify(surfaces: Candidates, batch: Batch, scale: Scales) -> Array:
     """The tolerance that each region's own vertices justify, between the noise and the fit."""
     return np.clip(constants.TOLERANCE_MEDIANS * surfaces.scatter(batch), scale.noise, scale.fit)
 
@@ -184,6 +184,6 @@ def _credible(territory: Territory, surfaces: Candidates, batch: Batch, kept: Ca
     """Those of the regions that there is evidence enough for, with their surfaces, under their old numbers."""
     kind, params, tolerance = surfaces.kind, surfaces.params.copy(), surfaces.tolerance.copy()
     params[number], tolerance[number] = kept.params, kept.tolerance
-    batch = batch.select(kind.credible(batch, kept.params, territory.scale)[batch.region])
+    batch = batch.select(kind.credible(batch, kept.params, territory.scales_of(batch))[batch.region])
     regions = Batch.of_keys(territory.patchwork, _keys(batch, number), len(params))
     return Growth(Candidates(kind, params, surfaces.side, tolerance), regions)

@@ -14,7 +14,7 @@ from kinform.model.arrays import Array, Flags, Ints
 from kinform.surfaces import constants
 from kinform.surfaces.groups import members
 from kinform.surfaces.kinds.kind import Batch, widths
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scale, Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
@@ -68,7 +68,7 @@ def _roots(larger: Ints, smaller: Ints, size: Array | Ints) -> Ints:
     return root
 
 
-def coincident_regions(work: Patchwork, surfaces: Candidates, polygons: list[Ints], scale: Scale) -> Ints:
+def coincident_regions(work: Patchwork, surfaces: Candidates, polygons: list[Ints], scales: Scales) -> Ints:
     """Number of the region that each of these regions, whose surfaces are of one kind, becomes part of.
 
     Pairs of like shape that lie near each other are put together in clusters. All of a cluster are fitted as one
@@ -77,7 +77,7 @@ def coincident_regions(work: Patchwork, surfaces: Candidates, polygons: list[Int
     count = len(polygons)
     batch = _batch(work, polygons)
     size = np.bincount(batch.region, work.area[batch.polygon], count)
-    larger, smaller = _partners(surfaces, batch, size, scale)
+    larger, smaller = _partners(surfaces, batch, size, scales.at(batch.mesh))
     root = np.arange(count)
     clusters = [m for m in members(components(larger, smaller, count)) if len(m) > 2]
     heads = np.array([m[np.lexsort((m, -size[m]))[0]] for m in clusters], dtype=np.int64)
@@ -100,32 +100,40 @@ def _batch(work: Patchwork, polygons: list[Ints]) -> Batch:
     return Batch(work, region, np.concatenate(polygons), len(polygons))
 
 
-def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Scale) -> tuple[Ints, Ints]:
+def _partners(surfaces: Candidates, batch: Batch, size: Array | Ints, scale: Scales) -> tuple[Ints, Ints]:
     """(larger, smaller) of the pairs of regions that may be one: each smaller one with the nearest few of like shape,
     as far as a few of its vertices lie near them."""
     kind, params, work = surfaces.kind, surfaces.params, batch.patchwork
     shape = np.c_[np.where(params[:, 7] == 0, params[:, 6], 0.0), params[:, 7], 4.0 * surfaces.side]
-    pairs = Near(shape, max(constants.MERGED_SHAPE, constants.MERGED_SHAPE_FITS * scale.fit)).pairs
+    pairs = np.concatenate([_alike(shape, one, scale) for one in members(batch.mesh)])
     if not len(pairs):
         return pairs[:, 0], pairs[:, 1]
     larger, smaller = _by_size(pairs, size)
-    region, vertex = kind.defining(batch, params, np.full(batch.count, scale.fit))
+    region, vertex = kind.defining(batch, params, scale.fit)
     order = np.argsort(region, kind="stable")
     region, vertex = region[order], vertex[order]
     starts = np.searchsorted(region, np.arange(batch.count + 1))
     alive = np.arange(len(larger))
+    final = starts[np.searchsorted(batch.mesh, batch.mesh[smaller], side="right")] - 1
+    near = constants.MERGING_FITS * scale.fit[smaller]
     distance = np.zeros(len(larger))
     for k in range(constants.SAMPLES):
         first, last = starts[smaller[alive]], starts[smaller[alive] + 1] - 1
         at = first + (k * np.maximum(last - first, 0)) // (constants.SAMPLES - 1)
-        point = work.vertices[vertex[np.minimum(at, len(vertex) - 1)]]
+        point = work.vertices[vertex[np.minimum(at, final[alive])]]
         distance[alive] = np.maximum(distance[alive], np.abs(kind.probe(params[larger[alive]], point).distance))
-        alive = alive[distance[alive] < constants.MERGING_FITS * scale.fit]
-    distance = np.where(distance < constants.MERGING_FITS * scale.fit, distance, np.inf)
+        alive = alive[distance[alive] < near[alive]]
+    distance = np.where(distance < near, distance, np.inf)
     order = np.lexsort((larger, distance, smaller))
     place = np.arange(len(order)) - np.searchsorted(smaller[order], smaller[order])
     close = order[(place < constants.PARTNERS) & np.isfinite(distance[order])]
     return larger[close], smaller[close]
+
+
+def _alike(shape: Array, regions: Ints, scale: Scales) -> Ints:
+    """(n, 2) regions, among those of one mesh, of nearly the same shape."""
+    distance = max(constants.MERGED_SHAPE, constants.MERGED_SHAPE_FITS * float(scale.fit[regions[0]]))
+    return regions[Near(shape[regions], distance).pairs]
 
 
 def _one_fit(work: Patchwork, surfaces: Candidates, families: list[Ints]) -> Flags:

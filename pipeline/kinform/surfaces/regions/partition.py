@@ -21,7 +21,7 @@ from kinform.surfaces.kinds.kind import Batch, Kind
 from kinform.surfaces.kinds.sphere import Sphere
 from kinform.surfaces.kinds.torus import Torus
 from kinform.surfaces.polygons.curvature import Curvature, Links, continues, curvature, links
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.chords import decimated
 from kinform.surfaces.regions.growth import Growth, absorb, pursue, whole
@@ -59,10 +59,10 @@ class Partition:
     """(P,) number of the freeform patch of each polygon, or -1."""
 
 
-def partition(work: Patchwork, scale: Scale) -> Partition:
-    """Assigns every polygon."""
+def partition(work: Patchwork, scales: Scales) -> Partition:
+    """Assigns every polygon of one or more meshes; each mesh has the partition that it has alone."""
     regions: list[Region] = []
-    territory = Territory.of(work, scale)
+    territory = Territory.of(work, scales)
     link = links(work, territory.free)
     bent = curvature(work, link)
     like = link.alike & continues(work, bent, link)
@@ -71,14 +71,19 @@ def partition(work: Patchwork, scale: Scale) -> Partition:
         growths = [absorb(territory, growth) for growth in _whole_pieces(territory, batch, side, bent, kinds)]
         regions += _choose(growths, territory)
     tried = np.zeros(len(work.a), bool)
-    total = work.area.sum()
+    of_edge = work.mesh[work.a]
     inner = work.b >= 0
-    tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < constants.GRAIN * total
+    least = constants.GRAIN * work.total[of_edge[inner]]
+    tried[inner] = work.area[work.a[inner]] + work.area[work.b[inner]] < least
     for _ in range(constants.ROUNDS):
         chosen = _choose(_search(territory, tried, bent), territory)
-        regions += chosen
-        if sum(work.area[region.polygons].sum() for region in chosen) < constants.WORTH * total:
+        if not chosen:
             break
+        regions += chosen
+        gained = np.zeros(len(work.total))
+        for region in chosen:
+            gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
+        tried |= (gained < constants.WORTH * work.total)[of_edge]
     for factor in constants.CHORD_FITS:
         batch, side = _pieces(territory, link, link.alike)
         regions += _choose([decimated(territory, CYLINDER, batch, side, factor)], territory)
@@ -224,7 +229,7 @@ def _remainder(territory: Territory) -> tuple[Ints, Ints]:
     neighbours = np.bincount(np.r_[a, b], minlength=work.count)
     nearby = np.bincount(np.r_[a, b], np.r_[work.area[b], work.area[a]], work.count)
     dominant = work.area > constants.DOMINANT * nearby / np.maximum(neighbours, 1)
-    dominant |= work.area > constants.BROAD * work.area.sum()
+    dominant |= work.area > constants.BROAD * work.total[work.mesh]
     label = components(a, b, work.count)
     size = np.bincount(label[left], minlength=work.count)[label]
     loose = left & (size >= constants.LEAST_FREEFORM) & (neighbours >= 1) & ~dominant

@@ -8,31 +8,36 @@ import numpy as np
 
 from kinform.foundation.graphs.components import components
 from kinform.model.arrays import Array, Flags, Ints
-from kinform.surfaces.groups import Ragged, distinct
+from kinform.surfaces.groups import Ragged, distinct, parted
 from kinform.surfaces.kinds.kind import Batch
-from kinform.surfaces.polygons.noise import Scale
+from kinform.surfaces.polygons.noise import Scales
 from kinform.surfaces.polygons.patchwork import Patchwork
 from kinform.surfaces.regions.candidates import Candidates
 
 
 @dataclass(frozen=True, eq=False)
 class Territory:
-    """The polygons of a mesh while regions grow on them."""
+    """The polygons of one or more meshes while regions grow on them."""
 
     patchwork: Patchwork
-    scale: Scale
+    scales: Scales
+    """Of the meshes."""
     links: Ragged
     """Smooth edges of each polygon."""
     free: Flags
     """(P,) in no region yet; written as regions are chosen."""
 
     @classmethod
-    def of(cls, patchwork: Patchwork, scale: Scale) -> Territory:
+    def of(cls, patchwork: Patchwork, scales: Scales) -> Territory:
         """The territory of a patchwork, all of it free."""
         edges = np.flatnonzero(patchwork.smooth)
         rows = np.r_[patchwork.a[edges], patchwork.b[edges]]
         links = Ragged(rows, np.r_[edges, edges], patchwork.count)
-        return cls(patchwork, scale, links, np.ones(patchwork.count, bool))
+        return cls(patchwork, scales, links, np.ones(patchwork.count, bool))
+
+    def scales_of(self, batch: Batch) -> Scales:
+        """(R,) of the mesh of each region."""
+        return self.scales.at(batch.mesh)
 
     @property
     def smooth(self) -> Ints:
@@ -44,11 +49,11 @@ class Territory:
     def neighbours(self, keys: Ints) -> Ints:
         """Keys of the free polygons one smooth link away from those of the `keys`, each once, by region."""
         work = self.patchwork
-        polygon = keys % work.count
+        region, polygon = parted(keys, work.count)
         owner, edge = self.links.expand(polygon)
         target = work.other(edge, polygon[owner])
         open_ = self.free[target]
-        return distinct((keys // work.count)[owner][open_] * np.int64(work.count) + target[open_])
+        return distinct(region[owner[open_]] * np.int64(work.count) + target[open_])
 
     def spread(self, surfaces: Candidates, batch: Batch, reach: Array, layers: int) -> Batch:
         """The batch with up to `layers` layers of conforming neighbours added."""

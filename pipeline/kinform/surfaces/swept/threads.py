@@ -9,6 +9,7 @@ what is left (see `slippage`); a least squares over the polylines then gives axi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -91,8 +92,8 @@ def _distinct(candidates: Sequence[tuple[Array, Array]]) -> list[tuple[Array, Ar
     for axis, point in candidates:
         for other, through in lines:
             if (
-                np.linalg.norm(cross(axis, other)) < constants.SAME_LINE
-                and np.linalg.norm(cross(point - through, other)) < constants.SAME_LINE
+                math.hypot(*cross(axis, other).tolist()) < constants.SAME_LINE
+                and math.hypot(*cross(point - through, other).tolist()) < constants.SAME_LINE
             ):
                 break
         else:
