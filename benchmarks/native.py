@@ -45,7 +45,7 @@ def ordinary():
         "Counts": types.Array(whole, 1, "C"), "Table": table, "Index": index, "Ints": types.UniTuple(index, 10),
         "Nums": types.UniTuple(table, 12), "Work": types.UniTuple(table, 12),
     }  # fmt: skip
-    copy, made = compiled._Copy("ordinary"), {}
+    copy, made = compiled._Copy(), {}
     config = numba.config
     config.OPT = type(config.OPT)(1)
     config.LOOP_VECTORIZE = config.SLP_VECTORIZE = 0
@@ -59,7 +59,7 @@ def ordinary():
                 # outputs are a pair of tables
                 taken = (*taken[:-1], types.UniTuple(table, 2))
             keep = function in compiled._UNITS
-            made[name] = numba.jit(taken, cache=keep, **options)(copy.of(function))
+            made[name] = numba.jit(taken, cache=keep, **options)(copy.of(function, "ordinary"))
             copy.mean(function, made[name])
     return made["derivative"]
 
@@ -85,7 +85,7 @@ def one(way: str) -> None:
     from kinform.simulation.kernel.calls import engine
     from kinform.simulation.solver.run_state import Run
 
-    evaluate = ordinary() if way == "arrays" else engine(compiled=True)
+    evaluate = ordinary() if way == "arrays" else engine(compiled=True, articulated_bodies=True)
     loaded = time.process_time()
     out = {"loaded": loaded}
     begin, runs = Run.begin, []

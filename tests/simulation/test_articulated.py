@@ -10,7 +10,7 @@ from support.port_models import DOWN, Model, bricard, chain, four_bars, hung_cha
 from kinform.behaviour import MotionDrive, Sine, SpringDamper
 from kinform.simulation import Course, SolverSettings, simulate_system
 from kinform.simulation.kernel import choice, layout
-from kinform.simulation.kernel.calls import engine
+from kinform.simulation.kernel.calls import Engine, by_articulated_bodies, engine, is_loaded
 from kinform.simulation.mechanism import kernel_tables
 from kinform.simulation.solver.run_state import Run
 
@@ -127,6 +127,24 @@ def test_compiled_articulated_bodies_give_the_same_bits():
         run.derivative(0.0, y, slopes)
         runs[compiled] = np.concatenate([y, slopes])
     assert runs[False].tobytes() == runs[True].tobytes()
+
+
+def test_the_build_without_articulated_bodies_leaves_tables_that_want_them_to_the_other(monkeypatch):
+    caught, begin = [], Run.begin
+    monkeypatch.setattr(Run, "begin", lambda run: caught.append(run) or begin(run))
+    monkeypatch.setattr(Engine, "loaded", set())
+    small = engine(compiled=True)
+    assert Engine.loaded == {False}
+    slopes = []
+    for links in (3, 60):
+        simulate_system(chain(links, held=True).system(), Course(1e-6, 1e-6, DOWN), settings=SolverSettings())
+        run = caught[-1]
+        assert by_articulated_bodies(run.dynamics.tables) == (links == 60) == (not is_loaded(run.dynamics.tables))
+        for run.engine in (engine(compiled=False), small):
+            slopes.append(np.zeros_like(run.y))
+            run.derivative(0.0, run.y.copy(), slopes[-1])
+        assert slopes[-1].tobytes() == slopes[-2].tobytes()
+    assert Engine.loaded == {False, True}
 
 
 def test_the_method_has_the_numbers_of_scipy():

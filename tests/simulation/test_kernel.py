@@ -80,7 +80,7 @@ MODELS = {
 def test_compiled_and_plain_functions_give_the_same_bits(name, monkeypatch):
     make, settings, duration = MODELS[name]
     runs = []
-    for plain, loaded in ((10**9, False), (0, True)):
+    for plain, loaded in ((10**9, set()), (0, {False})):
         monkeypatch.setattr(dynamic, "PLAIN", plain)
         monkeypatch.setattr(Engine, "loaded", loaded)
         runs.append(simulate_system(make().system(), Course(duration, 0.02, DOWN), settings=settings))
@@ -95,19 +95,19 @@ def compilations(monkeypatch):
     """How often the driver of runs asks for the compiled functions, which it does not get."""
     asked = []
 
-    def made(*, compiled):
+    def made(*, compiled, articulated_bodies=False):
         asked.extend([True] * compiled)
         return engine(compiled=False)
 
     monkeypatch.setattr(dynamic, "engine", made)
-    monkeypatch.setattr(Engine, "loaded", False)
+    monkeypatch.setattr(Engine, "loaded", set())
     return asked
 
 
 @pytest.mark.parametrize("ready", [False, True])
 @pytest.mark.parametrize("drives", [False, True])
 def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations, derive_design, monkeypatch):
-    monkeypatch.setattr(dynamic, "ready", lambda: ready)
+    monkeypatch.setattr(dynamic, "ready", lambda tables: ready)
     found = derive_design(FIXTURES / "seekers" / "seeker_2dof" / "seeker_2dof.toml")
     function = found.assembly.function if drives else replace(found.assembly.function, drives=())
     assembly = replace(found.assembly, simulation=SimulationRequest(duration=10.0, step=0.01), function=function)
@@ -117,7 +117,7 @@ def test_ten_seconds_of_the_seeker_need_no_compiler(ready, drives, compilations,
 
 
 def test_a_run_of_few_steps_and_many_outputs_is_compiled(compilations, monkeypatch):
-    monkeypatch.setattr(dynamic, "ready", lambda: True)
+    monkeypatch.setattr(dynamic, "ready", lambda tables: True)
     monkeypatch.setattr(dynamic, "PLAIN", 3000)
     for step, wanted in ((0.01, False), (0.0002, True)):
         assert simulate_system(hung().system(), Course(0.5, step, DOWN)).status == "done"

@@ -43,20 +43,18 @@ def plainly(unit: Callable[..., Any], tables: Tables, *arguments: Any) -> Any:
 
 @dataclass(frozen=True)
 class Engine:
-    """The units of the kernel, compiled or not, by name."""
+    """The units of the kernel, compiled or not."""
 
     compiled: bool
-    _units: Any
-    loaded: ClassVar[bool] = False
-    """Whether this process has the compiled functions already."""
+    loaded: ClassVar[set[bool]] = set()
+    """Which of the compiled builds this process has already: with articulated bodies, without."""
 
     def call(self, name: str, tables: Tables, *arguments: Any) -> Any:
         """What the unit of that name returns for the tables and the arguments, which it changes."""
-        unit = getattr(self._units, name)
         if not self.compiled:
-            return plainly(unit, tables, *arguments)
+            return plainly(getattr(_PLAIN, name), tables, *arguments)
         held = [addresses(a) if isinstance(a, tuple) else a for a in arguments]
-        return unit(
+        return getattr(_units(by_articulated_bodies(tables)), name)(
             *(address(list_) for list_ in tables.addresses),
             *(address(a) if isinstance(a, np.ndarray) else a for a in held),
         )
@@ -68,19 +66,36 @@ _PLAIN = SimpleNamespace(
 """The units that runs call, as they are."""
 
 
-def ready() -> bool:
+def by_articulated_bodies(tables: Tables) -> bool:
+    """Whether the tables say that articulated bodies are the way to solve, now."""
+    return bool(tables.ints[layout.MODE][layout.WAY][0] == 1)
+
+
+def is_loaded(tables: Tables) -> bool:
+    """Whether this process has the compiled functions for the tables already."""
+    return True in Engine.loaded or (False in Engine.loaded and not by_articulated_bodies(tables))
+
+
+def ready(tables: Tables) -> bool:
     """Whether the compiled functions can be had within about a second."""
     from kinform.simulation.kernel.compiled import is_cached
 
-    return Engine.loaded or is_cached()
+    return is_loaded(tables) or is_cached(articulated_bodies=by_articulated_bodies(tables))
 
 
-def engine(*, compiled: bool) -> Engine:
-    """The kernel's units, compiled (from numba's cache where there is one) or not."""
-    if not compiled:
-        return Engine(False, _PLAIN)
+def _units(articulated_bodies: bool) -> SimpleNamespace:
+    """The compiled units of a build; that with articulated bodies serves for both."""
     from kinform.simulation.kernel.compiled import compiled_units
 
-    units = compiled_units()
-    Engine.loaded = True
-    return Engine(True, units)
+    build = articulated_bodies or True in Engine.loaded
+    units = compiled_units(articulated_bodies=build)
+    Engine.loaded.add(build)
+    return units
+
+
+def engine(*, compiled: bool, articulated_bodies: bool = False) -> Engine:
+    """The kernel's units, as they are or compiled (from numba's cache where there is one). The other build is compiled
+    when tables need it."""
+    if compiled:
+        _units(articulated_bodies)
+    return Engine(compiled)

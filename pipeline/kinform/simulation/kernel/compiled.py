@@ -4,6 +4,10 @@ Units are functions that others call by name, as C does: each is compiled once a
 other functions are compiled into the units that use them, when such a unit has to be compiled. The names
 under which numba caches units carry a digest of all the kernel's source: a change of one function
 compiles all of them afresh.
+
+Few mechanisms are so large that articulated bodies are the way to solve (`choice.way`), and a fifth of the time of
+compiling went into them. So there are two builds: one that lacks them, and one that has all. What lies below them is in
+both, and compiled once. `calls.Engine` takes the second where the tables say so.
 """
 
 from __future__ import annotations
@@ -37,6 +41,8 @@ from kinform.simulation.kernel import (
 
 _MODULES = (vectors, motion, masses, forces, loops, articulated, reduction, equations, crossings, steps, explicit)
 """Functions after those that they call."""
+_BELOW = (vectors, motion, masses, forces, loops)
+"""Those that call nothing of articulated bodies, also not by others: the same in both builds."""
 _UNITS = (
     motion.place_links, motion.twist_links, masses.inertias, masses.mass_matrix, loops.gather, loops.eliminate,
     articulated.refer, articulated.articulate, articulated.resist, articulated.respond, articulated.settle_tree,
@@ -60,14 +66,13 @@ class _Copy:
     """The kernel's functions in a world of their own, where the names of those that they call can be given
     other meanings."""
 
-    def __init__(self, digest: str):
-        self._digest = digest
+    def __init__(self) -> None:
         self._scopes = {module.__name__: dict(vars(module)) for module in _MODULES}
 
-    def of(self, function: Callable[..., Any]) -> Any:
+    def of(self, function: Callable[..., Any], mark: str) -> Any:
         made = types.FunctionType(function.__code__, self._scopes[function.__module__], function.__name__)
         made.__module__ = function.__module__
-        made.__qualname__ = f"{function.__name__}_{self._digest}"
+        made.__qualname__ = f"{function.__name__}_{mark}"
         return made
 
     def mean(self, function: Callable[..., Any], other: Any) -> None:
@@ -95,8 +100,9 @@ def _kinds() -> dict[str, tuple[Any, Any]]:
 
 
 @cache
-def compiled_units() -> types.SimpleNamespace:
-    """The units, compiled; where they take arrays, they take addresses (`tables`)."""
+def compiled_units(*, articulated_bodies: bool) -> types.SimpleNamespace:
+    """The units, compiled, with articulated bodies or without; where they take arrays, they take addresses
+    (`tables`)."""
     import numba
 
     config: Any = numba.config
@@ -108,7 +114,7 @@ def compiled_units() -> types.SimpleNamespace:
     config.OPT = type(config.OPT)(min(config.OPT, 1))
     config.LOOP_VECTORIZE = config.SLP_VECTORIZE = 0
     try:
-        return _compile(numba)
+        return _compile(numba, articulated_bodies)
     finally:
         for name, value in before.items():
             setattr(config, name, value)
@@ -116,41 +122,57 @@ def compiled_units() -> types.SimpleNamespace:
             gc.enable()
 
 
-def _compile(numba: Any) -> types.SimpleNamespace:
+def _mark(module: types.ModuleType, articulated_bodies: bool) -> str:
+    """What tells the units of a module in a build from others of their names."""
+    return f"{_digest()}{'' if module in _BELOW else 'a' if articulated_bodies else 'b'}"
+
+
+def _compile(numba: Any, articulated_bodies: bool) -> types.SimpleNamespace:
     """Functions in the order of the modules, so that each finds those that it calls."""
     from llvmlite import binding
 
-    digest, kinds, cached = _digest(), _kinds(), is_cached()
-    copy, made = _Copy(digest), types.SimpleNamespace()
+    kinds, cached = _kinds(), is_cached(articulated_bodies=articulated_bodies)
+    copy, made = _Copy(), types.SimpleNamespace()
     options = {"nopython": True, "error_model": "numpy", "no_rewrites": True, "_nrt": False}
     for module in _MODULES:
+        mark, lacking = _mark(module, articulated_bodies), module is articulated and not articulated_bodies
         for name, function in list(vars(module).items()):
             if not inspect.isfunction(function) or function.__module__ != module.__name__:
                 continue
             shape = inspect.signature(function)
             taken = [kinds[argument.annotation] for argument in shape.parameters.values()]
             if function not in _UNITS:
+                if lacking:
+                    continue
                 # Without a signature nothing is compiled until a unit asks for it, which none in the cache does.
                 signature = None if cached else tuple(kind for kind, _ in taken)
                 inner = numba.jit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
-                copy.mean(function, inner(copy.of(function)))
+                copy.mean(function, inner(copy.of(function, mark)))
                 continue
             given = kinds[shape.return_annotation]
-            signature = given[0](*(kind for kind, _ in taken))
-            unit, symbol = _unit(numba, signature, copy.of(function), options), f"kinform_{name}_{digest}"
-            binding.add_symbol(symbol, unit.address)
+            signature, symbol = given[0](*(kind for kind, _ in taken)), f"kinform_{name}_{mark}"
             copy.mean(function, numba.types.ExternalFunction(symbol, signature))
+            if lacking:
+                binding.add_symbol(symbol, _nowhere())
+                continue
+            unit = _unit(numba, signature, copy.of(function, mark), options)
+            binding.add_symbol(symbol, unit.address)
             setattr(made, name, ctypes.CFUNCTYPE(given[1], *(kind for _, kind in taken))(unit.address))
     return made
 
 
-def is_cached() -> bool:
-    """Whether numba's cache holds the kernel compiled: where its variable says, else beside the kernel
-    or, where that cannot be written, in the user's own."""
+def _nowhere() -> int:
+    """Where a build leads that calls what it lacks: to the end of the process, which is better than a wrong number."""
+    return ctypes.cast(ctypes.pythonapi.Py_FatalError, ctypes.c_void_p).value or 0
+
+
+def is_cached(*, articulated_bodies: bool = False) -> bool:
+    """Whether numba's cache holds the kernel compiled, with articulated bodies or without: where its variable says,
+    else beside the kernel or, where that cannot be written, in the user's own."""
     named = os.environ.get("NUMBA_CACHE_DIR")
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "numba"
     places = [Path(named)] if named else [Path(__file__).parent / "__pycache__", user]
-    pattern = f"*.advance_{_digest()}-*.nbi"
+    pattern = f"*.advance_{_mark(explicit, articulated_bodies)}-*.nbi"
     return any(any(place.glob(f"{depth}{pattern}")) for place in places for depth in ("", "*/"))
 
 

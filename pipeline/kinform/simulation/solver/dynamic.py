@@ -12,7 +12,7 @@ import numpy as np
 from kinform.model.arrays import Array
 from kinform.simulation.constants import LARGE, LONGER, LOOK, PLAIN, REPORTS, SHOWN, STALL, STALLED_BUDGETS, UNREADY
 from kinform.simulation.kernel import layout
-from kinform.simulation.kernel.calls import Engine, engine, ready
+from kinform.simulation.kernel.calls import by_articulated_bodies, engine, is_loaded, ready
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.settings import Conduct
 from kinform.simulation.solver.implicit import is_stiff, run_implicit
@@ -52,7 +52,7 @@ class _Driver:
         self.contact = Contact(run)
         self.looked = 0
         self.mark = (0, float(run.times[0]))
-        share = PLAIN if ready() else PLAIN * UNREADY
+        share = PLAIN if ready(run.dynamics.tables) else PLAIN * UNREADY
         self.plain = max(1, share // len(run.dynamics.mechanism.parent))
         """Evaluations."""
         if run.dynamics.mechanism.rates * run.dynamics.rank > LARGE:
@@ -63,7 +63,7 @@ class _Driver:
         run = self.run
         run.open_stretch(begin, end)
         if run.settings.method == "implicit":
-            run.engine = engine(compiled=Engine.loaded)
+            run.engine = engine(compiled=is_loaded(run.dynamics.tables))
             return run_implicit(run, self.contact, self._report)
         while True:
             status = self._advance()
@@ -90,7 +90,7 @@ class _Driver:
     def _advance(self) -> int:
         """One call of the kernel, compiled once the run has shown to be long."""
         run, tally = self.run, self.run.tally
-        if not run.engine.compiled and (Engine.loaded or self._long()):
+        if not run.engine.compiled and (is_loaded(run.dynamics.tables) or self._long()):
             self._compile()
         left = run.settings.steps - int(tally[layout.STEPS])
         tally[layout.BUDGET] = 1 if self.contact.holding else min(left, LOOK if run.engine.compiled else SHOWN)
@@ -125,9 +125,10 @@ class _Driver:
         return bool(self.mark[1] - t < share * (run.times[-1] - run.times[0]))
 
     def _compile(self) -> None:
-        if self.say is not None and not ready():
+        tables = self.run.dynamics.tables
+        if self.say is not None and not ready(tables):
             self.say("compiling the equations of motion: some seconds, once on this machine")
-        self.run.engine = engine(compiled=True)
+        self.run.engine = engine(compiled=True, articulated_bodies=by_articulated_bodies(tables))
 
     def _problem(self, status: int) -> str:
         """Why the run cannot go on, or "" when it can."""
