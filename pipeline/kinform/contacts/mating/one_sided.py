@@ -10,6 +10,9 @@ pairs with rows of their own: they are not made into patches here.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import groupby
+from operator import itemgetter
 
 import numpy as np
 
@@ -18,7 +21,8 @@ from kinform.contacts.mating.charts import Chart, ConeChart, CylinderChart, Plan
 from kinform.contacts.mating.mate import Mate
 from kinform.contacts.search.pair_view import PairView, SurfacePair
 from kinform.foundation.algebra.vectors import dot
-from kinform.model.arrays import Array, Flags
+from kinform.foundation.meshes.boxes import facet_boxes
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.model.contacts import Patch
 from kinform.model.surfaces import KINDS
 
@@ -28,11 +32,34 @@ def one_sided_mates(pair: PairView, overlap: Flags) -> list[Mate]:
     mates: list[Mate] = []
     # a gives the normals, then b
     for view, flags, first in ((pair, overlap, True), (pair.swapped, overlap.T, False)):
-        for row, column in _givers_and_takers(view, flags, first):
-            mate = _mate(view, view.surfaces(row, column), first)
+        for row, column, facets in _beside(view, _givers_and_takers(view, flags, first)):
+            mate = _mate(view, view.surfaces(row, column), facets, first)
             if mate is not None:
                 mates.append(mate)
     return mates
+
+
+def _beside(view: PairView, pairs: list[tuple[int, int]]) -> Iterator[tuple[int, int, Ints]]:
+    """The pairs of a giver with a taker, sorted, of which facets of the taker lie in the giver's box, with these: all
+    takers of a giver at once, for most of them have none there."""
+    giver, taker = view.near
+    columns = sorted({column for _, column in pairs})
+    if not columns:
+        return
+    every = np.concatenate([taker.facets[column] for column in columns])
+    low, high = facet_boxes(view.b.vertices, view.b.faces[every])
+    ends = np.cumsum([len(taker.facets[column]) for column in columns]).tolist()
+    place = {column: (start, end) for column, start, end in zip(columns, [0, *ends], ends, strict=False)}
+    for row, group in groupby(pairs, key=itemgetter(0)):
+        takers = [column for _, column in group]
+        at = np.concatenate([np.arange(*place[column]) for column in takers])
+        bounds = giver.lows[row] - view.tolerance, giver.highs[row] + view.tolerance
+        inside = at[((low[at] <= bounds[1]) & (high[at] >= bounds[0])).all(axis=1)]
+        first = np.searchsorted(inside, [place[column][0] for column in takers]).tolist()
+        last = np.searchsorted(inside, [place[column][1] for column in takers]).tolist()
+        for column, i, j in zip(takers, first, last, strict=True):
+            if i < j:
+                yield row, column, every[inside[i:j]]
 
 
 def without_continuations(pair: PairView, patches: list[Patch]) -> list[Patch]:
@@ -95,10 +122,11 @@ def _chart(surfaces: SurfacePair) -> Chart:
     return ConeChart(axis, point, base, half, middle)
 
 
-def _mate(view: PairView, surfaces: SurfacePair, first: bool) -> Mate | None:
-    """The mate of a surface of the giver, which is the `first` part of the pair or not, with what rests on it."""
+def _mate(view: PairView, surfaces: SurfacePair, facets: Ints, first: bool) -> Mate | None:
+    """The mate of a surface of the giver, which is the `first` part of the pair or not, with what of these facets of
+    the taker rests on it."""
     chart, side = _chart(surfaces), surfaces.sides[0]
-    resting = _resting(view, surfaces, chart)
+    resting = _resting(view, surfaces, chart, facets)
     if not len(resting):
         return None
     giver = view.a.vertices[view.a.faces[surfaces.facets[0]]]
@@ -123,13 +151,10 @@ def _mate(view: PairView, surfaces: SurfacePair, first: bool) -> Mate | None:
     )
 
 
-def _resting(view: PairView, surfaces: SurfacePair, chart: Chart) -> Array:
-    """Facets (n, 3, 3) of the taker's surface that face the giver's, cut to what is within the tolerance."""
-    giver, taker, facets = surfaces.a, view.b, surfaces.facets[1]
+def _resting(view: PairView, surfaces: SurfacePair, chart: Chart, facets: Ints) -> Array:
+    """Those (n, 3, 3) of facets of the taker's surface that face the giver's, cut to what is within the tolerance."""
+    taker = view.b
     corners = taker.vertices[taker.faces[facets]]
-    low, high = giver.lows[surfaces.row] - view.tolerance, giver.highs[surfaces.row] + view.tolerance
-    within = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(axis=1)
-    facets, corners = facets[within], corners[within]
     normals = surfaces.sides[0] * chart.normals(corners.mean(axis=1))
     corners = corners[dot(normals, taker.normals(facets)) < FACING_OPPOSED]
     if not len(corners):
@@ -142,6 +167,8 @@ def _resting(view: PairView, surfaces: SurfacePair, chart: Chart) -> Array:
 def _below(corners: Array, values: Array, limit: float) -> tuple[Array, Array]:
     """The parts of triangles (n, 3, 3) where values (n, 3), linear between the corners, are ≤ limit."""
     inside = values <= limit
+    if inside.all():
+        return corners, values
     count = inside.sum(axis=1)
     whole, whole_values = corners[count == 3], values[count == 3]
     pieces, piece_values = [whole], [whole_values]

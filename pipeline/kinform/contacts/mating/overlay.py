@@ -239,6 +239,6 @@ def overlay(chart: Chart, first: Array, second: Array, tolerance: float, thin: f
     corners = corners[np.abs(_signed(corners)) > 0.0]
     # Bins are counted from the region's own corner, so that they move with it.
     place = np.floor((corners.mean(axis=1) - corners.min(axis=(0, 1))) / size).astype(np.int64)
-    _, bins = np.unique(place, axis=0, return_inverse=True)
+    _, bins = np.unique(place[:, 0] * (place[:, 1].max() + 1) + place[:, 1], return_inverse=True)
     rim = _rim([polygon for polygons in pieces for polygon in polygons], flat)
     return Cells(corners * tolerance, bins.ravel().astype(np.int64), rim * tolerance, tolerance, narrow)

@@ -125,16 +125,31 @@ def _along(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, ridges: _Ridges) -> 
     wide = np.flatnonzero(np.bincount(group) >= constants.RING_SIDES)
     weight = np.bincount(of_edge, ridges.length, int(group.max()) + 1)[wide]
     wide = wide[np.argsort(-weight, kind="stable")[: constants.MOST_RINGS]]
-    found = (_ring(mesh, surfaces, piece, pieces[group == k], ridges.where(of_edge == k)) for k in np.sort(wide))
+    wide = np.sort(wide)
+    wide = wide[_closed(number, of_edge, len(pieces))[wide]]
+    of_ring, of_piece = (
+        np.split(np.argsort(g, kind="stable"), np.cumsum(np.bincount(g))[:-1]) for g in (of_edge, group)
+    )
+    found = (_ring(mesh, surfaces, piece, pieces[of_piece[k]], ridges.where(of_ring[k])) for k in wide.tolist())
     return [ring for ring in found if ring is not None]
+
+
+def _closed(number: Ints, of_edge: Ints, count: int) -> Flags:
+    """(groups,) whether so many pieces of each group meet, by the pairs (e, 2) that do, that their corners can tell a
+    circle: two lines are on many circles, and three of an open row are on one whatever they are."""
+    key = np.sort(number.min(axis=1) * np.int64(count) + number.max(axis=1))
+    first = np.ones(len(key), bool)
+    np.not_equal(key[1:], key[:-1], out=first[1:])
+    group = np.zeros(count, np.int64)
+    group[number[:, 0]] = group[number[:, 1]] = of_edge
+    total = int(of_edge.max()) + 1
+    met = np.bincount(group[key[first] // count], minlength=total)
+    size = np.bincount(group, minlength=total)
+    return np.asarray((met > 3) | ((met == 3) & (size <= 3)))
 
 
 def _ring(mesh: Mesh, surfaces: MeshSurfaces, piece: Ints, pieces: Ints, ridges: _Ridges) -> Ring | None:
     """The ring of these pieces of planes, unless their corners are on no circle or do not go round it."""
-    met = len(np.unique(np.sort(ridges.pieces, axis=1), axis=0))
-    if met < 3 or (met == 3 and len(pieces) > 3):
-        # two lines are on many circles, and three of an open row are on one whatever they are
-        return None
     sense = np.sign(ridges.direction @ ridges.direction[0])
     axis = canonical((sense * ridges.length) @ ridges.direction)
     corners = mesh.vertices[np.unique(ridges.ends)]
