@@ -65,7 +65,7 @@ $(VENV)/.validators: validators/requirements.lock validators/package-lock.json M
 COMPILE = $(BIN)/pip-compile --quiet --strip-extras --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header
 lock:
 	$(BIN)/python -m pip install --quiet pip-tools
-	$(COMPILE) --extra dev --output-file requirements-dev.lock pyproject.toml
+	$(COMPILE) --extra dev --extra batch --output-file requirements-dev.lock pyproject.toml
 	$(COMPILE) --constraint requirements-dev.lock --output-file validators/requirements.lock validators/requirements.in
 	cd validators && npm install --package-lock-only --omit-lockfile-registry-resolved --no-audit --no-fund --silent
 

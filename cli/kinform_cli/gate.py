@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +16,6 @@ from kinform_cli.text import command, ground_note
 if TYPE_CHECKING:
     from kinform.api import Outcome
     from kinform.design import Design
-    from kinform.model.findings import Finding
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,9 @@ class Gate:
         from kinform import reports
 
         if self.manifest_folder is not None and format in (FindingsFormat.sarif, FindingsFormat.github):
-            design = _seen_from_here(design, self.manifest_folder)
+            from kinform.reports.from_here import seen_from_here
+
+            design = seen_from_here(design, self.manifest_folder)
         assert design.report is not None
         return reports.render(
             design.report, design, format.value, fail_on=self.fail_on.value, run=run, width=console.columns()
@@ -89,20 +89,3 @@ def next_look(results: Path) -> str:
     """The commands that show more of these results."""
     page = command("kinform", "report", results, "-o", results.with_suffix(".html"))
     return f"next: {page}   (one page to look at)\n  or: {command('kinform', 'show', results)}"
-
-
-def _seen_from_here(design: Design, folder: Path) -> Design:
-    """The design with every file of its findings named from the present folder."""
-    report, assembly = design.report, design.assembly
-    assert report is not None
-
-    def place(file: str) -> str:
-        return Path(os.path.relpath(folder / file)).as_posix()
-
-    def from_here(finding: Finding) -> Finding:
-        return finding if finding.file is None else replace(finding, file=place(finding.file))
-
-    if assembly.source.file:
-        assembly = replace(assembly, source=replace(assembly.source, file=place(assembly.source.file)))
-    report = replace(report, findings=tuple(map(from_here, report.findings)))
-    return replace(design, assembly=assembly, report=report)

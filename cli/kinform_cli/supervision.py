@@ -43,18 +43,10 @@ def divide() -> None:
     if worker:
         _watch(worker, awaited)
     if os.getpid() != watching:
-        _end_with(watching)
+        from kinform.foundation.orphans import end_with  # what the watching process does without
+
+        end_with(watching)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _end_with(watching: int) -> None:
-    """Have the system kill this process when the one that watches it is gone, however that was ended."""
-    import ctypes
-
-    set_death_signal = 1  # PR_SET_PDEATHSIG
-    ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL, 0, 0, 0)
-    if os.getppid() != watching:  # already
-        os._exit(_FAILED)
 
 
 def _watch(worker: int, awaited: set[signal.Signals]) -> NoReturn:

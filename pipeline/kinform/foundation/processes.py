@@ -139,7 +139,7 @@ def in_own_process(function: Callable[[], Result]) -> Result:
         raise
     _, status = os.waitpid(child, 0)
     if status != 0:
-        raise Crash(_cause(status))
+        raise Crash(cause_of(status))
     succeeded, value = pickle.loads(answer)
     if not succeeded:
         raise value
@@ -165,7 +165,7 @@ def _answer(function: Callable[[], Any], reading: int, writing: int) -> None:
         os._exit(code)
 
 
-def _cause(status: int) -> str:
+def cause_of(status: int) -> str:
     """What ended a process, from the status of waitpid."""
     code = os.waitstatus_to_exitcode(status)
     return f"signal {-code} ({signal.Signals(-code).name})" if code < 0 else f"exit code {code}"

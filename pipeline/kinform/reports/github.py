@@ -26,14 +26,15 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
 def _finding(finding: Finding, manifest: str, units: str) -> str:
     title = f"{finding.code} {finding.rule}: {', '.join(map(one_line, finding.subject))}"
     text = "\n".join([finding.message, *(f"{key}: {value}" for key, value in details(finding, units).items())])
-    return _command(_COMMANDS[finding.severity], finding.file or manifest, finding.line, title, text)
+    return command(_COMMANDS[finding.severity], finding.file or manifest, finding.line, title, text)
 
 
 def _undecided(rule: RuleOutcome, manifest: str) -> str:
-    return _command("warning", manifest, None, f"{rule.code} {rule.rule}: could not decide", rule.reason)
+    return command("warning", manifest, None, f"{rule.code} {rule.rule}: could not decide", rule.reason)
 
 
-def _command(name: str, file: str, line: int | None, title: str, text: str) -> str:
+def command(name: str, file: str, line: int | None, title: str, text: str) -> str:
+    """One workflow command, with its place."""
     properties = {"file": file, "line": None if line is None else str(line), "title": title}
     stated = ",".join(f"{key}={_property(value)}" for key, value in properties.items() if value)
     return f"::{name} {stated}::{_data(text)}"

@@ -89,7 +89,7 @@ def _failed(finding: Finding, index: Mapping[str, int], manifest: str) -> dict[s
             "ruleIndex": index.get(finding.code),
             "level": finding.severity,
             "message": _message(f"{', '.join(finding.subject)}: {finding.message}"),
-            "locations": _locations(finding.file or manifest, finding.line, finding.subject),
+            "locations": locations(finding.file or manifest, finding.line, finding.subject),
             "partialFingerprints": {"codeAndSubject/v1": _key(finding)},
             "properties": _present(details),
         }
@@ -114,7 +114,7 @@ def _absent(code: str, subject: Sequence[str], index: Mapping[str, int]) -> dict
             "kind": "pass",
             "level": "none",
             "message": _message(f"{', '.join(subject)}: no longer found"),
-            "locations": _locations("", None, subject),
+            "locations": locations("", None, subject),
             "partialFingerprints": {"codeAndSubject/v1": _hashed(code, subject)},
             "baselineState": "absent",
         }
@@ -129,7 +129,7 @@ def _open(rule: RuleOutcome, index: Mapping[str, int], manifest: str) -> dict[st
             "kind": "open",
             "level": "none",
             "message": _message(f"{rule.rule} could not decide: {rule.reason}"),
-            "locations": _locations(manifest, None, ()),
+            "locations": locations(manifest, None, ()),
         }
     )
 
@@ -139,7 +139,7 @@ def _message(text: str) -> dict[str, str]:
     return {"text": text.replace("{", "{{").replace("}", "}}")}
 
 
-def _locations(file: str, line: int | None, subject: Sequence[str]) -> list[dict[str, Any]]:
+def locations(file: str, line: int | None, subject: Sequence[str]) -> list[dict[str, Any]]:
     """One location: the file (a relative URI) with its line, and the subjects by name."""
     physical: dict[str, Any] = {}
     if file:

@@ -332,6 +332,27 @@ def read_if_current(path: str | Path, manifest: Path, *, allow_outside: bool) ->
         return None
 
 
+def read_gist(path: str | Path) -> Design:
+    """What findings are told with, of results as they are: the assembly without parts, the kinematics with its bodies
+    and mobility alone; of fingerprints lineage and files. Raises ResultsError as `read` does."""
+    from kinform.model.kinematics import only_bodies
+    from kinform.results.groups import joints, mobility
+
+    with opened(path) as file:
+        try:
+            for name in file.groups():
+                check_group(file, name)
+            gist = assembly.read_header(file.group("assembly"))
+            contents = assembly.read_contents(file.group("assembly"))
+            bodies = only_bodies(joints.read_bodies(file.group("joints")))
+            kinematics = dataclasses.replace(bodies, mobility=mobility.read(file.group("mobility")))
+            report = _codec("findings").read(file.group("findings"))
+        except NONSENSE as error:
+            raise not_whole(path, f"the results file is damaged ({error})") from error
+        marks = Fingerprints(lineage=_marks(file, "lineage"), files=contents)
+        return Design(gist, kinematics=kinematics, report=report, fingerprints=marks)
+
+
 def _bodies(file: HeldGroup, gist: Assembly) -> Kinematics | None:
     """The bodies, where the ground is one that kinform chose and findings are told with a note about it."""
     if gist.ground is not None:

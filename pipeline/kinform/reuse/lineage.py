@@ -33,6 +33,12 @@ def following(stage: Stage, previous: str, asked: str | None = None) -> str:
     return digest(stage.name, versions, asked, previous) if previous else ""
 
 
+def of_code() -> str:
+    """What tells the code of all stages from that of other versions."""
+    versions = [fingerprints.versions_of(kind) for stage in STAGES for kind in stage.code]
+    return digest("code", __version__, fingerprints.versions_of("assembly"), versions)
+
+
 def before(stage: Stage) -> str:
     """The name of the stage before."""
     place = STAGES.index(stage)

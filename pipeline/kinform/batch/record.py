@@ -1,0 +1,126 @@
+"""What a batch has done: a row a design, kept as JSON beside the results, so that the next one knows by hashes alone
+what needs nothing."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from kinform.errors import InputError, Problem
+from kinform.model.findings import SEVERITIES
+from kinform.results import replace_file
+
+SCHEMA = "kinform/batch-record/1"
+NAME = "batch.json"
+"""Of the file in the folder of results."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is known of one design."""
+
+    name: str
+    """Relative to the folder that all paths have in common."""
+    source: str
+    """As messages show it."""
+    results: str
+    """Relative to the folder of results."""
+    assembly: str = ""
+    mobility: int | None = None
+    """Effective."""
+    counts: Mapping[str, int] = field(default_factory=dict)
+    """Findings by severity."""
+    ran: int = 0
+    inconclusive: int = 0
+    seconds: float = 0.0
+    tries: int = 1
+    failure: str = ""
+    """Why there are no results: worker died, time limit, memory limit, input, internal error; "" where there are."""
+    problems: tuple[Problem, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What its run said besides."""
+    lineage: str = ""
+    """What the results were made of, as one hash; "" where that is not known."""
+    files: Mapping[str, str] = field(default_factory=dict)
+    """SHA-256 of every file that was read, relative to the design's folder."""
+    digest: str = ""
+    """SHA-256 of the results file."""
+    unchanged: bool = False
+    """Whether nothing had to be done."""
+
+    def code(self, fail_on: str = "error") -> int:
+        """The exit code that `kinform run` would have."""
+        if self.failure:
+            return 2
+        failing = SEVERITIES[SEVERITIES.index(fail_on) :]
+        if any(self.counts.get(severity, 0) for severity in failing):
+            return 1
+        return 2 if self.ran == 0 or self.inconclusive else 0
+
+    def verdict(self, fail_on: str = "error") -> str:
+        """In a few words."""
+        if self.failure:
+            return f"not verified: {self.failure}" if self.failure != "input" else "not verified: input"
+        return ("consistent", "inconsistent", "not verified")[self.code(fail_on)]
+
+
+@dataclass
+class Record:
+    """Rows by name of the design."""
+
+    rows: dict[str, Row] = field(default_factory=dict)
+
+
+def read(folder: Path) -> Record:
+    """The record of a folder of results; an empty one where there is none, or it makes no sense: then all is looked at.
+
+    Raises InputError where another kind of file stands in its place.
+    """
+    path = folder / NAME
+    if not path.exists():
+        return Record()
+    other = Problem("is not the record of a batch, and would be overwritten", str(path), None, "name another folder")
+    try:
+        whole = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise InputError([other]) from None
+    if not isinstance(whole, dict) or not str(whole.get("schema", "")).startswith("kinform/batch-record/"):
+        raise InputError([other])
+    if whole["schema"] != SCHEMA:
+        return Record()
+    try:
+        rows = [_row(values) for values in whole["designs"]]
+    except (TypeError, KeyError, ValueError, AttributeError):
+        return Record()
+    return Record({row.name: row for row in rows})
+
+
+def write(record: Record, folder: Path) -> None:
+    """Keep the record, in one step."""
+    rows = []
+    for name in sorted(record.rows):
+        values = dataclasses.asdict(record.rows[name])
+        del values["unchanged"]
+        rows.append(values)
+    text = json.dumps({"schema": SCHEMA, "designs": rows}, indent=1, ensure_ascii=True) + "\n"
+    replace_file(folder / NAME, text.encode())
+
+
+def _row(values: Mapping[str, Any]) -> Row:
+    names = {f.name: str(f.type) for f in dataclasses.fields(Row)}
+    kinds: dict[str, tuple[type, ...]] = {
+        "str": (str,), "int": (int,), "int | None": (int, type(None)), "float": (int, float), "bool": (bool,),
+    }  # fmt: skip
+    for name, kind in names.items():
+        if kind in kinds and name in values and not isinstance(values[name], kinds[kind]):
+            raise TypeError(name)
+    known = {key: value for key, value in values.items() if key in names}
+    problems = tuple(Problem(**problem) for problem in known.pop("problems", ()))
+    notes = tuple(map(str, known.pop("notes", ())))
+    counts = {str(key): int(value) for key, value in known.pop("counts", {}).items()}
+    files = {str(key): str(value) for key, value in known.pop("files", {}).items()}
+    return Row(**known, problems=problems, notes=notes, counts=counts, files=files)

@@ -1,0 +1,164 @@
+"""A batch from start to end: what needs nothing, what is to be run, rows as they come, and the record."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from kinform.batch import constants, record
+from kinform.batch.crew import Crew
+from kinform.batch.desk import code_of_here
+from kinform.batch.desks import close_all, perform
+from kinform.batch.discovery import Found
+from kinform.batch.record import Record, Row
+from kinform.batch.task import INPUT, UNLIMITED, Answer, Failure, Limits, Task
+from kinform.batch.unchanged import row_if_unchanged
+from kinform.errors import InputError, Problem, ResultsError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How designs are run; nothing of it changes what comes out of one."""
+
+    jobs: int = 1
+    scheduler: str | None = None
+    send: bool = False
+    """Whether inputs are sent to the workers and results back; else they see the same files."""
+    limits: Limits = UNLIMITED
+    allow_outside: bool = False
+
+
+def run(
+    found: Sequence[Found],
+    folder: Path,
+    settings: Settings,
+    progress: Callable[[int, int], None] | None = None,
+) -> tuple[Row, ...]:
+    """Run all designs, with results below `folder`; gives their rows, in the order of `found`.
+
+    What is unchanged is not touched. A design that fails stops no other. The record is written as rows come, also
+    where this is interrupted. `progress(done, to be done)` counts designs that are run. Raises InputError where Dask
+    is missing and something is to be run, or nothing can be written.
+    """
+    _make(folder)
+    kept = record.read(folder)
+    rows: dict[str, Row] = {}
+    for one in found:
+        row = row_if_unchanged(one, kept, folder, allow_outside=settings.allow_outside)
+        if row is not None:
+            rows[one.name] = row
+    left = [one for one in found if one.name not in rows]
+    if left:
+        _run(left, folder, settings, kept, rows, progress)
+    return tuple(rows[one.name] for one in found)
+
+
+def _run(
+    left: Sequence[Found],
+    folder: Path,
+    settings: Settings,
+    kept: Record,
+    rows: dict[str, Row],
+    progress: Callable[[int, int], None] | None,
+) -> None:
+    """Run what is left, and note each row when it comes."""
+    by_name = {one.name: one for one in left}
+    written = time.monotonic()
+    with Crew(min(settings.jobs, len(left)), settings.scheduler) as crew:
+        if progress is not None:
+            progress(0, len(left))
+        try:
+            for done, answer in enumerate(_answers(left, folder, settings, crew), start=1):
+                one = by_name[answer.key]
+                rows[one.name] = kept.rows[one.name] = _row(one, answer)
+                if progress is not None:
+                    progress(done, len(left))
+                if time.monotonic() - written > constants.KEEPING:
+                    record.write(kept, folder)
+                    written = time.monotonic()
+        finally:
+            record.write(kept, folder)
+
+
+def _answers(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew) -> Iterator[Answer]:
+    """The answers as they come: a result is the fields of a row."""
+    code = code_of_here()
+    outside = {"allow_outside": settings.allow_outside}
+    if not settings.send:
+        for one in left:  # here, for a file in the place of a folder would stop a worker without words
+            _make((folder / one.results).parent)
+        yield from crew.answers(
+            Task(one.name, "kinform.batch.work:run",
+                 {"source": str(one.source.absolute()), "output": str((folder / one.results).absolute()), **outside},
+                 settings.limits, code)
+            for one in left
+        )  # fmt: skip
+        return
+    try:
+        yield from _sent(left, folder, settings, crew, code)
+    finally:
+        close_all()
+
+
+def _sent(left: Sequence[Found], folder: Path, settings: Settings, crew: Crew, code: str) -> Iterator[Answer]:
+    """As _answers, for workers that see none of the files: designs are imported here, by a desk."""
+    refused: list[Answer] = []
+
+    def tasks() -> Iterator[Task]:
+        for one in left:
+            source = {"source": str(one.source.absolute()), "allow_outside": settings.allow_outside}
+            answer = perform(Task(one.name, "kinform.batch.work:imported", source, settings.limits))
+            if answer.failure is not None:
+                refused.append(answer)
+            else:
+                design = {"design": answer.result}
+                yield Task(one.name, "kinform.batch.work:derive", design, settings.limits, code)
+
+    places = {one.name: folder / one.results for one in left}
+    for answer in crew.answers(tasks()):
+        yield answer if answer.failure is not None else _kept(answer, places[answer.key])
+        yield from _taken(refused)
+    yield from _taken(refused)
+
+
+def _taken(answers: list[Answer]) -> Iterator[Answer]:
+    while answers:
+        yield answers.pop(0)
+
+
+def _kept(answer: Answer, output: Path) -> Answer:
+    """The answer after its results file was written; the fields of a row as result."""
+    from kinform import results
+    from kinform.batch.work import summary_of
+
+    data, said = answer.result
+    try:
+        _make(output.parent)
+        results.check_output(output)
+        results.replace_file(output, data)
+    except (ResultsError, InputError) as error:
+        problems = error.problems if isinstance(error, InputError) else (error.problem,)
+        return Answer(answer.key, failure=Failure(INPUT, problems), seconds=answer.seconds, tries=answer.tries)
+    fields = summary_of(results.read_gist(output), data, said)
+    return Answer(answer.key, fields, seconds=answer.seconds, tries=answer.tries)
+
+
+def _row(one: Found, answer: Answer) -> Row:
+    start: dict[str, Any] = {
+        "name": one.name, "source": str(one.source), "results": one.results, "seconds": round(answer.seconds, 3),
+        "tries": answer.tries,
+    }  # fmt: skip
+    if answer.failure is not None:
+        return Row(**start, failure=answer.failure.kind, problems=answer.failure.problems)
+    return Row(**start, **answer.result)
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        problem = Problem(f"the folder cannot be made: {error.strerror}", str(folder), None, "name another with -o")
+        raise InputError([problem]) from None

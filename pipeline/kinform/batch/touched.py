@@ -1,0 +1,142 @@
+"""Which designs a commit touches: those of whose files one differs from that commit, sub-assemblies followed.
+
+Nothing is parsed as a design, which may be faulty now: every text in a manifest or a description that could name a
+changed file counts, by its last part, with what is computed in it (`$(find pkg)`, `${name}.stl`) as a wildcard. So a
+design may be run for nothing, and is never left out because a reference was not understood.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import json
+import os
+import re
+import subprocess
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+
+from kinform.batch.discovery import DESCRIPTIONS, Found
+from kinform.errors import InputError, Problem
+
+_FOLLOWED = (".toml", ".gltf", ".obj", ".dae", ".yaml", ".yml", ".csv", *DESCRIPTIONS)
+"""Suffixes of files that name others, or may."""
+_QUOTED = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'|>([^<>\n]+)<|^(?:mtllib|map_\w+)\s+(\S+)", re.M)
+_COMPUTED = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+
+
+def touched(found: Sequence[Found], revision: str) -> tuple[Found, ...]:
+    """Those of the designs that differ from how they were at the revision of git, in whatever they are made of.
+
+    Raises InputError where there is no repository, or no such revision.
+    """
+    by_root: dict[str, set[str]] = {}
+    for one in found:
+        by_root.setdefault(_root(one.source), set())
+    for root in by_root:
+        by_root[root] = _changed(root, revision)
+    return tuple(one for one in found if _reaches(one.source, by_root[_root(one.source)], _root(one.source)))
+
+
+def _reaches(source: Path, changed: set[str], root: str) -> bool:
+    """Whether a design is, or names in any depth, a changed file."""
+    if not changed:
+        return False
+    bases: dict[str, list[str]] = {}
+    for path in changed:
+        bases.setdefault(os.path.basename(path), []).append(path)
+    seen: set[str] = set()
+    waiting = [os.path.realpath(source)]
+    while waiting:
+        path = waiting.pop()
+        if path in seen:
+            continue
+        seen.add(path)
+        if path in changed:
+            return True
+        for pattern, wild in _names(path):
+            hit = fnmatch.filter(bases, pattern) if wild else [pattern] if pattern in bases else []
+            if hit:
+                return True
+            if os.path.splitext(pattern)[1].lower() in _FOLLOWED:
+                known = _files(root)
+                names = fnmatch.filter(known, pattern) if wild else [pattern]
+                waiting += [file for name in names for file in known.get(name, ())]
+    return False
+
+
+@cache
+def _names(path: str) -> tuple[tuple[str, bool], ...]:
+    """The last parts of all texts in a file that could name files, and whether each is a pattern."""
+    if os.path.splitext(path)[1].lower() not in _FOLLOWED:
+        return ()
+    try:
+        text = Path(path).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ()
+    out = set()
+    for piece in _texts(path, text):
+        name = _COMPUTED.sub("*", piece.strip()).replace("\\", "/").rpartition("/")[2]
+        if "." in name or "*" in name:
+            out.add((name, "*" in name))
+    return tuple(sorted(out))
+
+
+def _texts(path: str, text: str) -> Iterator[str]:
+    """Everything in quotes, between tags, or after the words of an OBJ that name files."""
+    if path.endswith(".gltf"):
+        try:
+            whole = json.loads(text)
+        except ValueError:
+            return
+        for item in [*whole.get("buffers", ()), *whole.get("images", ())]:
+            if isinstance(item.get("uri"), str) and not item["uri"].startswith("data:"):
+                yield item["uri"]
+        return
+    for match in _QUOTED.finditer(text):
+        yield next(filter(None, match.groups()))
+
+
+@cache
+def _files(root: str) -> dict[str, list[str]]:
+    """All files of the repository that are tracked or could be, by name."""
+    out: dict[str, list[str]] = {}
+    for path in _git(root, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0"):
+        if path:
+            out.setdefault(os.path.basename(path), []).append(os.path.realpath(os.path.join(root, path)))
+    return out
+
+
+def _changed(root: str, revision: str) -> set[str]:
+    """Absolute paths of what differs from the revision, or is not tracked; also what is gone."""
+    commit = _git(root, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}").strip()
+    if not commit:
+        raise InputError([Problem(f"there is no revision {revision}", root, None, "fetch it: git fetch --unshallow")])
+    differing = _git(root, "diff", "-z", "--name-only", "--no-renames", "--no-ext-diff", commit, "--").split("\0")
+    fresh = _git(root, "ls-files", "-z", "--others", "--exclude-standard").split("\0")
+    return {os.path.realpath(os.path.join(root, name)) for name in _present(differing, fresh)}
+
+
+def _present(*lists: Iterable[str]) -> Iterator[str]:
+    return (name for names in lists for name in names if name)
+
+
+@cache
+def _root(source: Path) -> str:
+    """The top of the repository that a file is in."""
+    folder = os.path.dirname(os.path.abspath(source))
+    top = _git(folder, "rev-parse", "--show-toplevel").strip()
+    if not top:
+        problem = Problem("is in no repository of git", str(source), None, "leave --changed-since out")
+        raise InputError([problem])
+    return os.path.realpath(top)
+
+
+def _git(folder: str, *arguments: str) -> str:
+    """What git prints; "" where it fails. Raises InputError where there is no git."""
+    try:
+        done = subprocess.run(["git", "-C", folder, *arguments], capture_output=True, check=False)
+    except OSError:
+        problem = Problem("--changed-since asks git, which is not installed", None, None, "install git")
+        raise InputError([problem]) from None
+    return done.stdout.decode("utf-8", "surrogateescape") if done.returncode == 0 else ""

@@ -1,0 +1,50 @@
+"""What a worker does for one design."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from kinform import method, results, stages
+from kinform.design import Design
+
+
+def run(source: str, output: str, *, allow_outside: bool = False) -> dict[str, Any]:
+    """Run the design at `source`, with its results at `output`; gives the fields of its row."""
+    said: list[str] = []
+    os.makedirs(os.path.dirname(output), exist_ok=True)
+    method.run(source, output, allow_outside=allow_outside, say=said.append)
+    return summary_of(results.read_gist(output), Path(output).read_bytes(), said)
+
+
+def imported(source: str, *, allow_outside: bool = False) -> bytes:
+    """The imported design, as bytes to be sent to a worker that sees none of its files."""
+    return pickle.dumps(stages.import_(source, allow_outside=allow_outside), protocol=pickle.HIGHEST_PROTOCOL)
+
+
+def derive(design: bytes) -> tuple[bytes, list[str]]:
+    """The results file of an imported design, as bytes, and what was said."""
+    said: list[str] = []
+    whole, _ = method.completed(pickle.loads(design), say=said.append)
+    return results.to_bytes(whole), said
+
+
+def summary_of(gist: Design, data: bytes, said: list[str]) -> dict[str, Any]:
+    """The fields of the row of a design, from the gist of its results and their bytes."""
+    report, kinematics = gist.report, gist.kinematics
+    assert report is not None and kinematics is not None
+    return {
+        "assembly": gist.assembly.name,
+        "mobility": kinematics.mobility.effective,
+        "counts": dict(Counter(finding.severity for finding in report.findings)),
+        "ran": report.ran,
+        "inconclusive": report.inconclusive,
+        "notes": tuple(said),
+        "lineage": gist.fingerprints.lineage.get("findings", ""),
+        "files": dict(gist.fingerprints.files),
+        "digest": hashlib.sha256(data).hexdigest(),
+    }

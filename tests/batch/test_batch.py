@@ -1,0 +1,125 @@
+"""Many designs by a crew: the bytes of single runs, whatever happens to workers."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from support.command_line import ran_here
+from support.places import FIXTURES
+
+import kinform
+from kinform.batch import Settings, discover, render
+from kinform.batch import run as run_batch
+
+pytest.importorskip("distributed")
+pytest.importorskip("pathspec")
+
+GOOD = ("planar_block", "prismatic_drawer")
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory) -> tuple[Path, Path, tuple]:
+    """Designs and their results: two good ones, one that is none; while they
+    ran, a worker was killed."""
+    folder = tmp_path_factory.mktemp("batch")
+    designs, results = folder / "designs", folder / "results"
+    for name in GOOD:
+        shutil.copytree(FIXTURES / "pairs" / name, designs / name)
+    (designs / "bad.toml").write_text('schema = 1\n[assembly]\nname = "bad"\n')
+    killer = threading.Thread(target=_kill_workers, daemon=True)
+    killer.start()
+    rows = run_batch(discover([designs]), results, Settings(jobs=2))
+    return designs, results, rows
+
+
+def _kill_workers() -> None:
+    """Kill the first desk that is seen at work: the death of a worker in the middle."""
+    import psutil
+
+    me = psutil.Process()
+    for _ in range(2000):
+        for child in me.children(recursive=True):
+            try:
+                if "kinform.batch.desk" in " ".join(child.cmdline()) and child.children():
+                    os.kill(child.pid, signal.SIGKILL)
+                    return
+            except psutil.Error:
+                continue
+        time.sleep(0.02)
+
+
+def test_results_are_the_bytes_of_single_runs_though_a_worker_was_killed(done, tmp_path):
+    designs, results, rows = done
+    assert max(row.tries for row in rows) == 2
+    for name in GOOD:
+        kinform.run(designs / name / f"{name}.toml", tmp_path / "one.h5")
+        assert (results / name / f"{name}.h5").read_bytes() == (tmp_path / "one.h5").read_bytes()
+        (tmp_path / "one.h5").unlink()
+
+
+def test_a_bad_design_stops_no_other(done):
+    rows = {row.name: row for row in done[2]}
+    assert rows["bad.toml"].failure == "input" and "units" in rows["bad.toml"].problems[0].message
+    assert all(not rows[f"{name}/{name}.toml"].failure for name in GOOD)
+
+
+def test_unchanged_designs_need_no_worker_and_are_not_touched(done, monkeypatch):
+    designs, results, _ = done
+    before = {path: path.stat().st_mtime_ns for path in results.rglob("*.h5")}
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    good = discover([designs], exclude=["bad.toml"])
+    assert all(row.unchanged for row in run_batch(good, results, Settings()))
+    assert {path: path.stat().st_mtime_ns for path in results.rglob("*.h5")} == before
+
+
+def test_without_dask_the_extra_is_named(done, monkeypatch):
+    designs, results, _ = done
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(kinform.InputError, match=r"kinform\[batch\]"):
+        run_batch(discover([designs]), results, Settings())
+
+
+def test_the_command_gives_one_table_all_formats_and_the_exit_code(done, tmp_path):
+    designs, results, _ = done
+    words = ["batch", *(f"designs/{name}" for name in GOOD), "-o", results.name]
+    more = [f"--format={name}={tmp_path / name}" for name in ("json", "sarif", "junit", "github", "md", "concise")]
+    ran = ran_here(*words, *more, cwd=designs.parent, COLUMNS="200")
+    assert ran.returncode == 0, ran.stderr
+    assert "2 unchanged" in ran.stderr and all(f"{name}.toml" in ran.stdout for name in GOOD)
+    whole = json.loads((tmp_path / "json").read_text())
+    assert [one["exit_code"] for one in whole["designs"]] == [0, 0] and whole["totals"]["consistent"] == 2
+    suites = ElementTree.parse(tmp_path / "junit").getroot()
+    assert [suite.get("name") for suite in suites] == [f"{name}/{name}.toml" for name in GOOD]
+    log = json.loads((tmp_path / "sarif").read_text())["runs"]
+    assert len(log) == 1 and log[0]["invocations"][0]["executionSuccessful"]
+
+
+def test_formats_tell_what_has_no_results(done):
+    _, results, rows = done
+    texts = {name: render(rows, results, name) for name in ("json", "sarif", "junit", "github", "md", "concise")}
+    assert all("units" in text for text in texts.values())
+    notes = json.loads(texts["sarif"])["runs"][0]["invocations"][0]["toolExecutionNotifications"]
+    assert notes[0]["locations"][0]["physicalLocation"]["region"]["startLine"] == 2
+    assert ElementTree.fromstring(texts["junit"]).get("errors") == "1"
+    assert json.loads(texts["json"])["exit_code"] == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--memory", "much"], "no size"), (["--time", "-1"], "no time"), (["--send"], "--scheduler"),
+        (["-f", "xml"], "no format"), (["-f", "md", "-f", "json"], "both go to stdout"),
+    ],
+)  # fmt: skip
+def test_options_that_make_no_sense_are_refused(done, words, said):
+    ran = ran_here("batch", "designs", "-o", "new", *words, cwd=done[0].parent)
+    assert ran.returncode == 2 and said in ran.stderr

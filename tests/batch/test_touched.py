@@ -1,0 +1,94 @@
+"""What a commit touches."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from kinform.batch import touched as module
+from kinform.batch.discovery import discover
+from kinform.errors import InputError
+
+pytest.importorskip("pathspec")
+
+
+def git(folder: Path, *words: str) -> None:
+    name = ("-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "commit.gpgsign=false")
+    subprocess.run(["git", "-C", str(folder), *name, *words], check=True, capture_output=True)
+
+
+def manifest(*lines: str) -> str:
+    return "\n".join(['schema = 1\n[assembly]\nname = "a"\nunits = "mm"', *lines])
+
+
+FILES = {
+    "top.toml": manifest("[[subassembly]]", 'name = "m"', 'file = "sub/motor.toml"'),
+    "sub/motor.toml": manifest("[[part]]", "name='p'", "mesh = 'parts/rotor.stl'"),
+    "sub/parts/rotor.stl": "solid a", "alone.toml": manifest("[[part]]", "name='p'", 'mesh="alone.stl"'),
+    "alone.stl": "solid b",
+    "ros/urdf/arm.urdf.xacro": '<robot name="arm"><xacro:include filename="$(find arm)/urdf/links.xacro"/></robot>',
+    "ros/urdf/links.xacro": '<robot><mesh filename="package://arm/meshes/${part}.stl"/></robot>',
+    "ros/meshes/link.stl": "solid c", "ros/meshes/link.dae": "<COLLADA/>", "other.txt": "nothing",
+}  # fmt: skip
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """Designs in a repository with one commit."""
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    git(tmp_path, "init", "-q")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "-qm", "all")
+    for cached in (module._names, module._files, module._root):
+        cached.cache_clear()
+    return tmp_path
+
+
+def touched(repository: Path) -> list[str]:
+    return [one.name for one in module.touched(discover([repository]), "HEAD")]
+
+
+@pytest.mark.parametrize(
+    ("changed", "designs"),
+    [
+        ("sub/parts/rotor.stl", ["sub/motor.toml", "top.toml"]),
+        ("sub/motor.toml", ["sub/motor.toml", "top.toml"]),
+        ("top.toml", ["top.toml"]),
+        ("alone.stl", ["alone.toml"]),
+        ("ros/urdf/links.xacro", ["ros/urdf/arm.urdf.xacro"]),
+        ("ros/meshes/link.stl", ["ros/urdf/arm.urdf.xacro"]),
+        ("other.txt", []),
+    ],
+)
+def test_a_changed_file_touches_what_names_it_in_any_depth(repository, changed, designs):
+    (repository / changed).write_text(FILES[changed] + " ")
+    wildcards = ["ros/urdf/arm.urdf.xacro"] if changed.endswith(".stl") else []
+    assert touched(repository) == sorted({*designs, *wildcards})
+
+
+def test_nothing_changed_touches_nothing(repository):
+    assert touched(repository) == []
+
+
+def test_a_mesh_that_is_gone_and_one_that_is_new_touch(repository):
+    (repository / "alone.stl").unlink()
+    assert "alone.toml" in touched(repository)
+    (repository / "new.toml").write_text(manifest())
+    assert "new.toml" in touched(repository)
+
+
+def test_commits_count_as_changes_that_are_not_committed_do(repository):
+    (repository / "sub/parts/rotor.stl").write_text("solid other")
+    git(repository, "commit", "-qam", "rotor")
+    found = discover([repository])
+    assert module.touched(found, "HEAD") == ()
+    assert {one.name for one in module.touched(found, "HEAD~1")} >= {"sub/motor.toml", "top.toml"}
+
+
+def test_a_revision_that_is_none_is_refused(repository):
+    with pytest.raises(InputError, match="there is no revision --help"):
+        module.touched(discover([repository]), "--help")
