@@ -11,6 +11,7 @@ from support.solids import block, centred_rod
 
 from kinform.model.tolerances import Tolerances
 from kinform.surfaces import packs, recover, recover_all
+from kinform.surfaces.constants import PACK
 
 
 def meshes():
@@ -63,11 +64,11 @@ def test_there_are_surfaces_of_every_kind(alone):
 
 
 def test_packs_hold_every_mesh_once_the_largest_first():
-    facets = [50, 90_000, 20_000, 400_000, 7, 99_000, 1_000]
+    facets = [50, PACK // 2, PACK // 10, 2 * PACK, 7, PACK - 1, 1_000]
     for jobs in (1, 2, 5):
         held = packs(facets, jobs)
         assert sorted(k for pack in held for k in pack) == list(range(len(facets)))
         assert held[0] == [3]
-        assert all(len(pack) == 1 or sum(facets[k] for k in pack) <= 100_000 for pack in held)
+        assert all(len(pack) == 1 or sum(facets[k] for k in pack) <= PACK for pack in held)
     assert len(packs([1000] * 10, 1)) == 1
     assert len(packs([1000] * 10, 2)) == 2
