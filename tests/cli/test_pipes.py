@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -25,8 +26,8 @@ def folder(tmp_path: Path, derive_design) -> Path:
         pytest.skip("this system has no pipes with names")
     shutil.copytree(PAIR, tmp_path, dirs_exist_ok=True)
     results.write(derive_design(PAIR / NAME), tmp_path / "r.h5")
-    for name in ("pipe.toml", "pipe.stl", "pipe.obj", "pipe.h5", "pipe.json", "pipe.sqlite", "pipe.urdf", "pipe.d"):
-        os.mkfifo(tmp_path / name)
+    for suffix in ("toml", "stl", "obj", "h5", "json", "sqlite", "urdf", "d", "html"):
+        os.mkfifo(tmp_path / f"pipe.{suffix}")
     text = (tmp_path / NAME).read_text()
     (tmp_path / "mesh.toml").write_text(text.replace("shaft.stl", "pipe.stl"))
     (tmp_path / "sub.toml").write_text(
@@ -42,6 +43,9 @@ def folder(tmp_path: Path, derive_design) -> Path:
 
 WAITING = {
     "manifest": (("run", "pipe.toml"), "pipe.toml"),
+    "manifest to watch": (("watch", "pipe.toml", "-o", "n.h5"), "pipe.toml"),
+    "robot description to watch": (("watch", "pipe.urdf", "-o", "n.h5"), "pipe.urdf"),
+    "device to watch": (("watch", "endless.toml", "-o", "n.h5"), "endless.toml"),
     "sub-assembly": (("import", "sub.toml", "-o", "n.h5"), "pipe.toml"),
     "robot description": (("run", "pipe.urdf"), "pipe.urdf"),
     "description of a manifest": (("run", "from.toml"), "pipe.urdf"),
@@ -56,7 +60,7 @@ WAITING = {
     "baseline": (("check", "r.h5", "--baseline", "pipe.json"), "pipe.json"),
     "lock": (("check", "r.h5", "--lock", "pipe.json"), "pipe.json"),
     "lock to write": (("lock", "r.h5", "-o", "pipe.json"), "pipe.json"),
-    "page to write": (("report", "r.h5", "-o", "pipe.json"), "pipe.json"),
+    "page to write": (("report", "r.h5", "-o", "pipe.html"), "pipe.html"),
     "rule to write": (("run", NAME, "-o", "n.h5", "--depfile", "pipe.d"), "pipe.d"),
     "catalog": (("catalog", "find", "-c", "pipe.sqlite"), "pipe.sqlite"),
     "catalog to add to": (("catalog", "add", "r.h5", "-c", "pipe.sqlite"), "pipe.sqlite"),
@@ -76,8 +80,9 @@ def test_a_pipe_or_a_device_is_refused_by_name(what: str, folder: Path) -> None:
     ran = ran_here(*words, cwd=folder)
     assert (ran.returncode, ran.stdout) == (2, "")
     assert name in ran.stderr
-    assert ("device" if "endless" in name else "pipe") in ran.stderr
-    assert "remedy: " in ran.stderr
+    assert ("device" if "endless" in name else "a pipe") in ran.stderr
+    if name.endswith((".toml", ".urdf", ".stl", ".obj")):
+        assert re.search("remedy: write .* to a file", ran.stderr)
     assert sorted(folder.iterdir()) == before
 
 

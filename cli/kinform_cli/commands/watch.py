@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinform.foundation.regular import AS_A_FILE, not_a_file
 from kinform_cli import console, errors, files
 from kinform_cli.commands.report import show_page
+from kinform_cli.errors import refuse
 from kinform_cli.gate import Gate
 from kinform_cli.options import (
     AllowOutside,
@@ -78,6 +80,9 @@ def watch(
         raise typer.BadParameter("goes with --report", param_hint="--open" if open_ else "--port")
     (manifest,) = files.sources_of([manifest])
     shown = printed(format, otherwise=FindingsFormat.concise)
+    fault = not_a_file(manifest)
+    if fault is not None:
+        raise refuse(fault, file=manifest, remedy=AS_A_FILE)
     files.check_output(output, inputs=[manifest])
     files.check_findings(shown.files, [manifest, output])
     how = reading(geometry, packages, deviation)

@@ -14,7 +14,7 @@ from kinform.form.meshes.raw import Fault, MeshError, RawMesh, scaled
 from kinform.form.problems import Problems
 from kinform.form.sources import AS_IT_IS, Reading, is_scene
 from kinform.foundation.meant import did_you_mean, in_quotes
-from kinform.foundation.regular import listing, not_a_file
+from kinform.foundation.regular import AS_A_FILE, listing, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.assembly import Assembly, Mesh, Part
 
@@ -167,9 +167,12 @@ class DesignFiles:
             return None
         if not there:
             near = [p.name for p in path.parent.iterdir() if p.is_file()] if path.parent.is_dir() else []
-            remedy = (
-                did_you_mean(path.name, near, "the files there") if near else f"there is no folder {path.parent.name}"
-            )
+            if not_a_file(path):
+                remedy = AS_A_FILE
+            elif near:
+                remedy = did_you_mean(path.name, near, "the files there")
+            else:
+                remedy = f"there is no folder {path.parent.name}"
             self.problems.add(f"{what} {stated} {no_file(path)}", file, line, remedy)
             return None
         self.note(path)

@@ -7,6 +7,9 @@ import os
 import stat
 from pathlib import Path
 
+AS_A_FILE = "write what comes through it to a file, and name that file"
+"""What to do about it."""
+
 
 def not_a_file(path: str | Path) -> str | None:
     """What is wrong with what stands in the place of a file, as the end of a sentence about it; None for files and

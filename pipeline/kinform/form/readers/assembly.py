@@ -27,6 +27,7 @@ from kinform.form.readers.poses import pose, shift, unit_error
 from kinform.form.readers.requirements import requirements_of
 from kinform.form.sources import AS_IT_IS, Reading, is_source
 from kinform.foundation.meant import did_you_mean, in_quotes
+from kinform.foundation.regular import AS_A_FILE, not_a_file
 from kinform.foundation.units import metres_per
 from kinform.model.arrays import Array
 from kinform.model.assembly import Assembly, Group, MassOverride, Part, Subassembly
@@ -59,7 +60,8 @@ def load_with_contents(
     path = Path(path)
     if not path.is_file():
         fault = f"{'the file' if is_source(path) else 'the manifest'} {no_file(path)}"
-        raise InputError([Problem(fault, str(path), None, "name a manifest (TOML); see kinform init")])
+        remedy = AS_A_FILE if not_a_file(path) else "name a manifest (TOML); see kinform init"
+        raise InputError([Problem(fault, str(path), None, remedy)])
     problems = Problems()
     meshes = {} if earlier is None else earlier_meshes(earlier, files or {})
     design = DesignFiles(path.parent, problems, allow_outside, meshes, reading)
