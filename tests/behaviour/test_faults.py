@@ -96,11 +96,11 @@ def test_a_drive_on_a_joint_that_is_not_there_is_refused_where_it_is_written_and
     assert "no joint" in refused(model)["drive"]
 
 
-def test_a_drive_of_a_joint_with_more_freedoms_is_refused():
+def test_a_drive_of_a_joint_with_more_freedoms_is_refused_unless_it_says_which():
     model = arm()
     model.body("ball", 1.0, (1, 0, 0), (1, 1, 1))
     model.joint("socket", "arm", "ball", "spherical", point=(1, 0, 0))
-    with pytest.raises(ValueError, match='which port of "socket"'):
+    with pytest.raises(ValueError, match='which freedom of "socket"'):
         model.motion("drive", "socket", Constant(0.0))
 
 

@@ -26,7 +26,8 @@ from kinform.foundation.algebra.spatial import cross_motion, multiply, quaternio
 
 FREEDOMS = {
     "pendulum": 1, "gimbal": 3, "seeker": 1, "passive_seeker": 2, "every_joint": 12, "reversed_joints": 8, "nested": 5,
-    "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1, "motorised": 2, "controlled": 2,
+    "four_bar": 1, "slider_crank": 1, "driven_four_bar": 0, "spatial_loop": 1,
+    "motorised": 2, "controlled": 2, "freedoms": 7,
 }  # fmt: skip
 """Freedoms of the devices, by hand: those that no drive prescribes."""
 
@@ -111,7 +112,7 @@ def _electric(model, actor, k, path, ports, potentials, quantities):
     (joint,) = (c for c, _ in system.at(actor.name, "shaft") if isinstance(c, JointComponent))
     (column,) = (c for c, name in zip(run.joint_offset, run.joint_names, strict=False) if name == joint.subject)
     states = (run.joint_position, run.joint_velocity, run.joint_acceleration)
-    curve = BPoly.from_derivatives(run.time, np.stack([values[:, column] for values in states], axis=1))
+    curve = BPoly.from_derivatives(run.time, np.stack([values[:, column + actor.freedom] for values in states], axis=1))
     rate, t = curve.derivative(), float(run.time[k])
     if isinstance(actor, Servo):
         control, target = actor.controller, actor.target

@@ -70,6 +70,28 @@ def seeker(**request):
     return device(parts, joints, drives=drives, **({"duration": 1.0, "step": 0.05} | request))
 
 
+def freedoms(**request):
+    """Springs, dampers and efforts on one freedom each of joints that have several; the tree runs through the universal
+    joint backwards."""
+    parts = [block("a fork", (0.2, 0.1, 0)), block("ram", (0.05, 0, 0.1), 0.7), block("slab", (0.2, 0.3, 0), 0.5)]
+    joints = [
+        joint("base", "ram", "cylindrical", Z, (0, 0, 0)),
+        joint("a fork", "ram", "universal", X, (0.1, 0, 0), Y),
+        joint("base", "slab", "planar", SLANT, (0.2, 0.2, 0)),
+    ]
+    law = Law("constant", value=0.4)
+    drives = [
+        replace(drive("base~ram", "spring", stiffness=90.0, rest=0.02), freedom="slide"),
+        replace(drive("base~ram", "damper", damping=0.3), freedom="turn"),
+        replace(drive("a fork~ram", "spring", stiffness=3.0, rest=15.0), freedom="turn"),
+        replace(drive("a fork~ram", "effort", law), freedom="turn2"),
+        replace(drive("base~slab", "servo", Law("constant", value=0.05), kp=40.0, kd=2.0), freedom="v"),
+        replace(drive("base~slab", "spring", stiffness=30.0), freedom="u"),
+        replace(drive("base~slab", "damper", damping=0.1), freedom="turn"),
+    ]
+    return device(parts, joints, drives=drives, **({"duration": 0.6, "step": 0.05} | request))
+
+
 def passive_seeker(**request):
     """The same two turns with forces: a spring, a damper, a torque, loads in the world and on the body."""
     parts = [block("outer", (0, 0.1, 0)), block("inner", (0.05, 0, 0), 0.7)]
@@ -223,7 +245,18 @@ def nested(**request):
 
 CHAINS = {
     made.__name__: made
-    for made in (pendulum, gimbal, seeker, passive_seeker, every_joint, reversed_joints, nested, motorised, controlled)
+    for made in (
+        pendulum,
+        gimbal,
+        seeker,
+        passive_seeker,
+        every_joint,
+        reversed_joints,
+        nested,
+        motorised,
+        controlled,
+        freedoms,
+    )
 }
 LOOPS = {made.__name__: made for made in (four_bar, slider_crank, driven_four_bar, spatial_loop)}
 ALL = CHAINS | LOOPS

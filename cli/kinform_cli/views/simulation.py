@@ -67,7 +67,7 @@ def _drives(run: Simulation) -> list[RenderableType]:
     columns = ("peak", "RMS", "peak power", "work")
     rows = Rows("drive on", "kind", *columns, title="\ndrives", right=columns, names=["drive on"])
     for use in run.drives:
-        unit = "N" if slides.get(use.joint) == "prismatic" else "N·m"
+        unit = "N" if use.slides or slides.get(use.joint) == "prismatic" else "N·m"
         efforts = (quantity(value, unit) for value in (use.peak, use.rms))
         # what goes in and comes out again leaves rounding, which differs between machines
         rest = REST * use.peak_power * float(run.time[-1] - run.time[0])

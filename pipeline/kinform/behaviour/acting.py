@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from kinform.behaviour.components import Gear, JointComponent, LoadComponent
 from kinform.behaviour.ports import Component
 from kinform.behaviour.shafts import Controller, Damper, DcMotor, EffortDrive, MotionDrive, Servo, Spring, VoltageSource
 from kinform.behaviour.signals import Constant, Signal, signal
-from kinform.function import resolve_joint
+from kinform.function import acted_freedom
 from kinform.model.assembly import Assembly
 from kinform.model.function import Coupling, Drive, Load
 from kinform.model.kinematics import Coupling as Found
@@ -21,20 +22,43 @@ from kinform.model.mass import MassReport
 Joints = Mapping[str, JointComponent]
 
 
+@dataclass(frozen=True)
+class OneFreedom:
+    """One freedom of a joint of the port model."""
+
+    joint: JointComponent
+    freedom: int
+    """Which of its rates, and of its coordinates where it has as many."""
+    sign: int
+    """Designer's value = sign · kinform's."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether its values are angles."""
+        return self.joint.kind.coordinates[self.freedom][1]
+
+    @property
+    def valued(self) -> bool:
+        """Whether it has values: a ball's turns have rates alone."""
+        return len(self.joint.kind.coordinates) == self.joint.kind.rates
+
+    @property
+    def fields(self) -> dict[str, int]:
+        """Those of what acts on it."""
+        return {"freedom": self.freedom, "rates": self.joint.kind.rates}
+
+
 def one_freedom(
-    assembly: Assembly, kinematics: Kinematics, joints: Joints, name: str
-) -> tuple[JointComponent | None, int, str]:
-    """The joint with one freedom that a name stands for, and the designer's sign, or why there is none."""
-    found = resolve_joint(assembly, kinematics, name)
-    if found.joint is None:
-        return None, 1, found.reason
-    component = joints.get(found.joint.name)
+    assembly: Assembly, kinematics: Kinematics, joints: Joints, name: str, freedom: str = ""
+) -> OneFreedom | str:
+    """The freedom that the name of a joint, and of one of several freedoms, stand for; or why there is none."""
+    meant = acted_freedom(assembly, kinematics, name, freedom)
+    if meant.joint is None:
+        return meant.reason
+    component = joints.get(meant.joint.name)
     if component is None:
-        return None, 1, f'the joint "{found.joint.name}" is {found.joint.type} and {found.joint.status}'
-    if component.kind.rates != 1:
-        kind = component.kind
-        return None, 1, f'the joint "{component.subject}" is {kind.name}: it has {kind.rates} freedoms, not one'
-    return component, found.sign, ""
+        return f'the joint "{meant.joint.name}" is {meant.joint.type} and {meant.joint.status}'
+    return meant.reason if meant.freedom is None else OneFreedom(component, meant.freedom, meant.sign)
 
 
 def make_drive(
@@ -42,33 +66,35 @@ def make_drive(
 ) -> tuple[tuple[Component, ...], str, str, bool]:
     """(components, joint, why there are none, whether they would act by force only)."""
     by_force = drive.kind != "motion"
-    joint, sign, why = one_freedom(assembly, kinematics, joints, drive.joint)
-    if joint is None:
-        return (), "", why, False
+    on = one_freedom(assembly, kinematics, joints, drive.joint, drive.freedom)
+    if isinstance(on, str):
+        return (), "", on, False
     try:
-        return _actors(drive, joint, sign, f"drive {number} {drive.joint}"), joint.subject, "", by_force
+        return _actors(drive, on, f"drive {number} {drive.joint}"), on.joint.subject, "", by_force
     except ValueError as error:
-        return (), joint.subject, f"{drive.kind} drive: {error}", by_force
+        return (), on.joint.subject, f"{drive.kind} drive: {error}", by_force
 
 
-def _actors(drive: Drive, joint: JointComponent, sign: int, name: str) -> tuple[Component, ...]:
+def _actors(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
     """The drive on the shaft first, then what supplies it. Raises ValueError with what is missing."""
-    scale = drive.scale(joint.kind.coordinates[0][1])
+    sign, scale, at = on.sign, drive.scale(on.turns), on.fields
+    if not on.valued and drive.kind not in ("effort", "damper"):
+        raise ValueError("a ball's turn about one direction has a rate and no value: efforts and dampers can act on it")
     if drive.kind == "motion":
-        return (MotionDrive(name, drive.joint, _signal(drive, sign * scale)),)
+        return (MotionDrive(name, drive.joint, _signal(drive, sign * scale), **at),)
     if drive.kind == "effort":
-        return (EffortDrive(name, drive.joint, _signal(drive, float(sign))),)
+        return (EffortDrive(name, drive.joint, _signal(drive, float(sign)), **at),)
     if drive.kind == "spring":
         rest = sign * scale * drive.parameters.get("rest", 0.0)
-        return (Spring(name, drive.joint, _number(drive, "stiffness"), rest),)
+        return (Spring(name, drive.joint, _number(drive, "stiffness"), rest, **at),)
     if drive.kind == "damper":
-        return (Damper(name, drive.joint, _number(drive, "damping")),)
+        return (Damper(name, drive.joint, _number(drive, "damping"), **at),)
     if drive.kind == "servo":
         gains = {key: _number(drive, key, 0.0) for key in ("ki", "kd")}
         controller = Controller(_number(drive, "kp"), **gains, limit=_limit(drive))
-        return (Servo(name, drive.joint, _signal(drive, sign * scale), controller),)
+        return (Servo(name, drive.joint, _signal(drive, sign * scale), controller, **at),)
     if drive.kind == "dc_motor":
-        return _motor(drive, sign, name)
+        return _motor(drive, on, name)
     raise ValueError("this kind is not simulated")
 
 
@@ -78,13 +104,14 @@ def _signal(drive: Drive, scale: float) -> Signal:
     return signal(drive.law, scale)
 
 
-def _motor(drive: Drive, sign: int, name: str) -> tuple[Component, ...]:
+def _motor(drive: Drive, on: OneFreedom, name: str) -> tuple[Component, ...]:
     """The motor and the source of its voltage, which has the designer's sense."""
+    sign = on.sign
     resistance, constant = _number(drive, "resistance"), _number(drive, "constant")
     inductance, gear = _number(drive, "inductance", 0.0), _number(drive, "gear", 1.0)
     if resistance <= 0.0 or inductance < 0.0:
         raise ValueError("its resistance must be positive, its inductance not negative")
-    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear)
+    motor = DcMotor(name, drive.joint, resistance, inductance, constant, gear, **on.fields)
     voltage = signal(drive.law, float(sign)) if drive.law is not None else Constant(sign * _number(drive, "voltage"))
     return motor, VoltageSource(f"voltage of {name}", drive.joint, voltage)
 
@@ -104,15 +131,20 @@ def make_gear(
     assembly: Assembly, kinematics: Kinematics, joints: Joints, coupling: Coupling, number: int
 ) -> tuple[Gear | None, tuple[str, str], str]:
     """(component, joints of its two sides, why not)."""
-    first, sign_first, why_first = one_freedom(assembly, kinematics, joints, coupling.joints[0])
-    second, sign_second, why_second = one_freedom(assembly, kinematics, joints, coupling.joints[1])
-    if first is None or second is None:
-        return None, ("", ""), why_first or why_second
-    ratio = sign_first * sign_second * coupling.ratio
+    first, second = (one_freedom(assembly, kinematics, joints, name) for name in coupling.joints)
+    for side in (first, second):
+        if isinstance(side, str):
+            return None, ("", ""), side
+        if side.joint.kind.rates != 1:
+            kind = side.joint.kind
+            why = f'the joint "{side.joint.subject}" is {kind.name}: it has {kind.rates} freedoms, not one'
+            return None, ("", ""), why
+    assert not isinstance(first, str) and not isinstance(second, str)
+    ratio = first.sign * second.sign * coupling.ratio
     if not math.isfinite(ratio):
         return None, ("", ""), "its ratio is not a number"
     name = f"gear {number} {coupling.joints[0]} {coupling.joints[1]}"
-    return Gear(name, name, ratio), (first.subject, second.subject), ""
+    return Gear(name, name, ratio), (first.joint.subject, second.joint.subject), ""
 
 
 def mesh_gear(coupling: Found, joints: Joints) -> Gear | str:

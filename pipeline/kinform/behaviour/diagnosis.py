@@ -113,6 +113,8 @@ def _faults_of_nodes(system: System, component: Component) -> Iterator[str]:
             yield from _one_shaft(system, component, port)
     if isinstance(component, Actor | VoltageController):
         yield from _one_shaft(system, component, "shaft")
+        if not 0 <= component.freedom < component.rates:
+            yield f"its freedom {component.freedom} is none of its shaft's, which has {component.rates}, from 0 on"
     if isinstance(component, DcMotor):
         yield from _supplied(system, component)
     if isinstance(component, VoltageSource | VoltageController) and not any(

@@ -131,25 +131,46 @@ class Model:
         geometry = JointGeometry(_unit(axis), _vector(point), _unit(axis2), pitch)
         self.add(JointComponent(name, name, KINDS[kind], geometry), a=a, b=b)
 
-    def motion(self, name: str, joint: Where, signal: Signal) -> None:
-        """The joint's value follows the signal."""
-        self.add(shafts.MotionDrive(name, name, signal), shaft=joint)
+    def _on(self, joint: Where, freedom: int | None) -> dict[str, int]:
+        """Fields of what acts on one of the freedoms of a joint; ValueError where it has fewer, or where it has several
+        and none is named."""
+        name, wanted = (joint, "shaft") if isinstance(joint, str) else joint
+        component = self.components.get(name)
+        if component is None:
+            return {}
+        named = [port.size for port in component.ports if port.name == wanted]
+        rates = (named or [1])[0]
+        if freedom is None:
+            if rates != 1:
+                raise ValueError(f'which freedom of "{name}" is meant? It has {rates}, numbered from 0')
+            freedom = 0
+        if not 0 <= freedom < rates:
+            raise ValueError(f'"{name}" has no freedom {freedom}: it has {rates}, numbered from 0')
+        return {"freedom": freedom, "rates": rates}
 
-    def effort(self, name: str, joint: Where, signal: Signal) -> None:
+    def motion(self, name: str, joint: Where, signal: Signal, *, freedom: int | None = None) -> None:
+        """The joint's value follows the signal. `freedom`, here as in all that acts on joints: which of its rates."""
+        self.add(shafts.MotionDrive(name, name, signal, **self._on(joint, freedom)), shaft=joint)
+
+    def effort(self, name: str, joint: Where, signal: Signal, *, freedom: int | None = None) -> None:
         """The joint gets the effort of the signal, N·m or N."""
-        self.add(shafts.EffortDrive(name, name, signal), shaft=joint)
+        self.add(shafts.EffortDrive(name, name, signal, **self._on(joint, freedom)), shaft=joint)
 
-    def spring(self, name: str, joint: Where, stiffness: float, rest: float = 0.0) -> None:
+    def spring(
+        self, name: str, joint: Where, stiffness: float, rest: float = 0.0, *, freedom: int | None = None
+    ) -> None:
         """N·m/rad and rad, or N/m and m."""
-        self.add(shafts.Spring(name, name, stiffness, rest), shaft=joint)
+        self.add(shafts.Spring(name, name, stiffness, rest, **self._on(joint, freedom)), shaft=joint)
 
-    def damper(self, name: str, joint: Where, damping: float) -> None:
+    def damper(self, name: str, joint: Where, damping: float, *, freedom: int | None = None) -> None:
         """N·m·s/rad or N·s/m."""
-        self.add(shafts.Damper(name, name, damping), shaft=joint)
+        self.add(shafts.Damper(name, name, damping, **self._on(joint, freedom)), shaft=joint)
 
-    def stop(self, name: str, joint: Where, lower: float = -math.inf, upper: float = math.inf) -> None:
+    def stop(
+        self, name: str, joint: Where, lower: float = -math.inf, upper: float = math.inf, *, freedom: int | None = None
+    ) -> None:
         """The joint's value stays between the limits, rad or m."""
-        self.add(shafts.EndStop(name, name, lower, upper), shaft=joint)
+        self.add(shafts.EndStop(name, name, lower, upper, **self._on(joint, freedom)), shaft=joint)
 
     def gear(
         self,
@@ -169,23 +190,44 @@ class Model:
         flank, back = (None, None) if flanks is None else (_unit(side) for side in flanks)
         self.add(Gear(name, name, ratio, _vector(pitch_point), flank, back), a=a, b=b)
 
-    def servo(self, name: str, joint: Where, target: Signal, controller: shafts.Controller) -> None:
+    def servo(
+        self, name: str, joint: Where, target: Signal, controller: shafts.Controller, *, freedom: int | None = None
+    ) -> None:
         """The effort on the joint is the controller's output for the target of its value."""
-        self.add(shafts.Servo(name, name, target, controller), shaft=joint)
+        self.add(shafts.Servo(name, name, target, controller, **self._on(joint, freedom)), shaft=joint)
 
     def motor(
-        self, name: str, joint: Where, resistance: float, inductance: float, constant: float, gear: float = 1.0
+        self,
+        name: str,
+        joint: Where,
+        resistance: float,
+        inductance: float,
+        constant: float,
+        gear: float = 1.0,
+        *,
+        freedom: int | None = None,
     ) -> None:
         """A DC motor on the joint: Ω, H, N·m/A, turns of the motor a turn of the joint."""
-        self.add(shafts.DcMotor(name, name, resistance, inductance, constant, gear), shaft=joint)
+        on = self._on(joint, freedom)
+        self.add(shafts.DcMotor(name, name, resistance, inductance, constant, gear, **on), shaft=joint)
 
     def voltage(self, name: str, motor: Where, signal: Signal) -> None:
         """The voltage across the terminals of a motor, V."""
         self.add(shafts.VoltageSource(name, name, signal), terminals=motor)
 
-    def controller(self, name: str, motor: Where, joint: Where, target: Signal, controller: shafts.Controller) -> None:
+    def controller(
+        self,
+        name: str,
+        motor: Where,
+        joint: Where,
+        target: Signal,
+        controller: shafts.Controller,
+        *,
+        freedom: int | None = None,
+    ) -> None:
         """A controller that gives the motor its voltage for the target of the joint's value."""
-        self.add(shafts.VoltageController(name, name, target, controller), terminals=motor, shaft=joint)
+        on = self._on(joint, freedom)
+        self.add(shafts.VoltageController(name, name, target, controller, **on), terminals=motor, shaft=joint)
 
     def spring_between(
         self,

@@ -1,9 +1,9 @@
-"""What acts on the shaft of a joint with one freedom: drives, springs, controllers, motors, stops."""
+"""What acts on one freedom of the shaft of a joint: drives, springs, controllers, motors, stops."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
 from kinform.behaviour.ports import Component, Port
@@ -13,9 +13,21 @@ from kinform.model.quantities import JointValue
 
 @dataclass(frozen=True)
 class OnShaft(Component):
-    """Something on the shaft of a joint with one freedom; one equation."""
+    """Something on one freedom of the shaft of a joint: it gives no effort along the others. As many equations as the
+    shaft has rates."""
 
-    PORTS: ClassVar[tuple[Port, ...]] = (Port("shaft", 1),)
+    freedom: int = field(default=0, kw_only=True)
+    """Which of the rates of the shaft it acts on, from 0."""
+    rates: int = field(default=1, kw_only=True)
+    """How many the shaft has."""
+
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """The shaft, as wide as that of its joint, then what its kind has beside."""
+        return (Port("shaft", self.rates), *self.BESIDE)
+
+    BESIDE: ClassVar[tuple[Port, ...]] = ()
+    """Ports of the kind beside the shaft."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +90,9 @@ class Servo(OnShaft):
 
 @dataclass(frozen=True)
 class OnShaftAndTerminals(OnShaft):
-    """Something between a shaft and electric terminals; two equations."""
+    """Something between a shaft and electric terminals; one equation more."""
 
-    PORTS = (Port("shaft", 1), Port("terminals", 1))
+    BESIDE = (Port("terminals", 1),)
 
 
 @dataclass(frozen=True)

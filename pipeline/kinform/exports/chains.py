@@ -41,6 +41,8 @@ class Hinge:
     """The slide of a screw: the turn that it follows, and metres a radian."""
     joint: str = ""
     """Subject of the joint."""
+    coordinate: int = 0
+    """Which of its coordinates it is."""
 
 
 def chain(robot: Robot, link: RobotLink, taken: set[str]) -> list[Hinge]:
@@ -48,19 +50,19 @@ def chain(robot: Robot, link: RobotLink, taken: set[str]) -> list[Hinge]:
     joint = link.link.joint
     assert joint is not None
     parent = robot.links[link.link.parent].name
-    steps: list[tuple[str, str, Array, tuple[str, float] | None]] = []
+    steps: list[tuple[str, str, Array, tuple[str, float] | None, int]] = []
     for motion in link.link.motions:
         name = robot.joint_names[motion.name]
-        steps.extend(_steps(name, motion.primitive))
+        steps.extend((*step, motion.coordinate) for step in _steps(name, motion.primitive))
     if not steps:
         return [Hinge(robot.joint_names[joint.subject], "fixed", parent, link.name, link.offset, np.zeros(3))]
     out = []
-    for k, (name, kind, axis, follows) in enumerate(steps):
+    for k, (name, kind, axis, follows, coordinate) in enumerate(steps):
         last = k == len(steps) - 1
         child = link.name if last else free_name(f"{link.name}_{k + 1}", taken)
         taken.add(child)
         offset = link.offset if k == 0 else np.zeros(3)
-        out.append(Hinge(name, kind, parent, child, offset, axis, not last, follows, joint.subject))
+        out.append(Hinge(name, kind, parent, child, offset, axis, not last, follows, joint.subject, coordinate))
         parent = child
     return out
 

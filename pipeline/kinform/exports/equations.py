@@ -69,12 +69,14 @@ class Equations:
     def actors(self, joint: JointComponent) -> Iterator[Actor]:
         """What acts on a joint, tables of motions smoothed where bodies with mass have to follow; one motion at
         most."""
-        led = False
+        led = set()
         for actor in self.model.system.actors(joint.name):
+            if joint.kind.name == "spherical":
+                continue
             if not isinstance(actor, MotionDrive):
                 yield actor
-            elif not led:
-                led = True
+            elif actor.freedom not in led:
+                led.add(actor.freedom)
                 yield replace(actor, signal=smooth(actor.signal)) if self.model.with_forces else actor
 
     def rates_of(self, joint: JointComponent) -> range:
@@ -96,8 +98,15 @@ def equations_of(model: ExportModel) -> Equations:
         if not closing.rigid and closing.joint.subject not in closed
     ]
     for joint in model.system.joints:
-        motions = [actor for actor in model.system.actors(joint.name) if isinstance(actor, MotionDrive)]
-        lost += [f"{actor.subject}: a second drive prescribes the motion of {joint.subject}" for actor in motions[1:]]
+        actors = model.system.actors(joint.name)
+        if joint.kind.name == "spherical":
+            lost += [f"{actor.subject}: what acts about one direction of the ball {joint.subject}" for actor in actors]
+        motions = [actor for actor in actors if isinstance(actor, MotionDrive)]
+        lost += [
+            f"{actor.subject}: a second drive prescribes the motion of {joint.subject}"
+            for k, actor in enumerate(motions)
+            if actor.freedom in [other.freedom for other in motions[:k]]
+        ]
     remarks += [f"{gear.subject}: it is redundant with the loops" for gear in model.system.gears if gear not in gears]
     if model.ranges:
         remarks.append("joints do not stop at the ends of their ranges, as in our simulation")
@@ -143,9 +152,10 @@ def _independent_equations(
     mechanism = model.mechanism
     closings = [c for c in tree.closing if not c.rigid and _is_grounded(tree, c.a)]
     led = frozenset(
-        slot.v.start
+        slot.v.start + actor.freedom
         for slot, joint in zip(mechanism.slots, model.system.joints, strict=True)
-        if any(isinstance(actor, MotionDrive) for actor in model.system.actors(joint.name))
+        for actor in model.system.actors(joint.name)
+        if isinstance(actor, MotionDrive)
     )
     rest = np.array([k for k in range(mechanism.rates) if k not in led], dtype=np.int64)
     frames = [_axes(closing) for closing in closings]

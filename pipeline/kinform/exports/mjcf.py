@@ -82,8 +82,8 @@ def export(model: ExportModel) -> Exported:
     robot = _with_moments(robot, lost)
     root, twins = _bodies(robot)
     equalities = [row for closing in robot.closing for row in _closure(robot, closing, twins)]
-    rows = actuators(robot, lost)
     ordered = list(_walk(root))
+    rows = actuators(robot, [body.link for body in ordered], lost)
     remarks = ["meshes do not collide, because mating surfaces always touch", *robot.remarks]
     if equalities:
         remarks.append("loops are stiff springs to MuJoCo: the shorter the step, the closer to rigid")
@@ -181,8 +181,8 @@ def _joint(robot: Robot, link: RobotLink, motion: Motion, position: Array) -> li
     name, primitive = robot.joint_names[motion.name], motion.primitive
     if isinstance(primitive, Ball):
         return [_Joint(name, "ball", position, np.zeros(3))]
-    single = link.link.joint is not None and link.link.joint.kind.rates == 1
-    on_it = (link.range, link.damping, link.stiffness, link.rest) if single else ()
+    k = motion.coordinate
+    on_it = (link.range if link.single else None, link.damping(k), link.stiffness(k), link.rest(k))
     if not primitive.omega.any():
         return [_Joint(name, "slide", position, primitive.slide, *on_it)]
     turn = _Joint(name, "hinge", position, primitive.omega, *on_it)

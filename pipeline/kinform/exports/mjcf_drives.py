@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -27,18 +28,21 @@ def gears(robot: Robot, lost: list[str]) -> list[tuple[Any, str, str]]:
     return out
 
 
-def actuators(robot: Robot, lost: list[str]) -> list[dict[str, Any]]:
-    """Drives, with what they hold at the start; what MuJoCo does otherwise is added to `lost`."""
+def actuators(robot: Robot, links: Sequence[RobotLink], lost: list[str]) -> list[dict[str, Any]]:
+    """Drives of links, halves of bodies among them, with what they hold at the start; what MuJoCo does otherwise is
+    added to `lost`."""
     out: list[dict[str, Any]] = []
-    links = list(robot.links)
     names = identifiers((drive.name for link in links for drive in link.drives), XML)
     for link in links:
         joint = link.link.joint
         for drive in link.drives:
             assert joint is not None
-            at = {"name": names[drive.name], "joint": robot.joint_names[joint.subject], "bound": None}
+            if joint.kind.name == "spherical":
+                lost.append(f"{drive.subject}: what acts about one direction of the ball {joint.subject}")
+                continue
+            at = {"name": names[drive.name], "joint": robot.joint_names[link.coordinate(drive.freedom)], "bound": None}
             if isinstance(drive, MotionDrive):
-                inertia = _inertia_on(robot, link)
+                inertia = _inertia_on(robot, link, drive.freedom)
                 gains = {"kp": inertia * BANDWIDTH**2, "kv": 2.0 * inertia * BANDWIDTH}
                 out.append(at | gains | {"type": "position", "start": drive.signal.value(0.0)})
                 lost.append(f"{drive.subject}: its motion follows a law; it is a position servo that holds the start")
@@ -89,16 +93,18 @@ def _motor(robot: Robot, motor: DcMotor, lost: list[str]) -> dict[str, Any]:
     return {"type": "general", "gain": ratio, "drag": drag, "start": supply.signal.value(0.0)}
 
 
-def _inertia_on(robot: Robot, link: RobotLink) -> float:
-    """What a joint with one freedom moves if all others hold still (kg·m² or kg), at the pose of the meshes."""
-    (motion,) = link.link.motions
+def _inertia_on(robot: Robot, link: RobotLink, freedom: int) -> float:
+    """What a freedom of a joint moves if all others hold still (kg·m² or kg), at the pose of the meshes."""
+    (motion,) = (motion for motion in link.link.motions if motion.coordinate == freedom)
     primitive = motion.primitive
     assert not isinstance(primitive, Ball)
-    total, queue = 0.0, [next(k for k, other in enumerate(robot.links) if other is link)]
+    total, carried = 0.0, [link]
+    queue = [k for k, other in enumerate(robot.links) if other is link]
     while queue:
         k = queue.pop()
         queue += robot.tree.children(k)
-        other = robot.links[k]
+        carried += [robot.links[child] for child in robot.tree.children(k)]
+    for other in carried:
         if other.mass is None:
             continue
         if not primitive.omega.any():

@@ -19,6 +19,7 @@ from kinform.behaviour import (
     DcMotor,
     EffortDrive,
     Ground,
+    JointComponent,
     MotionDrive,
     RigidBody,
     Servo,
@@ -157,8 +158,7 @@ def _joint(package: _Package, link: Link, name: str) -> None:
         lead = float(screw.slide @ screw.omega)
         parts[joint.kind.coordinates[k][0]] = _screw(screw, float(q[k]), float(v[k]), rates[k] not in determined)
         if rates[k] in equations.held:
-            at = name if joint.kind.rates == 1 else f"{name}.{_PART[kind][k]}"
-            hold = f"{name}_held_{k + 1}"
+            at, hold = _parts(package, joint)[k], f"{name}_held_{k + 1}"
             _drive(package, "Motion", hold, Constant(float(q[k])), f"{joint.subject} is held", f"{at}.shaft")
     if joint.kind.rates == 1:
         (values,) = parts.values()
@@ -176,6 +176,18 @@ def _joint(package: _Package, link: Link, name: str) -> None:
 
 _PART = {"cylindrical": ("turn", "slide"), "planar": ("turn", "u", "v"), "universal": ("first", "second")}
 """Names of the parts of joints with several freedoms, in the order of their coordinates."""
+
+
+def _parts(package: _Package, joint: JointComponent) -> tuple[str, ...]:
+    """What has the shaft of each of the joint's coordinates: the joint, or its parts."""
+    name, kind = package.names[joint.name], joint.kind.name
+    if kind not in _PART:
+        return (name,)
+    parts = _PART[kind]
+    links = (link for link in package.equations.tree.links if link.joint is joint)
+    if kind == "universal" and not all(link.forward for link in links):
+        parts = parts[::-1]
+    return tuple(f"{name}.{part}" for part in parts)
 
 
 def _geared(equations: Equations) -> frozenset[int]:
@@ -220,9 +232,10 @@ def _actors(package: _Package) -> None:
     """What acts on joints, gears and loads."""
     system, names = package.model.system, package.names
     for joint in system.joints:
-        shaft = f"{names[joint.name]}.shaft"
+        parts = _parts(package, joint)
         for actor in package.equations.actors(joint):
             name, about = names[actor.name], actor.subject
+            shaft = f"{parts[actor.freedom]}.shaft"
             if isinstance(actor, MotionDrive):
                 _drive(package, "Motion", name, actor.signal, about, shaft)
             elif isinstance(actor, EffortDrive):

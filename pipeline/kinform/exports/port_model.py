@@ -157,7 +157,7 @@ class _Entry:
     written: Callable[[Any], Any] = lambda value: value
     read: Callable[[Any], Any] = lambda value: value
     sparse: bool = False
-    """Left out where it is null."""
+    """Left out where it is null, or a count that is the usual one."""
 
     @property
     def key(self) -> str:
@@ -192,6 +192,10 @@ def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
     if isinstance(field.default, float) and math.isinf(field.default):
         free = field.default
         return _Entry(name, float | None, _bound, lambda value: free if value is None else value, sparse)
+    if hint is int and field.default is not dataclasses.MISSING:
+        usual = field.default
+        written: Callable[[Any], Any] = lambda value: None if value == usual else value
+        return _Entry(name, int | None, written, lambda value: usual if value is None else value, True)
     return _Entry(name, hint)
 
 

@@ -64,24 +64,33 @@ class RobotLink:
     """rad or m, of its joint; None: not known."""
 
     @property
-    def damping(self) -> float:
-        """Of all dampers on its joint."""
-        return sum(actor.damping for actor in self.actors if isinstance(actor, Damper))
+    def single(self) -> bool:
+        """Whether its joint has one freedom."""
+        return self.link.joint is not None and self.link.joint.kind.rates == 1
+
+    def damping(self, freedom: int) -> float:
+        """Of all dampers on a coordinate of its joint."""
+        return sum(one.damping for one in self.actors if isinstance(one, Damper) and one.freedom == freedom)
 
     @property
     def springs(self) -> tuple[Spring, ...]:
         """The springs on its joint."""
         return tuple(actor for actor in self.actors if isinstance(actor, Spring))
 
-    @property
-    def stiffness(self) -> float:
-        """Of all springs on its joint together."""
-        return sum(spring.stiffness for spring in self.springs)
+    def stiffness(self, freedom: int) -> float:
+        """Of all springs on a coordinate of its joint together."""
+        return sum(spring.stiffness for spring in self.springs if spring.freedom == freedom)
 
-    @property
-    def rest(self) -> float:
-        """Value of the joint at which its springs balance."""
-        return sum(s.stiffness * s.rest for s in self.springs) / self.stiffness if self.stiffness else 0.0
+    def rest(self, freedom: int) -> float:
+        """Value of the coordinate at which its springs balance."""
+        stiffness = self.stiffness(freedom)
+        turned = sum(s.stiffness * s.rest for s in self.springs if s.freedom == freedom)
+        return turned / stiffness if stiffness else 0.0
+
+    def coordinate(self, freedom: int) -> str:
+        """The name of a coordinate of its joint, before it is made to fit a language."""
+        assert self.link.joint is not None
+        return coordinate_names(self.link.joint)[freedom]
 
     @property
     def drives(self) -> tuple[Driver, ...]:

@@ -64,7 +64,7 @@ def export(model: ExportModel) -> Exported:
             joints.append(direct)
             continue
         hinges = chain(robot, link, taken)
-        joints += [_of_hinge(hinge) for hinge in hinges]
+        joints += [_of_hinge(link, hinge) for hinge in hinges]
         grains += [_Grain(hinge.child, link.link.origin) for hinge in hinges if hinge.between]
     for gear, a, b in robot.gears:
         joints = _mimicking(robot, joints, gear.subject, a.subject, b.subject, gear.ratio, lost)
@@ -94,20 +94,30 @@ def _direct(robot: Robot, link: RobotLink) -> _Joint | None:
     if kind == "universal":
         if abs(float(screws[0].omega @ screws[1].omega)) > LEAST_SKEW:
             return None
-        return _Joint(name, "universal", parent, link.name, tuple(_Axis(screw.omega) for screw in screws))
+        axes = zip(link.link.motions, screws, strict=True)
+        return _Joint(
+            name, "universal", parent, link.name, tuple(_axis(link, m.coordinate, screw.omega) for m, screw in axes)
+        )
     if len(screws) != 1:
         return None
     turning = bool(screws[0].omega.any())
     limits = link.range if link.range is not None and any(map(math.isfinite, link.range)) else None
     direction = screws[0].omega if turning else screws[0].slide
-    axis = _Axis(direction, limits, link.damping, link.stiffness, link.rest, driven=bool(link.drives))
+    axis = replace(_axis(link, 0, direction), limits=limits)
     if kind == "screw":
         return _Joint(name, "screw", parent, link.name, (axis,), joint.geometry.pitch)
     return _Joint(name, kind, parent, link.name, (axis,))
 
 
-def _of_hinge(hinge: Hinge) -> _Joint:
-    return _Joint(hinge.name, hinge.type, hinge.parent, hinge.child, (_Axis(hinge.axis),))
+def _axis(link: RobotLink, k: int, direction: Array) -> _Axis:
+    """A coordinate of the link's joint, and what acts on it."""
+    driven = any(drive.freedom == k for drive in link.drives)
+    return _Axis(direction, None, link.damping(k), link.stiffness(k), link.rest(k), driven=driven)
+
+
+def _of_hinge(link: RobotLink, hinge: Hinge) -> _Joint:
+    axis = _Axis(hinge.axis) if hinge.follows is not None else _axis(link, hinge.coordinate, hinge.axis)
+    return _Joint(hinge.name, hinge.type, hinge.parent, hinge.child, (axis,))
 
 
 def _mimicking(

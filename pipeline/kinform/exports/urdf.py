@@ -56,8 +56,7 @@ def export(model: ExportModel) -> Exported:
 
 
 def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[str, float]]) -> _Joint:
-    single = link.link.joint is not None and link.link.joint.kind.rates == 1
-    limits = link.range if single and hinge.follows is None else None
+    limits = link.range if link.single and hinge.follows is None else None
     if limits is not None:
         limits = max(limits[0], -UNLIMITED), min(limits[1], UNLIMITED)
     kind = hinge.type
@@ -66,7 +65,9 @@ def _joint(robot: Robot, link: RobotLink, hinge: Hinge, mimics: dict[str, tuple[
     elif kind == "prismatic" and limits is None:
         limits = -UNLIMITED, UNLIMITED
     mimic = hinge.follows or mimics.get(hinge.name)
-    return _Joint(hinge, kind, limits, link.damping if single and hinge.follows is None else 0.0, mimic)
+    ball = link.link.joint is not None and link.link.joint.kind.name == "spherical"
+    damping = 0.0 if hinge.follows is not None or ball else link.damping(hinge.coordinate)
+    return _Joint(hinge, kind, limits, damping, mimic)
 
 
 def _mimics(robot: Robot, lost: list[str]) -> dict[str, tuple[str, float]]:

@@ -55,7 +55,7 @@ def drives(writer: Writer) -> None:
         label, home = writer.names[joint.name], writer.scopes.of[joint.name]
         rates, coordinates = writer.equations.rates_of(joint), [name for name, _ in joint.kind.coordinates]
         for actor in writer.equations.actors(joint):
-            _actor(_Shaft(writer, home, f"{label}_{coordinates[0]}"), actor)
+            _actor(_Shaft(writer, home, f"{label}_{coordinates[actor.freedom]}"), actor)
         if joint.kind.name == "spherical":
             continue
         for k, coordinate in enumerate(coordinates):

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from kinform.function.acted_freedoms import FREEDOMS, ActedFreedom, acted_freedom
 from kinform.function.as_intended import DesignersJoint, as_intended, designers_joints
 from kinform.function.joint_names import Resolution, resolve_joint, stated_ranges
 
 __all__ = [
     "CODE_VERSION",
+    "FREEDOMS",
+    "ActedFreedom",
     "DesignersJoint",
     "Resolution",
+    "acted_freedom",
     "as_intended",
     "designers_joints",
     "resolve_joint",
     "stated_ranges",
 ]
 
-CODE_VERSION: int = 3
+CODE_VERSION: int = 4

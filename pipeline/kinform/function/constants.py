@@ -23,6 +23,12 @@ BODY_MOVES = 1e-9
 ONE_POINT = 1e-9
 """Share of the largest part's size within which the joints of a chain are at one point; rounding."""
 
+# --- acted freedoms ---------------------------------------------------------------------------------------------------
+
+FREEDOM_AT_REST = 1e-6
+"""Share of the fastest joint's rate (slides over the size) below which a freedom of a joint is at rest in a motion:
+far above rounding, and far below what the ends of a ram turn or slide when it moves."""
+
 # --- clearances -------------------------------------------------------------------------------------------------------
 
 GRID = 8

@@ -96,6 +96,8 @@ class Drive:
     metres_per_unit: Metres
     file: str
     line: int | None
+    freedom: str = ""
+    """Which freedom of the joint, as `kinform.function.FREEDOMS` calls them; "": the one that it has, or is left."""
 
     def scale(self, rotational: bool) -> float:
         """Factor from the manifest's values of a motion (degrees or lengths) to SI."""
@@ -180,6 +182,8 @@ class InitialValue:
     metres_per_unit: Metres
     file: str
     line: int | None
+    freedom: str = ""
+    """As of `Drive`."""
 
 
 @dataclass(frozen=True, eq=False)

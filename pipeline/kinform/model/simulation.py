@@ -29,6 +29,10 @@ class DriveUse:
     """Greatest power that it put in, W; negative when it only took power out."""
     work: Annotated[float, "J"]
     """J put in over the run, springs included."""
+    freedom: int = 0
+    """Which of the joint's rates it acts on."""
+    slides: bool = False
+    """Whether that is a slide: efforts in N."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -115,6 +115,12 @@ PIVOT_SWAP = 1.5
 CLOSING_PIVOT = 0.3
 """Pivots of the joints that close loops are taken first while they are larger than this: a choice."""
 
+# mechanism.construction: the size of a mechanism.
+
+ONE_PLACE = 1e-6
+"""Share of the greatest radius of gyration within which joints and centres of mass are at one place: rounding, and what
+fits of axes differ by."""
+
 # mechanism.dynamics: motions without mass.
 
 NO_MASS = 1e-13

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from kinform.behaviour import Behaviour, RigidBody
-from kinform.function import resolve_joint
+from kinform.function import FREEDOMS, acted_freedom, resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.function import Drive
 from kinform.model.kinematics import Kinematics, Meshing
@@ -79,6 +79,19 @@ def notes_of_drives(drives: Iterable[Drive]) -> Iterator[str]:
         taken = [said for key, said in _DEFAULTS.get(drive.kind, {}).items() if key not in drive.parameters]
         if taken:
             yield f"the {drive.kind.replace('_', ' ')} on {drive.joint} does not state: {', '.join(taken)}"
+
+
+def notes_of_freedoms(assembly: Assembly, kinematics: Kinematics) -> Iterator[str]:
+    """Which freedom of joints with several is acted on, where nothing that is stated says so."""
+    request = assembly.simulation
+    acting = [
+        (f"the {drive.kind.replace('_', ' ')} on", drive.joint, drive.freedom) for drive in assembly.function.drives
+    ]
+    acting += [("the initial value of", value.joint, value.freedom) for value in (request.initial if request else ())]
+    for what, name, freedom in acting:
+        meant = acted_freedom(assembly, kinematics, name, freedom)
+        if meant.joint is not None and meant.freedom is not None and meant.because:
+            yield f"{what} {name} acts on its {FREEDOMS[meant.joint.type][meant.freedom]}: {meant.because}"
 
 
 def notes_of_teeth(kinematics: Kinematics) -> Iterator[str]:

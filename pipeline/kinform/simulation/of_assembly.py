@@ -14,7 +14,14 @@ from kinform.model.function import InitialValue, SimulationRequest
 from kinform.model.kinematics import Kinematics
 from kinform.model.mass import MassReport
 from kinform.model.simulation import Simulation
-from kinform.simulation.levels import choose, notes_of_drives, notes_of_joints, notes_of_level, notes_of_teeth
+from kinform.simulation.levels import (
+    choose,
+    notes_of_drives,
+    notes_of_freedoms,
+    notes_of_joints,
+    notes_of_level,
+    notes_of_teeth,
+)
 from kinform.simulation.mechanism.construction import assemble
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.uncertainty import loop_uncertainty
@@ -56,6 +63,7 @@ def simulate_assembly(
         *choice.notes,
         *notes_of_joints(kinematics),
         *notes_of_teeth(kinematics),
+        *notes_of_freedoms(assembly, kinematics),
         *(notes_of_drives(assembly.function.drives) if choice.level == "dynamic" else ()),
         *notes_of_level(assembly, kinematics, choice.level, adrift, gears),
     )
@@ -80,21 +88,24 @@ def _stated_values(
     stated: dict[str, Stated] = {}
     failures = []
     for value in values:
-        joint, sign, why = one_freedom(assembly, kinematics, joints, value.joint)
-        if joint is None:
+        on = one_freedom(assembly, kinematics, joints, value.joint, value.freedom)
+        if isinstance(on, str) or not on.valued:
+            why = on if isinstance(on, str) else "a ball's turn about one direction has a rate and no value"
             failures.append((value.joint, f"initial value: {why}"))
             continue
+        joint = on.joint
         if joint.subject in stated:
             failures.append((value.joint, f'the joint "{joint.subject}" has two initial values'))
             continue
-        unit = sign * (math.pi / 180.0 if joint.kind.coordinates[0][1] else value.metres_per_unit)
+        unit = on.sign * (math.pi / 180.0 if on.turns else value.metres_per_unit)
         if not (math.isfinite(value.position) and math.isfinite(value.velocity)):
             failures.append((value.joint, "its initial value is not a number"))
             continue
         slot = slots[joint.subject]
         stated[joint.subject] = Stated(
-            value.joint, slot.q.start, slot.v.start, unit * value.position, unit * value.velocity
-        )
+            value.joint, slot.q.start + on.freedom, slot.v.start + on.freedom,
+            unit * value.position, unit * value.velocity,
+        )  # fmt: skip
     return tuple(stated.values()), tuple(failures)
 
 

@@ -9,23 +9,24 @@ from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, settled
 from kinform.consistency.rule import Declared, Rule
 from kinform.foundation.words import counted, quoted
-from kinform.function import resolve_joint
-
-DRIVEN = ("revolute", "prismatic", "screw")
-"""Joints with one freedom, on which a single value acts."""
+from kinform.function import FREEDOMS, acted_freedom, resolve_joint
 
 
-def _single_freedom(context: Context, name: str) -> tuple[str, str]:
-    """("", "") when the joint of this name has exactly one freedom; else ("absent" or "unknown", why)."""
+def _single_freedom(context: Context, name: str, freedom: str) -> tuple[str, str]:
+    """("", "") when a freedom of the joint of this name is meant; else ("absent" or "unknown", why)."""
     resolution = resolve_joint(context.assembly, context.kinematics, name)
     joint, carried = resolution.joint, loose_carriers(context, name)
     if joint is None:
         return ("unknown", carried) if carried else ("absent", resolution.reason)
     if joint.status == "ambiguous":
         return "unknown", f"joint '{joint.name}' is ambiguous: {joint.reason}"
-    if joint.type in DRIVEN:
+    meant = acted_freedom(context.assembly, context.kinematics, name, freedom)
+    if meant.freedom is not None:
         return "", ""
     why = f"joint '{joint.name}' is {joint.type}, with {counted(joint.freedoms, 'freedom')}"
+    alone = resolution.intended is not None and len(FREEDOMS.get(resolution.intended.type, ())) == 1
+    if joint.type in FREEDOMS and (freedom or not alone):
+        why = meant.reason
     if joint.type == "general" and joint.freedoms > 0:
         return "unknown", why
     return ("unknown", carried) if carried else ("absent", why)
@@ -37,14 +38,17 @@ class Acting(Declared, Protocol):
     @property
     def joint(self) -> str: ...
 
+    @property
+    def freedom(self) -> str: ...
+
 
 def without_freedom(
     context: Context, rule: Rule, acting: Sequence[Acting], words: Callable[[Any], str], remedy: str
 ) -> Outcome:
-    """A finding for each that acts on a joint which has not exactly one freedom; `words` say what acts."""
+    """A finding for each that acts on a joint of which it is not clear which freedom is meant; `words`: what acts."""
     findings, unknown = [], []
     for item in acting:
-        state, reason = _single_freedom(context, item.joint)
+        state, reason = _single_freedom(context, item.joint, item.freedom)
         if state == "unknown":
             unknown.append(reason)
         elif state == "absent":
@@ -53,7 +57,7 @@ def without_freedom(
                     [item.joint],
                     f"the {words(item)} '{item.joint}' has no freedom to act on: {reason}",
                     found=reason,
-                    intended="a joint with one freedom",
+                    intended="one freedom of the joint",
                     declared=item,
                     remedy=remedy,
                 )

@@ -1,10 +1,13 @@
-"""A drive acts on a joint that is not there, or that has not exactly one freedom.
+"""A drive acts on a joint that is not there, or on one of several freedoms, and which is not clear.
+
+Of a joint with several freedoms the one is driven that `freedom` names, or that the type of the intended joint means,
+or that the rest of the assembly leaves: a round ram slides where pins hold its spin, or where its spin is idle.
 
 Inconclusive when the joint is ambiguous, general, or carried by loose parts between its two bodies.
 
 Why it matters: the drive moves nothing, or it is not clear what it moves.
 
-What to do: correct `joint` of the drive, or the geometry of the joint; see KF401 and KF402.
+What to do: correct `joint` of the drive, say `freedom`, or correct the geometry of the joint; see KF401 and KF402.
 
 Example: a drive on the elbow of an arm whose elbow is welded by a group.
 """

@@ -1,10 +1,10 @@
-"""An initial value is given for a joint that is not there, or that has not exactly one freedom.
+"""An initial value is given for a joint that is not there, or for one of several freedoms, and which is not clear.
 
 Inconclusive when the joint is ambiguous, general, or carried by loose parts between its two bodies.
 
 Why it matters: the simulation begins in another pose than the one that is meant.
 
-What to do: correct the name in `[simulation.initial.NAME]`, or the geometry of the joint.
+What to do: correct the name in `[simulation.initial.NAME]`, say `freedom`, or correct the geometry of the joint.
 
 Example: `[simulation.initial.elbow]` where the elbow is a ball joint.
 """

@@ -9,7 +9,7 @@ from pydantic import Field
 from kinform.form.manifest import check, common, function, parts, requirements
 from kinform.form.manifest.check import CheckTable
 from kinform.form.manifest.common import Finite, Positive, Table, Vector
-from kinform.form.manifest.function import FunctionTable
+from kinform.form.manifest.function import WHICH_FREEDOM, FreedomName, FunctionTable
 from kinform.form.manifest.parts import (
     AssemblyTable,
     Assume,
@@ -39,6 +39,7 @@ class Initial(Table):
 
     position: Finite = Field(0.0, description="degrees or lengths; 0 is the pose of the meshes")
     velocity: Finite = Field(0.0, description="degrees or lengths a second")
+    freedom: FreedomName | None = Field(None, description=WHICH_FREEDOM)
 
 
 class SimulationTable(Table):

@@ -75,8 +75,16 @@ class CsvTable(Table):
 LawTable = Annotated[Constant | Sine | Ramp | CsvTable, Field(discriminator="type")]
 
 
+FreedomName = Literal["turn", "slide", "turn2", "u", "v", "x", "y", "z"]
+WHICH_FREEDOM = (
+    "of a joint with several: turn or slide (cylindrical), turn or turn2 (universal), turn, u or v (planar), x, y or z "
+    "(spherical); default the one that the rest of the assembly leaves"
+)
+
+
 class _Drive(Table):
     joint: Reference = Field(description="a [[function.joint]], or a joint as kinform names it")
+    freedom: FreedomName | None = Field(None, description=WHICH_FREEDOM)
 
 
 class Motion(_Drive):

@@ -166,7 +166,9 @@ class FunctionReader:
     def drives(self) -> Iterator[Drive]:
         """`[[function.drive]]`."""
         for path, table in self.scope.tables("function", "drive"):
-            stated = table.model_dump(exclude={"joint", "kind", "law"}, exclude_none=True, exclude_unset=True)
+            stated = table.model_dump(
+                exclude={"joint", "kind", "law", "freedom"}, exclude_none=True, exclude_unset=True
+            )
             law = self._law(getattr(table, "law", None), *path, "law")
             if table.kind == "dc_motor":
                 if (law is None) == (table.voltage is None):
@@ -175,7 +177,8 @@ class FunctionReader:
                     self.scope.complain("the gear of a dc_motor is zero", "give motor turns a turn", *path, "gear")
             joint = self.joint(table.joint, *path, "joint")
             parameters = {key: float(value) for key, value in stated.items()}
-            yield Drive(joint, table.kind, law, parameters, self.scope.metres, *self.scope.where(*path))
+            where = self.scope.where(*path)
+            yield Drive(joint, table.kind, law, parameters, self.scope.metres, *where, table.freedom or "")
 
     def _law(self, table: Any, *path: str | int) -> Law | None:
         if table is None:
@@ -230,7 +233,8 @@ class FunctionReader:
         for name, value in sorted(table.initial.items()):
             path = ("simulation", "initial", name)
             joint, where = self.joint(name, *path), self.scope.where(*path)
-            initial.append(InitialValue(joint, value.position, value.velocity, self.scope.metres, *where))
+            numbers = value.position, value.velocity, self.scope.metres
+            initial.append(InitialValue(joint, *numbers, *where, value.freedom or ""))
         gravity = np.array(table.gravity, dtype=float)
         defaults = tuple(sorted({"duration", "step", "gravity"} - table.model_fields_set))
         where = self.scope.where("simulation")

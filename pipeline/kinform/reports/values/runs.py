@@ -49,7 +49,7 @@ def simulation_values(design: Design) -> dict[str, Any]:
         "joints": _courses(design, run) if ran else [],
         "residual": run.residual.max() if len(run.residual) else None,
         "balance": run.balance.max() if run.level == "dynamic" and len(run.balance) else None,
-        "drives": [fields(use, "joint", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
+        "drives": [fields(use, "joint", "freedom", "kind", "peak", "rms", "peak_power", "work") for use in run.drives],
         "gears": [
             {
                 "joint": name,

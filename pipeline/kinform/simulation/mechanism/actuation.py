@@ -100,12 +100,16 @@ class Actuation:
 
     def _take(self, system: System, slot: Slot, actor: shafts.Actor) -> None:
         """Add what acts on the shaft of a joint."""
-        q, v = slot.q.start, slot.v.start
-        if isinstance(actor, shafts.MotionDrive):
-            if self._led and self._led[-1][0] == q:
+        freedom = actor.freedom
+        q, v = slot.q.start + freedom, slot.v.start + freedom
+        if slot.has_ball and not isinstance(actor, shafts.EffortDrive | shafts.Damper):
+            why = "a ball's turn about one direction has a rate and no value: efforts and dampers alone can act on it"
+            self.conflicts.append((slot.name, why))
+        elif isinstance(actor, shafts.MotionDrive):
+            if v in [led[1] for led in self._led]:
                 self.conflicts.append((slot.name, "two drives prescribe its motion"))
                 return
-            signal = self._followed(actor, slot.kind.coordinates[0][1]) if self._with_mass else actor.signal
+            signal = self._followed(actor, slot.kind.coordinates[freedom][1]) if self._with_mass else actor.signal
             self._led.append((q, v, signal, actor.name))
         elif isinstance(actor, shafts.EndStop):
             for sense, limit in ((-1, actor.lower), (1, actor.upper)):

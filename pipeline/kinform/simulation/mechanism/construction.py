@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinform.behaviour.components import System
+from kinform.behaviour.components import RigidBody, System
 from kinform.behaviour.joints import JointGeometry
 from kinform.behaviour.primitives import Ball, OneFreedom, Primitive
 from kinform.model.arrays import Array
+from kinform.simulation.constants import ONE_PLACE
 from kinform.simulation.mechanism.mechanism import BallLink, Mechanism, Slot
 from kinform.simulation.mechanism.topology import Topology, arrange
 
@@ -90,7 +92,8 @@ def _slots(system: System) -> tuple[Slot, ...]:
 
 
 def _extent(system: System) -> tuple[Array, float]:
-    """Centre and half diagonal (m) of the box of joints and centres of mass; 1 m when that is a point."""
+    """Centre and half diagonal (m) of the box of joints and centres of mass. Where that is a point but for rounding, as
+    of a ram in its bore, the greatest radius of gyration, or 1 m where there is none."""
     points = [j.geometry.point for j in system.joints if j.geometry.point is not None]
     points += [c.centre_of_mass for c in system.bodies if hasattr(c, "centre_of_mass")]
     points = [point for point in points if np.all(np.isfinite(point))]
@@ -98,7 +101,17 @@ def _extent(system: System) -> tuple[Array, float]:
         return np.zeros(3), 1.0
     low, high = np.min(points, axis=0), np.max(points, axis=0)
     length = 0.5 * float(np.linalg.norm(high - low))
+    gyration = max((_gyration(body) for body in system.bodies if isinstance(body, RigidBody)), default=0.0)
+    if length <= ONE_PLACE * gyration:
+        length = gyration
     return 0.5 * (low + high), length if length > 0.0 else 1.0
+
+
+def _gyration(body: RigidBody) -> float:
+    """Radius of gyration (m); 0 where it is not known."""
+    if body.mass is None or not 0.0 < body.mass < math.inf or not np.all(np.isfinite(body.inertia)):
+        return 0.0
+    return math.sqrt(abs(float(np.trace(body.inertia))) / (2.0 * body.mass))
 
 
 def _moved(geometry: JointGeometry, centre: Array) -> JointGeometry:

@@ -10,6 +10,7 @@ from kinform.model.simulation import DriveUse
 from kinform.simulation.kernel import layout
 from kinform.simulation.mechanism.actuation import Acts
 from kinform.simulation.mechanism.dynamics import Dynamics
+from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.solver.record import Record
 
 _KINDS = {
@@ -22,12 +23,12 @@ def drive_uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
     """What the drives did at the output times, prescribed motions first."""
     if not len(record.time):
         return ()
-    actuation, slots = dynamics.actuation, {slot.v.start: slot.name for slot in dynamics.mechanism.slots}
+    actuation, on = dynamics.actuation, _rates(dynamics.mechanism)
     out = []
     stops = {stop.v for stop in actuation.stops}
     for v in sorted({*actuation.led.tolist(), *stops}):
         kind = "stop" if v in stops and v not in actuation.led else "motion"
-        out.append(_use(record.time, slots[v], kind, record.needed[:, v], record.v[:, v]))
+        out.append(_use(record.time, on[v], kind, record.needed[:, v], record.v[:, v]))
     states = 0
     for actor in actuation.actors:
         columns = [
@@ -35,18 +36,27 @@ def drive_uses(dynamics: Dynamics, record: Record) -> tuple[DriveUse, ...]:
         ]
         states += sum(actor.states)
         effort = _effort(actor, record, columns)
-        out.append(_use(record.time, actor.joint, _KINDS[actor.does], effort, record.v[:, actor.v]))
+        out.append(_use(record.time, on[actor.v], _KINDS[actor.does], effort, record.v[:, actor.v]))
     return tuple(out)
 
 
-def _use(time: Array, joint: str, kind: str, effort: Array, rate: Array) -> DriveUse:
+def _rates(mechanism: Mechanism) -> dict[int, tuple[str, int, bool]]:
+    """By rate: the joint, which of its rates it is, and whether it slides."""
+    return {
+        slot.v.start + k: (slot.name, k, not slot.has_ball and not slot.kind.coordinates[k][1])
+        for slot in mechanism.slots
+        for k in range(slot.v.stop - slot.v.start)
+    }
+
+
+def _use(time: Array, on: tuple[str, int, bool], kind: str, effort: Array, rate: Array) -> DriveUse:
     power = effort * rate
     span = float(time[-1] - time[0])
     with np.errstate(over="ignore"):  # of a run that overflows
         mean = float(np.trapezoid(effort**2, time)) / span if span > 0.0 else float(effort[0] ** 2)
     return DriveUse(
-        joint, kind, float(np.abs(effort).max()), float(np.sqrt(mean)), float(power.max()),
-        float(np.trapezoid(power, time)),
+        on[0], kind, float(np.abs(effort).max()), float(np.sqrt(mean)), float(power.max()),
+        float(np.trapezoid(power, time)), on[1], on[2],
     )  # fmt: skip
 
 

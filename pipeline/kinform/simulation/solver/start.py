@@ -107,7 +107,7 @@ def _notes_of_rest(
         slot.name
         for slot in mechanism.slots
         if slot.v.stop > slot.v.start
-        and slot.v.start not in stated_rates
+        and stated_rates.isdisjoint(range(slot.v.start, slot.v.stop))
         and not v[slot.v].any()
         and np.array_equal(q[slot.q], mechanism.start[slot.q])
     ]
