@@ -216,3 +216,137 @@ def test_a_scene_with_a_function_becomes_a_urdf_that_three_programs_load(tmp_pat
     plant.Finalize()
     assert plant.num_actuated_dofs() == 0 and plant.num_joints() == 2  # the turn, and the base that floats
     assert mujoco.MjModel.from_xml_path(str(path)).nq == 1
+
+
+SDF_LINK = (
+    '<link name="{name}">{pose}<inertial><pose degrees="true">0.01 0 0.02 10 0 0</pose><mass>{mass}</mass><inertia>'
+    '<ixx>0.02</ixx><iyy>0.03</iyy><izz>0.04</izz></inertia></inertial><visual name="{name} seen"><geometry>'
+    "{shape}</geometry></visual></link>"
+)
+SDF_BOX, SDF_MESH = "<box><size>0.1 0.2 0.3</size></box>", "<mesh><uri>parts/bar.stl</uri></mesh>"
+SDF_LIMIT = "<limit><lower>-1</lower><upper>2</upper><effort>7</effort></limit>"
+
+
+def sdf_link(name, pose="", mass=2.0, shape=SDF_BOX):
+    return SDF_LINK.format(name=name, pose=pose, mass=mass, shape=shape)
+
+
+def sdf_joint(name, parent, child, kind, axis, more=""):
+    return (
+        f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child><axis><xyz {axis}</xyz>'
+        f"{SDF_LIMIT}</axis>{more}</joint>"
+    )
+
+
+HAND = f"""<sdf version="1.9"><model name="hand" placement_frame="palm">
+  {sdf_link("palm", "<pose>0 0 0.05 0 0 0.7</pose>", shape=SDF_MESH)}
+  {sdf_link("finger", '<pose relative_to="palm">0.1 0 0 0 0 0</pose>')}
+  {sdf_joint("slide", "palm", "finger", "prismatic", ">1 0 0", "<pose>0 0 0 0.2 0 0</pose>")}
+</model></sdf>
+"""
+SDF = f"""<?xml version="1.0"?>
+<!-- by hand -->
+<sdf version="1.9"><model name="top" canonical_link="base">
+  <pose>1 2 3 0.1 0.2 0.3</pose>
+  {sdf_link("base", "<pose>0.1 0 0 0 0 0.2</pose>")}
+  <frame name="f" attached_to="base"><pose degrees="true">0 0.5 0 90 0 45</pose></frame>
+  {sdf_link("arm", '<pose relative_to="f">0.3 0 0 0.4 0 0</pose>', shape="{arm}")}
+  {sdf_joint("one", "f", "arm", "revolute", 'expressed_in="f">0 0.6 0.8')}
+  {{hand}}
+  <joint name="wrist" type="fixed"><parent>arm</parent><child>{{child}}</child></joint>
+  <plugin name="p" filename="libp.so"><gain>3</gain></plugin>
+</model></sdf>
+"""
+
+
+def sdf(folder, included):
+    """A model with a nested one, in the file or included from a folder beside it."""
+    (folder / "parts").mkdir()
+    trimesh.creation.box((0.02, 0.03, 0.2)).export(folder / "parts" / "bar.stl")
+    inner = HAND[HAND.index("<model") : HAND.index("</sdf>")]
+    placed = '<pose relative_to="arm">0 0 0.2 0 0.3 0</pose>'
+    if included:
+        (folder / "hand" / "parts").mkdir(parents=True)
+        trimesh.creation.box((0.02, 0.03, 0.2)).export(folder / "hand" / "parts" / "bar.stl")
+        written(folder / "hand", HAND, "model.sdf")
+        config = '<model><name>hand</name><sdf version="1.9">model.sdf</sdf></model>'
+        written(folder / "hand", config, "model.config")
+        name = "left"
+        hand = f"<include><uri>model://hand</uri><name>{name}</name>{placed}<placement_frame>finger</placement_frame></include>"
+    else:
+        name, hand = "hand", inner.replace('placement_frame="palm">', f'placement_frame="palm">{placed}')
+    return written(folder, SDF.format(arm=SDF_MESH, hand=hand, child=name), "arm.sdf"), name
+
+
+def drakes(path):
+    plants, parsing = package("pydrake.multibody.plant"), package("pydrake.multibody.parsing")
+    plant = plants.MultibodyPlant(0.0)
+    parser = parsing.Parser(plant)
+    if (path.parent / "hand").is_dir():
+        parser.package_map().Add("hand", str(path.parent / "hand"))
+    parser.AddModels(str(path))
+    plant.Finalize()
+    return plant, plant.CreateDefaultContext()
+
+
+def drake_bodies(plant):
+    indices = [k for model in range(2, plant.num_model_instances()) for k in plant.GetBodyIndices(_instance(model))]
+    return {plant.get_body(k).scoped_name().get_full(): plant.get_body(k) for k in indices}
+
+
+def _instance(number):
+    return package("pydrake.multibody.tree").ModelInstanceIndex(number)
+
+
+@pytest.mark.parametrize("included", [False, True])
+def test_drake_finds_the_same_places_and_masses_in_an_sdf(tmp_path, included):
+    path, hand = sdf(tmp_path, included)
+    if not included:
+        assert back(path, "sdf").files == {"arm.sdf": path.read_bytes()}
+    over = (
+        'schema = 1\n[assembly]\nname = "a"\nunits = "m"\nfrom = "arm.sdf"\n'
+        f'[[function.joint]]\nname = "{hand}::slide"\nrange = [-0.5, 0.25]\n'
+    )
+    fixed = back(written(tmp_path, over, "a.toml"), "sdf", fix=["inertia"], folder="..")
+    (tmp_path / "out").mkdir()
+    out = written(tmp_path / "out", fixed.files["arm.sdf"].decode(), "arm.sdf")
+    assert ("by hand" in out.read_text()) is not included  # comments go where includes are put in
+    assert "<gain>3</gain>" in out.read_text() and fixed.lost == ()
+    assert {part.name: part.mesh.digest for part in form.load(out, allow_outside=True).parts} == {
+        part.name: part.mesh.digest for part in form.load(path).parts
+    }
+    (old, before), (new, after) = drakes(path), drakes(out)
+    rng = np.random.default_rng(7)
+    assert old.num_positions() == new.num_positions() == 7 + 2
+    assert drake_bodies(old).keys() == drake_bodies(new).keys() and len(drake_bodies(old)) == 4
+    for _ in range(20):
+        values = rng.uniform(-0.5, 0.5, 2)
+        places = []
+        for plant, context in ((old, before), (new, after)):
+            joints = {plant.get_joint(k).name(): plant.get_joint(k) for k in plant.GetJointIndices()}
+            joints["one"].set_angle(context, values[0])
+            joints["slide"].set_translation(context, values[1])
+            places.append(
+                {name: body.EvalPoseInWorld(context).GetAsMatrix4() for name, body in drake_bodies(plant).items()}
+            )
+        for name, X in places[0].items():
+            np.testing.assert_allclose(places[1][name], X, atol=1e-12)
+    slide = next(new.get_joint(k) for k in new.GetJointIndices() if new.get_joint(k).name() == "slide")
+    assert [slide.position_lower_limits()[0], slide.position_upper_limits()[0]] == pytest.approx([-0.5, 0.25])
+    for name, body in drake_bodies(new).items():
+        inertia = body.default_spatial_inertia()
+        sides = np.square([0.02, 0.03, 0.2] if name.endswith(("arm", "palm")) else [0.1, 0.2, 0.3])
+        assert inertia.get_mass() == pytest.approx(2.0, rel=1e-9)
+        np.testing.assert_allclose(inertia.get_com(), np.zeros(3), atol=1e-9)
+        true = 2.0 / 12.0 * (sides.sum() - sides)
+        np.testing.assert_allclose(inertia.CopyToFullMatrix6()[:3, :3], np.diag(true), rtol=1e-6, atol=1e-9)
+
+
+def test_an_sdf_whose_includes_mean_something_else_in_place_is_made_anew(tmp_path):
+    path, _ = sdf(tmp_path, included=True)
+    inner = tmp_path / "hand" / "model.sdf"
+    inner.write_text(inner.read_text().replace('version="1.9"', 'version="1.4"'))
+    (description,) = form.load(path).descriptions
+    assert description.format == "sdf" and description.text == ""
+    with pytest.raises(ExportError, match="no description of the format sdf"):
+        back(path, "sdf", fix=["inertia"])

@@ -62,8 +62,8 @@ def export(
 ) -> None:
     """Write the model, or its motion, in the format of another tool.
 
-    A robot that was read from a URDF or MJCF is written back as that, with everything that was not touched. What the
-    format cannot carry is named on stderr, and in the file itself.
+    A robot that was read from a URDF, SDF or MJCF is written back as that, with everything that was not touched. What
+    the format cannot carry is named on stderr, and in the file itself.
     """
     if output.exists() and not output.is_dir():
         raise refuse("this is a file, not a folder", file=output, remedy="name a folder with -o")

@@ -31,7 +31,7 @@ from kinform.model.assembly import Assembly, Part
 from kinform.model.descriptions import DescribedLink, Description
 from kinform.model.function import IntendedJoint
 
-SUFFIX = {"urdf": ".urdf", "mjcf": ".xml"}
+SUFFIX = {"urdf": ".urdf", "sdf": ".sdf", "mjcf": ".xml"}
 """Of the files, by format."""
 SAME = 1e-9
 """Relative difference of numbers up to which a manifest says what the description says: the way through degrees."""
@@ -45,9 +45,10 @@ def description_of(design: Design, format: str) -> Description | None:
 
 
 def export(design: Design, format: str, *, inertia: bool = False, folder: str | None = None) -> Exported:
-    """NAME.urdf or NAME.xml. `inertia`: of the geometry; `folder`: that of the description as seen from the new place.
+    """NAME.urdf, NAME.sdf or NAME.xml.
 
-    Raises LookupError where `description_of` gives none.
+    `inertia`: of the geometry; `folder`: that of the description as seen from the new place. Raises LookupError where
+    `description_of` gives none.
     """
     description = description_of(design, format)
     if description is None:

@@ -18,6 +18,7 @@ from kinform.exports.looks import Shape, shapes_of
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
 from kinform.foundation.algebra.spatial import quaternions
+from kinform.foundation.colours import light
 from kinform.model.arrays import Array
 from kinform.model.kinematics import Joint
 from kinform.version import __version__
@@ -103,9 +104,11 @@ class _Meshes:
         self._meshes: dict[tuple[str, int], int] = {}
 
     def material(self, name: str, rgba: tuple[float, ...]) -> int:
-        """A dull material; metal would be black without surroundings."""
+        """A dull material of a colour of sRGB, which glTF has in linear values; metal would be black without
+        surroundings."""
         if (name, rgba) not in self._materials:
-            shade = {"baseColorFactor": list(rgba), "metallicFactor": 0.0, "roughnessFactor": 0.7}
+            colour = [round(v, 6) for v in light(rgba)] + [rgba[3]]
+            shade = {"baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 0.7}
             self._materials[name, rgba] = self.file.add(
                 "materials", name=name or "unstated", pbrMetallicRoughness=shade, doubleSided=True
             )

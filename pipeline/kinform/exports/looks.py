@@ -1,4 +1,4 @@
-"""How parts look: the facets of each body's parts in the world's axes, and a colour a material."""
+"""How parts look: the facets of each body's parts in the world's axes, and their own colour or one a material."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from kinform.exports.model import ExportModel
 from kinform.exports.names import FILES, identifiers
+from kinform.foundation.colours import shares
 from kinform.model.arrays import Array
 from kinform.model.assembly import Part
 
@@ -41,8 +42,10 @@ class Shape:
     file: str
     """Name of its file without ending, unique among all parts."""
     material: str
-    """Of the manifest; "" where none is stated."""
+    """What has the colour: the material of the manifest, "" where none is stated; of a part with a colour of its own
+    that colour, "#rrggbb"."""
     rgba: Colour
+    """sRGB."""
     digest: str
     X_WP: Array
     """(4, 4)."""
@@ -68,13 +71,11 @@ def shapes_of(model: ExportModel) -> dict[str, tuple[Shape, ...]]:
             part = model.assembly.part(name)
             if part.mesh is None or not len(part.mesh.faces):
                 continue
-            mesh, material = part.mesh, part.material or ""
+            mesh, material = part.mesh, part.own_colour or part.material or ""
+            rgba = (*shares(part.own_colour), 1.0) if part.own_colour else colours[material]
             looks.append(
-                Shape(
-                    part.name, files[part.name], material, colours[material], mesh.digest, part.X_WP,
-                    mesh.vertices, mesh.faces,
-                )
-            )  # fmt: skip
+                Shape(part.name, files[part.name], material, rgba, mesh.digest, part.X_WP, mesh.vertices, mesh.faces)
+            )
         out[str(body.name)] = tuple(looks)
     return out
 

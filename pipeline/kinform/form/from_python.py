@@ -7,7 +7,6 @@ angular_tolerance)`, as those of build123d and CadQuery, a scene what has a `gra
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -192,7 +191,9 @@ def _raw(shape: Any, deviation: float | None) -> RawMesh:
     whole = corners.astype(np.int64)
     if (whole != corners).any() or (len(whole) and (whole.min() < 0 or whole.max() >= len(points))):
         raise MeshError([Fault("has faces of vertices that are not there", "correct them")])
-    return replace(RawMesh(points, whole), written=0.0)
+    from kinform.form.meshes.by_trimesh import colour_of_mesh
+
+    return RawMesh(points, whole, colour=colour_of_mesh(shape))
 
 
 def _tessellated(shape: Any, deviation: float | None) -> tuple[Any, Any]:

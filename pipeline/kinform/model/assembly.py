@@ -77,6 +77,8 @@ class Mesh:
     """(3,) m: of the part frame in the frame of the file. Nought unless the file has its mesh far from its origin."""
     resolution: Metres = 0.0
     """A step of the last place of the file's largest coordinate (m): nothing finer is known of this mesh."""
+    colour: str | None = None
+    """"#rrggbb" (sRGB) of most of its area, where the file has colours. It decides nothing."""
 
     @cached_property
     def box(self) -> tuple[Array, Array]:
@@ -89,7 +91,9 @@ class Mesh:
     @cached_property
     def bare(self) -> Mesh:
         """The shape, without the file that it came from."""
-        return self if not self.path and self.body is None else replace(self, path="", body=None)
+        if not self.path and self.body is None and self.colour is None:
+            return self
+        return replace(self, path="", body=None, colour=None)
 
     @cached_property
     def _placed(self) -> dict[bytes, tuple[Array, Array]]:
@@ -186,6 +190,13 @@ class Part:
     scale: Annotated[Array, "1", XYZ] = field(default_factory=lambda: np.ones(3))
     """(3,) factors along the axes of the mesh file, by which the mesh was scaled, and mirrored where their product is
     negative."""
+    colour: str | None = None
+    """"#rrggbb" (sRGB) that a manifest or a description states, over that of its mesh. It decides nothing."""
+
+    @property
+    def own_colour(self) -> str | None:
+        """The colour that its sources give it; None where they give none."""
+        return self.colour or (None if self.mesh is None else self.mesh.colour)
 
 
 @dataclass(frozen=True, eq=False)

@@ -117,7 +117,7 @@ class Description:
     prefix: str
     """Of its names in the assembly: "" where it is the top."""
     format: str
-    """"urdf" or "mjcf"."""
+    """"urdf", "sdf" or "mjcf"."""
     text: str
     """All of it as XML, macros expanded and includes put in."""
     links: tuple[DescribedLink, ...] = field(default=())

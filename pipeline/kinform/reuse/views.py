@@ -98,7 +98,7 @@ def _weightless(parts: tuple[Part, ...]) -> tuple[Part, ...]:
 
 def _bare_part(part: Part) -> Part:
     mesh = part.mesh and part.mesh.bare
-    return replace(part, mesh=mesh, material=None, units="m", scale=UNSCALED, source=NOWHERE)
+    return replace(part, mesh=mesh, material=None, units="m", scale=UNSCALED, source=NOWHERE, colour=None)
 
 
 def _bare_function(function: Function) -> Function:

@@ -16,6 +16,7 @@ from lxml import etree
 from kinform.form.constants import LARGEST_NUMBER, VALUE_LENGTH, XML_BYTES
 from kinform.form.descriptions.robot import At
 from kinform.form.problems import Problems
+from kinform.foundation.colours import told
 from kinform.foundation.meant import in_quotes
 
 FILE = "{urn:kinform}file"
@@ -88,6 +89,14 @@ def xml_bytes(text: str) -> bytes:
         return text.encode(declared[1] if declared else "utf-8")
     except (LookupError, UnicodeEncodeError):
         return text.encode("utf-8")
+
+
+def colour_of(text: str | None) -> str | None:
+    """ "#rrggbb" of three or four numbers of sRGB, 0 … 1; None where the text is none: a colour decides nothing."""
+    try:
+        return told([float(word) for word in (text or "").split()])
+    except ValueError:
+        return None
 
 
 def tag_of(element: Element) -> str:

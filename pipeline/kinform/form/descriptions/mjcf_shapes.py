@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from kinform.form.descriptions.elements import Element, Xml
+from kinform.form.descriptions.elements import Element, Xml, colour_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.mjcf_defaults import Compiler, Defaults, from_z, mesh_assets
@@ -17,6 +18,8 @@ from kinform.form.descriptions.tree import Count
 from kinform.foundation.meant import did_you_mean, in_quotes
 from kinform.model.arrays import Array
 
+_UNCOLOURED: tuple[list[str], ...] = ([], ["0.5", "0.5", "0.5", "1"], [".5", ".5", ".5", "1"])
+
 
 class Shapes:
     """Reads what is in bodies; `folders` are those of its meshes."""
@@ -24,6 +27,11 @@ class Shapes:
     def __init__(self, xml: Xml, root: Element, meshes: MeshFiles, compiler: Compiler, defaults: Defaults, left: Count):
         self._xml, self._meshes, self._compiler, self._defaults, self._left = xml, meshes, compiler, defaults, left
         self._assets = mesh_assets(xml, root, compiler, defaults)
+        self._colours = {
+            said.get("name", ""): colour_of(said.get("rgba"))
+            for assets in xml.children(root, "asset")
+            for said in (defaults.said(element, None) for element in xml.children(assets, "material"))
+        }
         self.folders: set[Path] = set()
 
     def inertial(self, element: Element, name: str, X: Array) -> Inertial | None:
@@ -46,9 +54,20 @@ class Shapes:
         six = full if "fullinertia" in element.attrib else (*diagonal, 0.0, 0.0, 0.0)
         return None if mass is None else Stated(mass, six, self._xml.at(element))
 
+    def _colour(self, said: Mapping[str, str]) -> str | None:
+        """The colour of a geom: its own, or else of its material; grey is what MuJoCo takes for not stated."""
+        own = said.get("rgba", "")
+        stated = None if own.split() in _UNCOLOURED else colour_of(own)
+        return stated or self._colours.get(said.get("material", ""))
+
     def geom(self, element: Element, link: str, X: Array, named: str | None) -> tuple[Shape | None, bool]:
         """The shape of a geom, and whether it is seen only: it collides with nothing."""
-        xml, said = self._xml, self._defaults.said(element, named)
+        said = self._defaults.said(element, named)
+        shape, seen = self._geom(element, said, link, X)
+        return None if shape is None else replace(shape, colour=self._colour(said)), seen
+
+    def _geom(self, element: Element, said: Mapping[str, str], link: str, X: Array) -> tuple[Shape | None, bool]:
+        xml = self._xml
         kind = said.get("type", "mesh" if "mesh" in said else "sphere")
         seen = said.get("contype", "1").strip() == "0" and said.get("conaffinity", "1").strip() == "0"
         X_FG = X @ self._compiler.pose(xml, element, said)

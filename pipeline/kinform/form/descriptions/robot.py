@@ -45,6 +45,8 @@ class Shape:
     at: At
     metres: float = 1.0
     """In one unit of a mesh whose format has none."""
+    colour: str | None = None
+    """"#rrggbb" that the description states."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +154,7 @@ class Robot:
     files: tuple[Path, ...] = ()
     """Files that were read besides the description: includes."""
     format: str = ""
-    """"urdf" or "mjcf": what `text` is."""
+    """"urdf", "sdf" or "mjcf": what `text` is."""
     text: str = ""
     """All of it as XML, macros expanded and includes put in; "" where it cannot be written back."""
     folders: tuple[Path, ...] = field(default=())

@@ -21,6 +21,7 @@ from kinform.form.descriptions.robot import Limits, Link, Ratio, Robot, RobotJoi
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
 from kinform.form.descriptions.sdf_links import Links
 from kinform.form.descriptions.sdf_models import Model, Models
+from kinform.form.descriptions.sdf_text import whole_text
 from kinform.form.descriptions.sdf_values import Values
 from kinform.form.descriptions.tree import Count, distinct
 from kinform.form.problems import Problems
@@ -49,7 +50,11 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
     if tag_of(root) != "sdf":
         xml.complain(root, f"the root is <{tag_of(root)}>, and an SDF has <sdf>", "name an SDF")
         return None
-    return _Reader(xml, meshes).robot(root, path)
+    reader = _Reader(xml, meshes)
+    robot = reader.robot(root, path)
+    if robot is None:
+        return None
+    return replace(robot, format="sdf", text=whole_text(root, data, reader.models.included))
 
 
 class _Reader:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from kinform.form.descriptions.elements import Element, tag_of
+from kinform.form.descriptions.elements import Element, colour_of, tag_of
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.robot import Inertial, Link, Shape, Solid, Stated
@@ -85,12 +86,20 @@ class Links:
         label = (element.get("name") or "").strip().replace("/", "_") or None
         tag = tag_of(kind)
         if tag == "mesh":
-            return self._mesh(kind, what, model, label, X)
+            shape = self._mesh(kind, what, model, label, X)
+            return None if shape is None else replace(shape, colour=self._colour(element))
         if tag in _LEFT:
             self.left.add(f"geometry <{tag}>")
             return None
         solid = self._solid(kind, what)
-        return None if solid is None else Shape(label, solid, (1.0, 1.0, 1.0), X, self.xml.at(kind))
+        if solid is None:
+            return None
+        return Shape(label, solid, (1.0, 1.0, 1.0), X, self.xml.at(kind), colour=self._colour(element))
+
+    def _colour(self, element: Element) -> str | None:
+        """What a visual scatters, where it states that."""
+        material = self.xml.child(element, "material")
+        return None if material is None else colour_of(self.values.text(material, "diffuse"))
 
     def _mesh(self, kind: Element, what: str, model: Model, label: str | None, X: Array) -> Shape | None:
         x, y, z = self.values.vector(kind, "scale", (1.0, 1.0, 1.0))

@@ -16,6 +16,7 @@ from kinform.form.constants import INCLUDES
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
+from kinform.form.descriptions.sdf_text import Included
 from kinform.form.descriptions.sdf_values import Values
 from kinform.foundation.meant import in_quotes
 
@@ -52,6 +53,8 @@ class Models:
         self.models: list[Model] = []
         self.files: list[Path] = []
         self.folders: list[Path] = []
+        self.included: list[Included] = []
+        """The outer before the inner."""
 
     def collect(self, root: Element, path: Path) -> None:
         """All models of a file."""
@@ -146,6 +149,8 @@ class Models:
         elif self._is_new(name, element, taken):
             above = (*here.above, path.resolve())
             inside = _Here(f"{here.scope}{name}::", path.parent, version_of(root), above)
+            versions = here.version, inside.version
+            self.included.append(Included(element, models[0], name, (here.folder, path.parent), versions))
             self._model(models[0], element, name, here, inside)
 
     def _file(self, element: Element, uri: str, folder: Path) -> Path | None:

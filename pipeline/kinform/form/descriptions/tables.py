@@ -159,6 +159,8 @@ class _Writer:
                 table["units"] = unit
             if scale != (1.0, 1.0, 1.0):
                 table["scale"] = list(scale)
+        if shape.colour is not None:
+            table["colour"] = shape.colour
         self._add("part", shape.at, table | self._posed(shape.X_FG))
         return str(name)
 

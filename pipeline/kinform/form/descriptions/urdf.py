@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from kinform.form.constants import AXIS_LENGTH
-from kinform.form.descriptions.elements import Element, Xml, parse_xml, tag_of, xml_text
+from kinform.form.descriptions.elements import Element, Xml, colour_of, parse_xml, tag_of, xml_text
 from kinform.form.descriptions.inertials import placed, symmetric
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.poses import place, pose, rpy
@@ -54,12 +54,14 @@ class _Reader:
     def __init__(self, xml: Xml, meshes: MeshFiles):
         self.xml, self.meshes, self.left = xml, meshes, Count()
         self.folders: set[Path] = set()
+        self.colours: dict[str, str] = {}
 
     def robot(self, root: Element, name: str) -> Robot | None:
         xml = self.xml
         if tag_of(root) != "robot":
             xml.complain(root, f"the root is <{tag_of(root)}>, and a URDF has <robot>", "name a URDF")
             return None
+        self.colours = self._colours(root)
         links = self._by_name(root, "link")
         joints = self._by_name(root, "joint")
         edges = [edge for joint in joints.items() if (edge := self._edge(*joint)) is not None]
@@ -95,6 +97,24 @@ class _Reader:
             elif name is not None:
                 out[name] = element
         return out
+
+    def _colours(self, root: Element) -> dict[str, str]:
+        """Colours of materials by name; the first that is stated counts, of the whole robot before of a visual."""
+        out: dict[str, str] = {}
+        for element in (*self.xml.children(root, "material"), *root.iter("material")):
+            color = self.xml.child(element, "color")
+            colour = None if color is None else colour_of(color.get("rgba"))
+            if colour is not None:
+                out.setdefault(element.get("name") or "", colour)
+        return out
+
+    def _colour(self, element: Element) -> str | None:
+        """The colour of a visual: its own, else that of the material that it names."""
+        material = self.xml.child(element, "material")
+        if material is None:
+            return None
+        own = self.xml.child(material, "color")
+        return (None if own is None else colour_of(own.get("rgba"))) or self.colours.get(material.get("name") or "")
 
     def _origin(self, element: Element | None) -> Array:
         origin = self.xml.child(element, "origin")
@@ -145,9 +165,11 @@ class _Reader:
         X = X_FL @ self._origin(element)
         label = (element.get("name") or "").strip().replace("/", "_") or None
         if tag_of(kind) == "mesh":
-            return self._mesh(kind, what, label, X)
-        solid = self._solid(kind, what)
-        return None if solid is None else Shape(label, solid, (1.0, 1.0, 1.0), X, self.xml.at(kind))
+            shape = self._mesh(kind, what, label, X)
+        else:
+            solid = self._solid(kind, what)
+            shape = None if solid is None else Shape(label, solid, (1.0, 1.0, 1.0), X, self.xml.at(kind))
+        return None if shape is None else replace(shape, colour=self._colour(element))
 
     def _mesh(self, kind: Element, what: str, label: str | None, X: Array) -> Shape | None:
         scale = self.xml.vector(kind, "scale", (1.0, 1.0, 1.0))

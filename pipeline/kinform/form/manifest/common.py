@@ -18,6 +18,8 @@ Positive = Annotated[float, Field(gt=0, le=LARGEST_NUMBER, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, le=LARGEST_NUMBER, allow_inf_nan=False)]
 Vector = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 Matrix = Annotated[list[Vector], Field(min_length=3, max_length=3)]
+Colour = Annotated[str, StringConstraints(pattern=r"^#[0-9a-fA-F]{6}$")]
+"""As in style sheets."""
 Name = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+$")]
 Path = Annotated[str, StringConstraints(min_length=1, max_length=NAME_LENGTH, pattern=r"^[^/\x00]+(/[^/\x00]+)*$")]
 """Names with "/" between them, as parts of a scene have."""

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from kinform.form.manifest.common import (
+    Colour,
     Finite,
     JointType,
     Matrix,
@@ -112,6 +113,7 @@ class Part(Posed):
     mass: Positive | None = Field(None, description="kg; overrides the geometry, with centre_of_mass and inertia")
     centre_of_mass: Vector | None = Field(None, description="three lengths in the part frame; with mass")
     inertia: Matrix | None = Field(None, description="3×3, kg·m², about the centre of mass, part axes; with mass")
+    colour: Colour | None = Field(None, description="'#rrggbb', to be seen; default that of the mesh file, if any")
     solid: bool = Field(True, description="false: surfaces only; contacts yes, mass no, need not be watertight")
 
 

@@ -53,7 +53,7 @@ def select_body(raw: RawMesh, name: str) -> RawMesh:
 
 def _part(raw: RawMesh, chosen: NDArray[np.bool_]) -> RawMesh:
     vertices, faces = used_only(raw.vertices, raw.faces[chosen])
-    return RawMesh(vertices, faces, written=raw.written)
+    return RawMesh(vertices, faces, written=raw.written, colour=raw.colour)
 
 
 def _with_cavities(vertices: Array, faces: Ints, label: Ints) -> Ints:

@@ -58,8 +58,9 @@ def build_mesh(raw: RawMesh, metres: float, weld: float | None, *, path: str, bo
     shape.setflags(write=False)
     kept.setflags(write=False)
     return Mesh(
-        shape, kept, health, path, body, digest.hexdigest(), np.asarray(freeze(origin * metres)), max(resolution, usual)
-    )
+        shape, kept, health, path, body, digest.hexdigest(), np.asarray(freeze(origin * metres)),
+        max(resolution, usual), raw.colour,
+    )  # fmt: skip
 
 
 def far_origin(vertices: NDArray[np.floating]) -> Array:

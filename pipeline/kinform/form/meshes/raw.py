@@ -58,6 +58,8 @@ class RawMesh:
     labellings: tuple[Labelling, ...] = ()
     written: float = 0.0
     """Unit of the last digit of the largest coordinates of a text, in file units; 0: finer than can be told."""
+    colour: str | None = None
+    """"#rrggbb" (sRGB) of most of its area, where the file has colours."""
 
     @property
     def resolution(self) -> float:
@@ -65,6 +67,21 @@ class RawMesh:
         written."""
         largest = float(np.abs(self.vertices).max(initial=0.0))
         return max(self.written, float(np.finfo(self.vertices.dtype).eps) * largest)
+
+
+def prevailing(
+    vertices: NDArray[np.floating], pieces: Sequence[NDArray[np.int64]], colours: Sequence[str | None]
+) -> str | None:
+    """The colour of most of the area, where each piece (n, 3) of the facets has one colour or none."""
+    if len(set(colours)) <= 1:
+        return colours[0] if colours else None
+    areas: dict[str | None, float] = {}
+    for faces, colour in zip(pieces, colours, strict=True):
+        a, b, c = (vertices[faces[:, k]].astype(np.float64) for k in range(3))
+        with np.errstate(over="ignore", invalid="ignore"):
+            area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+        areas[colour] = areas.get(colour, 0.0) + area
+    return max(areas, key=lambda colour: (areas[colour], colour or ""))
 
 
 def soup(corners: NDArray[np.floating], labellings: tuple[Labelling, ...] = (), written: float = 0.0) -> RawMesh:

@@ -314,6 +314,7 @@ class _AssemblyReader:
             units=units,
             source=scope.source(*path),
             scale=np.array(scale),
+            colour=None if table.colour is None else table.colour.lower(),
         )
 
 

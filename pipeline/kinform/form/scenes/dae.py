@@ -8,17 +8,18 @@ these programs have it. Archives, entities and external document types are refus
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from kinform.form.constants import LARGEST_NUMBER, SCENE_DEEP, SCENE_NODES, SCENE_XML_BYTES
-from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.colours import told
 from kinform.foundation.words import counted
 from kinform.model.arrays import Array
 
@@ -56,10 +57,12 @@ def _as_one(data: bytes) -> RawMesh:
     reader = _Reader(data)
     roots = [reader.node(node, 0) for node in reader.roots]
     vertices, faces, count = [], [], 0
+    colours: list[str | None] = []
     for k, X in _placed(reader.nodes, roots, np.eye(4)):
         raw = reader.meshes[k][1]
         vertices.append(raw.vertices @ X[:3, :3].T + X[:3, 3])
         faces.append((raw.faces if np.linalg.det(X[:3, :3]) >= 0.0 else raw.faces[:, ::-1]) + count)
+        colours.append(raw.colour)
         count += len(raw.vertices)
     if not vertices:
         why = "".join(f"; {note}" for note in reader.notes())
@@ -68,7 +71,7 @@ def _as_one(data: bytes) -> RawMesh:
     if not is_coordinate(every).all():
         raise MeshError([Fault(f"has coordinates that are no finite numbers up to {LARGEST_NUMBER:g}", EXPORT)])
     single = float(np.finfo(np.float32).eps) * float(np.abs(every).max())
-    return RawMesh(every, np.concatenate(faces), written=single)
+    return RawMesh(every, np.concatenate(faces), written=single, colour=prevailing(every, faces, colours))
 
 
 def _placed(nodes: list[Node], below: list[int] | tuple[int, ...], X: Array) -> Iterator[tuple[int, Array]]:
@@ -99,7 +102,7 @@ class _Reader:
         self.meshes: list[tuple[str, RawMesh]] = []
         self.nodes: list[Node] = []
         self.skins = 0
-        self._number: dict[str, int | None] = {}
+        self._number: dict[tuple[Any, ...], int | None] = {}
 
     def notes(self) -> Iterator[str]:
         """What was left out."""
@@ -122,32 +125,35 @@ class _Reader:
             if isinstance(child, collada.scene.Node):
                 children.append(self.node(child, deep + 1))
             elif isinstance(child, collada.scene.GeometryNode):
-                children += self._leaf(child.geometry)
+                children += self._leaf(child.geometry, child.materials)
             elif isinstance(child, collada.scene.ControllerNode):
                 self.skins += 1
-                children += self._leaf(child.controller.geometry)
+                children += self._leaf(child.controller.geometry, child.materials)
         if not np.isfinite(X).all():
             raise MeshError([Fault("places a node by numbers that are not finite", EXPORT)])
         self.nodes.append(_joined(_name(node), X, children, self.nodes))
         return len(self.nodes) - 1
 
-    def _leaf(self, geometry: Any) -> list[int]:
-        """A node for a geometry; none where it has no triangle."""
-        if geometry.id not in self._number:
-            raw = self._mesh(geometry)
-            self._number[geometry.id] = None if raw is None else len(self.meshes)
+    def _leaf(self, geometry: Any, materials: Any) -> list[int]:
+        """A node for a geometry in these materials; none where it has no triangle."""
+        colours = {str(bound.symbol): _colour(bound.target) for bound in materials}
+        key = (geometry.id, tuple(sorted((symbol, colour or "") for symbol, colour in colours.items())))
+        if key not in self._number:
+            raw = self._mesh(geometry, colours)
+            self._number[key] = None if raw is None else len(self.meshes)
             if raw is not None:
                 self.meshes.append((geometry.name or geometry.id or "", raw))
-        k = self._number[geometry.id]
+        k = self._number[key]
         if k is None:
             return []
         self.nodes.append(Node("", np.eye(4), k))
         return [len(self.nodes) - 1]
 
-    def _mesh(self, geometry: Any) -> RawMesh | None:
+    def _mesh(self, geometry: Any, materials: Mapping[str, str | None]) -> RawMesh | None:
         import collada
 
         vertices, faces, count = [], [], 0
+        colours: list[str | None] = []
         for primitive in geometry.primitives:
             if isinstance(primitive, collada.polylist.Polylist):  # polygons are polylists too
                 primitive = primitive.triangleset()
@@ -161,12 +167,22 @@ class _Reader:
                 raise MeshError([Fault(f"has coordinates that are no finite numbers up to {LARGEST_NUMBER:g}", EXPORT)])
             vertices.append(points * self.metres)
             faces.append(corners + count)
+            colours.append(materials.get(str(primitive.material)))
             count += len(points)
         if not vertices:
             return None
         every = np.concatenate(vertices)
         single = float(np.finfo(np.float32).eps) * float(np.abs(every).max())
-        return RawMesh(every, np.concatenate(faces), written=single)
+        return RawMesh(every, np.concatenate(faces), written=single, colour=prevailing(every, faces, colours))
+
+
+def _colour(material: Any) -> str | None:
+    """What a material scatters; None where that is a texture."""
+    diffuse = getattr(getattr(material, "effect", None), "diffuse", None)
+    try:
+        return told([float(v) for v in diffuse]) if isinstance(diffuse, tuple | list) else None
+    except (TypeError, ValueError):
+        return None
 
 
 def _unreadable(error: Exception) -> MeshError:

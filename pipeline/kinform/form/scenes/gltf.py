@@ -1,13 +1,15 @@
 """glTF 2.0, as GLB or as JSON with its buffers: meshes of triangles and the tree of nodes.
 
 Read here, not by trimesh, which fills what it cannot decode with zeros, renames what has the same name, and allots
-what a header claims before it looks at what is there. Lengths are metres. Skins, morph targets, materials are left.
+what a header claims before it looks at what is there. Lengths are metres. Materials give
+their colour; skins, morph targets and textures are left.
 """
 
 from __future__ import annotations
 
 import base64
 import json
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -16,9 +18,10 @@ from urllib.parse import unquote
 import numpy as np
 
 from kinform.form.constants import SCENE_TEXT_BYTES
-from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
+from kinform.foundation.colours import of_light
 from kinform.foundation.meant import in_quotes
 from kinform.foundation.regular import not_a_file
 from kinform.foundation.words import counted
@@ -124,6 +127,7 @@ class _Reader:
     def _mesh(self, k: int, table: Any) -> RawMesh | None:
         """The triangles of a mesh; None where it has none."""
         vertices, faces, count, quantum = [], [], 0, 0.0
+        colours: list[str | None] = []
         shared: dict[int, int] = {}
         for primitive in self._list(table, "primitives"):
             mode = primitive.get("mode", _TRIANGLES)
@@ -143,10 +147,24 @@ class _Reader:
             size = len(vertices[list(shared).index(stated)])
             corners = np.arange(size) if "indices" not in primitive else self._corners(primitive["indices"], size, k)
             faces.append(_triangles(corners, mode, k) + shared[stated])
+            colours.append(self._colour(primitive))
         if not sum(map(len, faces)):
             return None
         every = np.concatenate(vertices)
-        return RawMesh(every, np.concatenate(faces).astype(np.int64), written=quantum)
+        colour = prevailing(every, faces, colours)
+        return RawMesh(every, np.concatenate(faces).astype(np.int64), written=quantum, colour=colour)
+
+    def _colour(self, primitive: dict[str, Any]) -> str | None:
+        """Of the material of some triangles; None where it states none, or a texture says it."""
+        every = self.header.get("materials")
+        k = primitive.get("material")
+        table = every[k] if isinstance(every, list) and isinstance(k, int) and 0 <= k < len(every) else None
+        shade = table.get("pbrMetallicRoughness") if isinstance(table, dict) else None
+        factor = shade.get("baseColorFactor") if isinstance(shade, dict) else None
+        if not isinstance(factor, list) or len(factor) not in (3, 4):
+            return None
+        numbers = [float(v) for v in factor if isinstance(v, int | float) and math.isfinite(v)]
+        return of_light(numbers) if len(numbers) == len(factor) else None
 
     def _positions(self, stated: Any) -> tuple[Array, float]:
         """Vertices (n, 3), and the step of quantised ones."""

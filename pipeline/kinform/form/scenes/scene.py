@@ -13,7 +13,7 @@ import numpy as np
 
 from kinform.form.constants import PARTS_MOST, SCENE_DEEP, SCENE_NODES, SHEAR, UNSCALED
 from kinform.form.descriptions.tree import distinct
-from kinform.form.meshes.raw import Fault, MeshError, RawMesh
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh, prevailing
 from kinform.foundation.meant import in_quotes
 from kinform.model.arrays import Array
 
@@ -170,13 +170,16 @@ def whole(scene: Scene) -> RawMesh:
     if not parts:
         raise MeshError([Fault("is empty: it has no triangle", EXPORT)])
     vertices, faces, count = [], [], 0
+    colours: list[str | None] = []
     written = 0.0
     for part in parts:
         raw = scaled(scene.meshes[part.mesh][1], part.scale)
         vertices.append(raw.vertices @ part.X[:3, :3].T + part.X[:3, 3])
         faces.append(raw.faces + count)
+        colours.append(raw.colour)
         written = max(written, raw.written)
         count += len(raw.vertices)
         if sum(map(len, faces)) > PARTS_MOST * 1000:
             raise MeshError([Fault("places more than a hundred million facets", "divide it")])
-    return RawMesh(np.concatenate(vertices), np.concatenate(faces), written=written)
+    every = np.concatenate(vertices)
+    return RawMesh(every, np.concatenate(faces), written=written, colour=prevailing(every, faces, colours))

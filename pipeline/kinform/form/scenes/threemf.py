@@ -6,14 +6,16 @@ Read here, not by trimesh, which needs networkx for it, drops the hierarchy, and
 from __future__ import annotations
 
 import io
+import re
 import zipfile
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinform.form.constants import SCENE_XML_BYTES
 from kinform.form.meshes.digits import written_step
-from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate
+from kinform.form.meshes.raw import Fault, MeshError, RawMesh, is_coordinate, prevailing
 from kinform.form.scenes.declarations import refuse_declarations
 from kinform.form.scenes.scene import EXPORT, Node, Scene
 from kinform.form.sources import AS_IT_IS, Reading
@@ -28,6 +30,7 @@ _UNITS = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "inch": "in", 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/"
 _KNOWN = ("/material/", "/production/", "/core/")
 """What the name spaces of extensions contain that do not change where anything is, or that are read."""
+_HEX = re.compile(r"#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?")
 _Key = tuple[str, str]
 """The file in the archive, and the number of an object in it."""
 
@@ -48,7 +51,8 @@ class _Reader:
         self.names = {f"/{name.lstrip('/')}".lower(): name for name in archive.namelist()}
         self.left = SCENE_XML_BYTES
         self.objects: dict[_Key, Any] = {}
-        self.read: set[str] = set()
+        self.roots: dict[str, Any] = {}
+        self.colours: dict[_Key, list[str]] = {}
         self.meshes: list[tuple[str, RawMesh]] = []
         self.nodes: list[Node] = []
         self.number: dict[_Key, int] = {}
@@ -103,7 +107,7 @@ class _Reader:
     def _model(self, name: str) -> Any:
         """A model in the archive; its objects are known then."""
         root = self._xml(name)
-        self.read.add(name)
+        self.roots[name] = root
         for prefix in root.get("requiredextensions", "").split():
             space = root.nsmap.get(prefix, prefix)
             if not any(word in space for word in _KNOWN):
@@ -117,7 +121,7 @@ class _Reader:
         """The node of an object; None where it is no part."""
         if key in self.number:
             return self.number[key]
-        if key[0] not in self.read:
+        if key[0] not in self.roots:
             self._model(key[0])
         table = self.objects.get(key)
         if table is None:
@@ -135,10 +139,39 @@ class _Reader:
                 node = self.nodes[k]
                 self.nodes.append(Node(node.name, _transform(part) @ node.X, node.mesh, node.children))
         if mesh is not None:
-            self.meshes.append((name, _mesh(mesh, key[1])))
+            self.meshes.append((name, self._mesh(mesh, key, table)))
         self.number[key] = len(self.nodes)
         self.nodes.append(Node(name, np.eye(4), None if mesh is None else len(self.meshes) - 1, tuple(children)))
         return self.number[key]
+
+    def _mesh(self, mesh: Any, key: _Key, table: Any) -> RawMesh:
+        """The mesh of an object, in the colour of most of it."""
+        raw = _mesh(mesh, key[1])
+        usual = self._colour(key[0], table.get("pid"), table.get("pindex"))
+        said = [(t.get("pid"), t.get("p1")) for t in mesh.iterfind("{*}triangles/{*}triangle")]
+        if all(first is None for _, first in said):
+            return replace(raw, colour=usual)
+        of = {one: self._colour(key[0], one[0] or table.get("pid"), one[1]) for one in set(said) if one[1] is not None}
+        colours = [of.get(one, usual) for one in said]
+        distinct = list(dict.fromkeys(colours))
+        number = np.array([distinct.index(colour) for colour in colours])
+        pieces = [raw.faces[number == k] for k in range(len(distinct))]
+        return replace(raw, colour=prevailing(raw.vertices, pieces, distinct))
+
+    def _colour(self, file: str, group: str | None, place: str | None) -> str | None:
+        """The colour at a place of a group of materials or colours; None where there is none."""
+        if group is None or not (place or "").isdecimal():
+            return None
+        if (file, group) not in self.colours:
+            resources = self.roots[file].find("{*}resources")
+            groups = [] if resources is None else [t for t in resources if t.get("id") == group]
+            listed = [t for t in groups for t in t.iterfind("{*}base")] or [
+                t for t in groups for t in t.iterfind("{*}color")
+            ]
+            self.colours[file, group] = [t.get("displaycolor") or t.get("color") or "" for t in listed]
+        every = self.colours[file, group]
+        text = every[int(str(place)[:9])] if int(str(place)[:9]) < len(every) else ""
+        return text[:7].lower() if _HEX.fullmatch(text) else None
 
 
 def _key(element: Any, file: str) -> _Key:

@@ -114,6 +114,7 @@ def frame(drawn: Mapping[str, Any], blob: str) -> dict[str, Any]:
         "blob": Markup(blob),
         "fits": FIT_COLOURS,
         "has_overlaps": bool(drawn["overlaps"]),
+        "has_colours": any(part.get("colour") for part in drawn["parts"]),
         "motions": drawn["motions"],
     }
 

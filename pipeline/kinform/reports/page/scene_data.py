@@ -49,6 +49,7 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
                 "body": scene.body_index.get(part.name, 0),
                 "mesh": -1 if part.mesh is None else numbers[part.mesh.digest],
                 "pose": part.X_WP.T.ravel(),
+                "colour": part.own_colour or "",
             }
             for part in scene.design.assembly.parts
         ],

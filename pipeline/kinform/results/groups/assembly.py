@@ -16,7 +16,7 @@ from kinform.results.groups.checks import CHECK
 from kinform.results.groups.function import FUNCTION, REQUEST
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Rows, Subgroup, Table, Texts
-from kinform.results.records import columns_of, hint, hints
+from kinform.results.records import columns_of, defaults, hint, hints
 from kinform.results.table import (
     FACETS,
     integer,
@@ -69,7 +69,7 @@ class _Parts:
 
     def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
         meshes = self.meshes.read(group).meshes
-        parts = read_rows(group, "parts", self.columns)
+        parts = read_rows(group, "parts", self.columns, defaults(Part))
         self.overrides.read(group, Part, parts)
         for row, pose in zip(parts, read_array(group, "X_WP"), strict=True):
             row["mesh"] = None if row["mesh"] is None else meshes[row["mesh"]]
@@ -78,7 +78,7 @@ class _Parts:
 
 
 def _identity(mesh: Mesh) -> tuple[object, ...]:
-    return (mesh.digest, mesh.path, mesh.body, mesh.health, mesh.origin.tobytes(), mesh.resolution)
+    return (mesh.digest, mesh.path, mesh.body, mesh.health, mesh.origin.tobytes(), mesh.resolution, mesh.colour)
 
 
 HEADER = Row("header", "name", "units", "ground", "infer_fasteners", "source")

@@ -6,7 +6,7 @@ class State {
     this.camera = new Camera(scene.low, scene.high, scene.look);
     this.cut = { axis: -1, share: 0.5, flipped: false };
     this.aimed = [];
-    this.layers = { edges: true, joints: true, contacts: false, overlaps: true, xray: false };
+    this.layers = { edges: true, joints: true, contacts: false, overlaps: true, xray: false, own: false };
     this.hidden = new Set();
     this.explosion = 0;
     this.motion = null;
@@ -105,9 +105,11 @@ class State {
     return "plain";
   }
 
-  // The colour of a part: of its body, and red where it has run into another.
+  // The colour of a part: of its body, or its own where that is wanted and nothing is marked on it; red where it has
+  // run into another.
   colour(k) {
-    const own = this.colours[this.scene.parts[k].body];
+    const marked = this.finding >= 0 || this.colliding.has(k);
+    const own = (this.layers.own && !marked && this.ownColours[k]) || this.colours[this.scene.parts[k].body];
     return this.colliding.has(k) ? own.map((x, i) => 0.6 * x + 0.4 * this.theme.overlap[i]) : own;
   }
 

@@ -78,6 +78,7 @@ class Controls {
       fits: Object.fromEntries(Object.entries(this.state.scene.fits).map(([fit, hex]) => [fit, colourOf(hex)])),
     };
     this.state.colours = this.state.scene.bodies.map((body) => colourOf(body.colour));
+    this.state.ownColours = this.state.scene.parts.map((part) => (part.colour ? colourOf(part.colour) : null));
   }
 
   // ---- choosing
