@@ -269,10 +269,8 @@ def sdf(folder, included):
         (folder / "hand" / "parts").mkdir(parents=True)
         trimesh.creation.box((0.02, 0.03, 0.2)).export(folder / "hand" / "parts" / "bar.stl")
         written(folder / "hand", HAND, "model.sdf")
-        config = '<model><name>hand</name><sdf version="1.9">model.sdf</sdf></model>'
-        written(folder / "hand", config, "model.config")
         name = "left"
-        hand = f"<include><uri>model://hand</uri><name>{name}</name>{placed}<placement_frame>finger</placement_frame></include>"
+        hand = f"<include><uri>package://hand/model.sdf</uri><name>{name}</name>{placed}<placement_frame>finger</placement_frame></include>"
     else:
         name, hand = "hand", inner.replace('placement_frame="palm">', f'placement_frame="palm">{placed}')
     return written(folder, SDF.format(arm=SDF_MESH, hand=hand, child=name), "arm.sdf"), name
