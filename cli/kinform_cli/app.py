@@ -19,7 +19,7 @@ from kinform_cli import console
 from kinform_cli.options import Command, Debug, Group, examples
 
 PANELS = {
-    "The whole way": ("run", "batch"),
+    "The whole way": ("run", "batch", "study"),
     "Stage by stage": ("import", "contacts", "joints", "mass", "simulate", "check"),
     "Look": ("show", "query", "report", "export", "catalog"),
     "Change": ("diff", "lock", "watch"),

@@ -35,6 +35,7 @@ def run(
     ranges: bool | None = None,
     changed: bool = False,
     reading: Reading = AS_IT_IS,
+    base: str | Path | None = None,
 ) -> Outcome:
     """Everything about a design, from its manifest to the findings.
 
@@ -45,7 +46,8 @@ def run(
     is the same, byte for byte, as one made from nothing. `jobs` processes share the work. Meshes outside the
     manifest's folder need `allow_outside`. `say` is told what takes long besides, and of an earlier file that is no
     longer whole. `ranges`: whether it is found how far each joint goes; None: where the function states ranges or
-    requirements. `changed`: an earlier file is known not to be what a run would give, and is not asked.
+    requirements. `base`: results of a design that is nearly the same, of which is taken what holds, where there is no
+    `output`. `changed`: an earlier file is known not to be what a run would give, and is not asked.
 
     Raises InputError with every problem of the input, ResultsError when `output` cannot be written.
     """
@@ -57,7 +59,7 @@ def run(
     from kinform import stages  # not before: seeing that nothing changed takes less time than importing them
     from kinform.reuse.ledger import Ledger
 
-    earlier = _earlier(output, say)
+    earlier = _earlier(output or base, say)
 
     def derived(ledger: Ledger) -> Design:
         design = _import(manifest, units, allow_outside, reading, ledger)

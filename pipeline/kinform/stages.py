@@ -41,7 +41,8 @@ def import_(
     is read, all is read anew.
     """
     path = Path(manifest)
-    earlier = _earlier_assembly(ledger or Ledger()) if reading == AS_IT_IS else (None, {})
+    plain = reading.of_files == AS_IT_IS
+    earlier = _earlier_assembly(ledger or Ledger()) if plain else (None, {})
     assembly, contents = _read(path, allow_outside, reading, *earlier)
     if reading != AS_IT_IS:
         contents = {}  # they alone do not say what was read
@@ -215,7 +216,7 @@ def _read(
     manifest: Path, allow_outside: bool, reading: Reading, earlier: Assembly | None, files: Mapping[str, str]
 ) -> tuple[Assembly, dict[str, str]]:
     """The assembly and the contents of its files; what earlier results hold is not read again."""
-    if earlier is not None:
+    if earlier is not None and not reading.changes:
         from kinform.form.reload import reload_meshes
 
         again = reload_meshes(manifest, earlier, files, allow_outside=allow_outside)

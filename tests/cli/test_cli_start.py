@@ -29,7 +29,7 @@ def test_the_console_script_is_the_entry() -> None:
 def test_the_commands_are_those_of_the_contract_so_far() -> None:
     assert COMMANDS == sorted(
         "import contacts joints mass simulate check run show query report export explain init schema diff lock watch "
-        "catalog batch".split()
+        "catalog batch study".split()
     )
 
 

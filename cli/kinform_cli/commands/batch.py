@@ -92,10 +92,10 @@ def batch(
     2: one is not verified: a rule could not decide, the input is bad, or its worker died.
     """
     shown, written = _printed(format or [])
-    limits = _limits(seconds, memory)
+    limits = limits_of(seconds, memory)
     if send and scheduler is None:
         raise typer.BadParameter("says how a cluster gets its inputs: name one with --scheduler", param_hint="--send")
-    _need_extra()
+    need_extra()
     from kinform import batch as many
 
     files.check_findings(((None, path) for _, path in written), paths)
@@ -104,7 +104,7 @@ def batch(
         found = _touched(found, changed_since)
     settings = many.Settings(cores(jobs), scheduler, send, limits, allow_outside)
     began = time.monotonic()
-    with _Pace("batch", began) as pace:
+    with Pace("batch", began) as pace:
         rows = many.run(found, output, settings, pace) if found else ()
     _tell(rows, output, fail_on.value, shown, written)
     from kinform.batch.renderings import exit_code, summary_line
@@ -113,7 +113,7 @@ def batch(
     raise typer.Exit(exit_code(rows, fail_on.value) if found else 0)
 
 
-def _need_extra() -> None:
+def need_extra() -> None:
     """An error where the packages are missing that many designs at once need."""
     import importlib.util
 
@@ -187,7 +187,7 @@ def _printed(stated: list[str]) -> tuple[BatchFormat, list[tuple[BatchFormat, Pa
     return (shown or [BatchFormat.table])[0], [(one, path) for path, one in written.items()]
 
 
-def _limits(seconds: float | None, memory: str | None) -> Limits:
+def limits_of(seconds: float | None, memory: str | None) -> Limits:
     """What a design may take; a usage error where it is no time or no size."""
     from kinform.batch.task import Limits
 
@@ -202,7 +202,7 @@ def _limits(seconds: float | None, memory: str | None) -> Limits:
     return Limits(seconds, size)
 
 
-class _Pace(Working):
+class Pace(Working):
     """Progress with the rate and the time that is left; off a terminal a line a minute."""
 
     def __init__(self, label: str, began: float):

@@ -32,7 +32,9 @@ from kinform.foundation.words import number
 IMPORTED = (
     "kinform.method", "kinform.stages", "kinform.results", "kinform.form.readers.assembly", "kinform.kinematics",
     "kinform.reuse.contacts", "kinform.mass", "kinform.simulation", "kinform.collisions", "kinform.consistency.rules",
-    "kinform.consistency.inspection",
+    "kinform.consistency.inspection", "kinform.simulation.of_assembly", "kinform.simulation.of_system",
+    "kinform.simulation.kernel", "kinform.simulation.levels", "kinform.simulation.mechanism", "kinform.reuse.decisions",
+    "kinform.reuse.masses", "kinform.reuse.packing", "kinform.reports.values.topics", "numpy.ma", "numpy.random",
 )  # fmt: skip
 """Modules that tasks are likely to need: imported once, before any fork."""
 

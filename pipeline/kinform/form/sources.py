@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,6 +60,13 @@ class Reading:
     """Folders of `package://NAME`, by name."""
     deviation: float | None = None
     """Largest distance (m) of the facets of a STEP file from its surfaces; None: a share of its edges."""
+    changes: tuple[tuple[tuple[str, ...], Any], ...] = ()
+    """Other values for keys of the top manifest: paths as of `kinform.form.keys`, and values."""
+
+    @property
+    def of_files(self) -> Reading:
+        """The same, without changes: how files are read, the top manifest apart."""
+        return replace(self, changes=())
 
 
 AS_IT_IS = Reading()

@@ -87,7 +87,8 @@ class _AssemblyReader:
         """Read a manifest and all below it, depth first."""
         self.files.note(path)
         if path not in self._parsed:
-            self._parsed[path] = parse(path, file, self.files, self.problems)
+            changes = () if above else self.files.reading.changes
+            self._parsed[path] = parse(path, file, self.files, self.problems, changes)
         parsed = self._parsed[path]
         if parsed is None:
             return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from kinform.form.constants import MANIFEST_BYTES
 from kinform.form.files import DesignFiles
+from kinform.form.keys import changed
 from kinform.form.manifest import Manifest
 from kinform.form.manifest.parts import Part
 from kinform.form.problems import Problems
@@ -128,12 +129,17 @@ class Parsed:
     facts: Facts | None = None
 
 
-def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Parsed | None:
-    """The manifest at `path`, or the tables that a description says; every problem is noted. None when nothing can be
-    used."""
+Changes = Sequence[tuple[tuple[str, ...], Any]]
+"""Paths and values."""
+
+
+def parse(path: Path, file: str, files: DesignFiles, problems: Problems, changes: Changes = ()) -> Parsed | None:
+    """The manifest at `path`, or the tables that a description says, with these changes; every problem is noted. None
+    when nothing can be used."""
     if is_source(path):
         tables = _from_source(path, file, path.parent, None, files, problems)
-        parsed = None if tables is None else _validated(tables.raw, tables.places, file, tables.notes, problems)
+        raw = None if tables is None else _changed(tables.raw, file, changes, problems)
+        parsed = None if tables is None or raw is None else _validated(raw, tables.places, file, tables.notes, problems)
         return None if tables is None or parsed is None else _of_source(parsed, tables)
     foreign = unread(path)
     if foreign is not None:
@@ -153,8 +159,20 @@ def parse(path: Path, file: str, files: DesignFiles, problems: Problems) -> Pars
     lines = LineTable(text)
     stated = raw["assembly"].get("from") if isinstance(raw.get("assembly"), dict) else None
     if isinstance(stated, str) and stated:
-        return _over_source(path, file, raw, lines, files, problems)
-    return _validated(raw, lines, file, (), problems)
+        return _over_source(path, file, raw, lines, files, problems, changes)
+    varied = _changed(raw, file, changes, problems)
+    return None if varied is None else _validated(varied, lines, file, (), problems)
+
+
+def _changed(raw: dict[str, Any], file: str, changes: Changes, problems: Problems) -> dict[str, Any] | None:
+    """The tables with these changes; None where one leads nowhere, which is noted."""
+    for steps, value in changes:
+        try:
+            raw = changed(raw, steps, value)
+        except KeyError as error:
+            problems.add(f"{'.'.join(steps)}: {error.args[0]}", file, None, "name a key of this file")
+            return None
+    return raw
 
 
 def _of_source(parsed: Parsed, tables: SourceTables) -> Parsed:
@@ -189,7 +207,13 @@ def _from_source(
 
 
 def _over_source(
-    path: Path, file: str, raw: dict[str, Any], lines: LineTable, files: DesignFiles, problems: Problems
+    path: Path,
+    file: str,
+    raw: dict[str, Any],
+    lines: LineTable,
+    files: DesignFiles,
+    problems: Problems,
+    changes: Changes,
 ) -> Parsed | None:
     """A manifest over the tables that its `from` gives."""
     key = ("assembly", "from")
@@ -215,5 +239,6 @@ def _over_source(
     above = Places({at: (None, line) for at, line in lines.items()})
     overlay = Overlay(above, tables.places)
     both = overlay.tables(raw, tables.raw)
-    parsed = _validated(both, Places(overlay.places), file, tables.notes, problems)
+    other = _changed(both, file, changes, problems)
+    parsed = None if other is None else _validated(other, Places(overlay.places), file, tables.notes, problems)
     return None if parsed is None else _of_source(parsed, tables)

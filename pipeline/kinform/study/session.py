@@ -1,0 +1,183 @@
+"""A study from start to end: the design as it stands, all samples by a crew, and where it stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from kinform.batch.crew import Crew
+from kinform.batch.desk import code_of_here
+from kinform.batch.desks import close_all, perform
+from kinform.batch.session import Settings
+from kinform.batch.task import INPUT, Task
+from kinform.errors import InputError, Problem
+from kinform.form.keys import steps_of
+from kinform.study.plan import Plan
+from kinform.study.sampling import samples
+
+Row = tuple[float | None, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """All samples and what was measured of them."""
+
+    plan: Plan
+    samples: tuple[tuple[Any, ...], ...]
+    """Values of the axes, sample by sample."""
+    measured: tuple[Row, ...]
+    """Of each sample; all None of one that failed."""
+    failures: tuple[str, ...]
+    """Of each sample: "" where it was measured."""
+    nominal: Row
+    """Of the design as it stands."""
+
+
+def run(plan: Plan, output: Path, settings: Settings, progress: Callable[[int, int], None] | None = None) -> Outcome:
+    """Measure all samples. What an interrupted study of the same files has measured, kept beside `output`, is not
+    measured again. Raises InputError where the design as it stands cannot be used, or a measure is not there."""
+    rows = samples(plan)
+    measured = [steps_of(one.value) for one in plan.measures]
+    folder = Path(tempfile.mkdtemp(prefix=".kinform-study-", dir=output.parent))
+    try:
+        base = folder / "base.h5"
+        nominal, contents = _nominal(plan, base, measured, settings)
+        kept = Journal(output.with_name(f"{output.name}.part"), _key(plan, contents))
+        done = kept.read()
+        tasks = [
+            _task(plan, k, row, base if base.exists() else None, measured, settings)
+            for k, row in enumerate(rows)
+            if k not in done
+        ]
+        if tasks:
+            _measure(tasks, kept, done, settings, progress)
+    finally:
+        close_all()
+        shutil.rmtree(folder, ignore_errors=True)
+    nothing: Row = (None,) * len(measured)
+    values = tuple(done[k][0] or nothing for k in range(len(rows)))
+    return Outcome(plan, tuple(rows), values, tuple(done[k][1] for k in range(len(rows))), nominal)
+
+
+def _measure(
+    tasks: Sequence[Task],
+    kept: Journal,
+    done: dict[int, tuple[Row | None, str]],
+    settings: Settings,
+    progress: Callable[[int, int], None] | None,
+) -> None:
+    with kept, Crew(min(settings.jobs, len(tasks)), settings.scheduler) as crew:
+        for count, answer in enumerate(crew.answers(tasks), start=1):
+            k = int(answer.key.rpartition(" ")[2])
+            why = ""
+            if answer.failure is not None:
+                why = f"{answer.failure.kind}: " + "; ".join(p.message for p in answer.failure.problems)
+            done[k] = (answer.result, why)
+            kept.note(k, answer.result, why)
+            if progress is not None:
+                progress(count, len(tasks))
+
+
+def _nominal(
+    plan: Plan, base: Path, measured: Sequence[tuple[str, ...]], settings: Settings
+) -> tuple[Row, dict[str, str]]:
+    """What is measured of the design as it stands, with its results at `base`, and the hashes of its files."""
+    arguments = {"design": str(plan.design.absolute()), "output": str(base), "measured": measured,
+                 "allow_outside": settings.allow_outside}  # fmt: skip
+    answer = perform(Task("nominal", "kinform.study.work:nominal", arguments, settings.limits))
+    if answer.failure is not None:
+        if answer.failure.kind == INPUT:
+            raise InputError(answer.failure.problems)
+        problem = answer.failure.problems[0]
+        raise InputError([Problem(f"as it stands: {problem.message}", str(plan.design), None, problem.remedy)])
+    result: tuple[Row, dict[str, str]] = answer.result
+    return result
+
+
+def _task(
+    plan: Plan, k: int, row: tuple[Any, ...], base: Path | None, measured: Sequence[tuple[str, ...]], settings: Settings
+) -> Task:
+    named = {axis.name: value for axis, value in zip(plan.axes, row, strict=True)}
+    changes = [(axis.steps, named[axis.name]) for axis in plan.axes if axis.steps is not None]
+    commands = [
+        (make.part, [_filled(word, named) for word in make.command], make.suffix) for make in plan.makes
+    ]  # fmt: skip
+    arguments = {
+        "design": str(plan.design.absolute()), "base": None if base is None else str(base.absolute()),
+        "changes": changes, "measured": measured, "commands": commands, "allow_outside": settings.allow_outside,
+    }  # fmt: skip
+    return Task(f"sample {k}", "kinform.study.work:sample", arguments, settings.limits, code_of_here())
+
+
+def _filled(word: str, values: dict[str, Any]) -> str:
+    """The word of a command with the values of what varies in it."""
+    for name, value in values.items():
+        word = word.replace("{" + name + "}", repr(value) if isinstance(value, float) else str(value))
+    return word
+
+
+def _key(plan: Plan, contents: dict[str, str]) -> str:
+    """What measured samples are samples of."""
+    whole = [plan.digest, code_of_here(), sorted(contents.items())]
+    return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
+
+
+class Journal:
+    """The samples that are measured, a line each, as they come: what is left of a study that was interrupted."""
+
+    def __init__(self, path: Path, key: str):
+        self._path, self._key = path, key
+        self._stream: Any = None
+
+    def read(self) -> dict[int, tuple[Row | None, str]]:
+        """What is there of this very study; a line that is not whole is left out."""
+        out: dict[int, tuple[Row | None, str]] = {}
+        for line in self._lines():
+            k, values, why = line
+            out[int(k)] = (None if values is None else tuple(values), str(why))
+        return out
+
+    def _lines(self) -> Iterator[Any]:
+        try:
+            lines = self._path.read_text(encoding="utf-8").split("\n")
+        except (OSError, UnicodeDecodeError):
+            return
+        if lines[0] != json.dumps({"study": self._key}):
+            return
+        for line in lines[1:-1]:  # behind the last end of line is nothing, or half a line
+            try:
+                yield json.loads(line)
+            except ValueError:
+                return
+
+    def __enter__(self) -> Journal:
+        whole = [json.dumps({"study": self._key}), *(json.dumps(line) for line in self._lines())]
+        self._stream = self._path.open("w", encoding="utf-8")
+        self._stream.write("\n".join(whole) + "\n")
+        self._stream.flush()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stream.close()
+
+    def note(self, k: int, values: Row | None, why: str) -> None:
+        """Keep a sample."""
+        self._stream.write(json.dumps([k, values, why]) + "\n")
+        self._stream.flush()
+
+    def forget(self) -> None:
+        """The study is written: nothing is left to be gone on with."""
+        if self._path.exists():
+            os.unlink(self._path)
+
+
+def journal_of(output: Path) -> Journal:
+    """The journal beside the file of a study."""
+    return Journal(output.with_name(f"{output.name}.part"), "")

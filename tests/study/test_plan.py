@@ -1,0 +1,108 @@
+"""What a study says, and what it draws."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from kinform.errors import InputError
+from kinform.form.keys import changed, looked_up, steps_of
+from kinform.study.plan import read_plan
+from kinform.study.sampling import samples
+
+MEASURE = '[[measure]]\nname = "m"\nvalue = "mobility.effective"\n'
+
+
+def plan(folder: Path, study: str, *varied: str, nominal=None):
+    (folder / "d.toml").write_text("schema = 1\n")
+    tables = "\n".join(f"[[vary]]\n{text}" for text in varied)
+    (folder / "s.toml").write_text(f'schema = 1\n[study]\ndesign = "d.toml"\n{study}\n{tables}\n{MEASURE}')
+    return read_plan(folder / "s.toml", nominal)
+
+
+A = 'name = "a"\nvalue = "x.a"\n'
+B = 'name = "b"\nvalue = "x.b"\n'
+
+
+def test_a_grid_is_every_combination(tmp_path):
+    found = plan(tmp_path, 'method = "grid"', A + "values = [1, 2]", B + "between = [0, 1]\nsteps = 3")
+    assert samples(found) == [(a, b) for a in (1, 2) for b in (0.0, 0.5, 1.0)]
+
+
+def test_one_at_a_time_leaves_the_others_in_the_middle(tmp_path):
+    found = plan(tmp_path, 'method = "one-at-a-time"', A + "values = [1, 2, 3]", B + "between = [0, 1]\nsteps = 2")
+    assert samples(found) == [(2, 0.5), (1, 0.5), (3, 0.5), (2, 0.0), (2, 1.0)]
+
+
+@pytest.mark.parametrize("method", ["monte-carlo", "latin-hypercube", "sobol"])
+@pytest.mark.parametrize(
+    ("way", "expected"),
+    [
+        ("between = [2, 5]", stats.uniform(2, 3)),
+        ('between = [2, 5]\ndistribution = "triangular"', stats.triang(0.5, 2, 3)),
+        ("mean = 4\ndeviation = 0.5", stats.norm(4, 0.5)),
+        ('tolerance = "±0.3"\nnominal = 10', stats.norm(10, 0.1)),
+        ('tolerance = "+0.2/-0.1"\nnominal = 10\ndistribution = "uniform"', stats.uniform(9.9, 0.3)),
+        ('tolerance = "H7/g6"\nnominal = 0\ndiameter = 20', stats.norm(0.024, 0.034 / 6)),
+    ],
+)
+def test_samples_are_of_their_distribution(tmp_path, method, way, expected):
+    found = plan(tmp_path, f'method = "{method}"\nsamples = 1024\nseed = 3', A + way, B + "between = [0, 1]")
+    drawn = np.array(samples(found))
+    assert stats.kstest(drawn[:, 0], expected.cdf).pvalue > 0.01
+    assert abs(stats.spearmanr(drawn[:, 0], drawn[:, 1]).statistic) < 0.1
+    assert samples(found) == samples(found)
+
+
+def test_the_nominal_value_is_that_of_the_manifest(tmp_path):
+    study = 'method = "monte-carlo"\nsamples = 3'
+    found = plan(tmp_path, study, A + 'tolerance = "±1"', nominal=lambda design, steps: 7.0)
+    assert (found.axes[0].low, found.axes[0].high) == (6.0, 8.0)
+
+
+@pytest.mark.parametrize(
+    ("study", "varied", "said"),
+    [
+        ("samples = 3", A, "say how it varies"),
+        ("samples = 3", A + "between = [2, 1]", "lesser and a greater"),
+        ("samples = 3", A + 'tolerance = "K7"\nnominal = 20', "K7"),
+        ("samples = 3", A + 'tolerance = "±1"', "state nominal"),
+        ("", A + "between = [0, 1]", "needs samples"),
+        ('method = "sobol"\nsamples = 100', A + "between = [0, 1]", "64 or 128"),
+        ('method = "grid"', A + "between = [0, 1]", "needs values, or steps"),
+        ("samples = 3\nindices = true", A + "between = [0, 1]", "sobol"),
+        ("samples = 3", 'name = "m"\nvalue = "x"\nbetween = [0, 1]', "varies and is measured"),
+        ("samples = 3", 'name = "a"\nbetween = [0, 1]', "has no effect"),
+        ("samples = 3\nspeed = 1", A + "between = [0, 1]", "study.speed"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(tmp_path, study, varied, said):
+    with pytest.raises(InputError, match=said):
+        plan(tmp_path, study, varied)
+
+
+TABLES = {"part": [{"name": "a.b", "position": [1, 2, 3]}, {"name": "c"}], "x": {"y": 1}}
+
+
+def test_paths_lead_by_names_and_numbers():
+    steps = steps_of('part."a.b".position.1')
+    assert looked_up(TABLES, steps) == 2
+    assert looked_up(changed(TABLES, steps, 9.0), steps) == 9.0 and looked_up(TABLES, steps) == 2
+    assert looked_up(changed(TABLES, steps_of("part.c.density"), 5), steps_of("part.1.density")) == 5
+    assert looked_up(TABLES, steps_of("part.count")) == 2
+    assert looked_up(TABLES, steps_of("part.0.position.max")) == 3
+
+
+@pytest.mark.parametrize("text", ["part.d.position.0", "part.5", "z.y", "x.y.z", "part.c.position.0"])
+def test_a_path_that_leads_nowhere_is_an_error(text):
+    with pytest.raises(KeyError, match=r"no|leads"):
+        changed(TABLES, steps_of(text), 1)
+
+
+@pytest.mark.parametrize("text", ["", ".a", "a..b", "a.", 'a"b', '"a'])
+def test_what_is_no_path_is_refused(text):
+    with pytest.raises(ValueError, match="is no path"):
+        steps_of(text)
