@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -72,3 +73,26 @@ def test_queries_are_answered_one_way_and_for_what_is_intended(
     assert "one way only" in printed(capsys, "query", file, "table", "block", "--slide", "z")
     intended = json.loads(printed(capsys, "query", results["revolute_collars"], "--intended", "-f", "json"))
     assert all(set(item) >= {"name", "free", "motions", "text"} for item in intended["joints"])
+
+
+def test_a_joint_without_contact_is_answered_as_the_check_answers_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = FIXTURES / "pairs" / "free_apart"
+    text = (source / "free_apart.toml").read_text()
+    parts = re.findall(r'^name = "(.*)"', text, re.MULTILINE)[1:3]
+    for mesh in source.iterdir():
+        (tmp_path / mesh.name).write_bytes(mesh.read_bytes())
+    (tmp_path / "apart.toml").write_text(
+        text.split("[function")[0]
+        + f"[[function.joint]]\nname = 'turn'\nbetween = {json.dumps(parts)}\ntype = 'revolute'\n"
+        + "axis = [0, 0, 1]\npoint = [0, 0, 0]\n"
+    )
+    file = tmp_path / "apart.h5"
+    assert main(["run", str(tmp_path / "apart.toml"), "-o", str(file), "-q"]) == 1
+    assert "KF401" in capsys.readouterr().out
+    asked = " ".join(printed(capsys, "query", file, "--intended").split())
+    assert f"turn: revolute between {parts[0]} and {parts[1]}: no contact (KF401)" in asked
+    assert "the motion is free because nothing holds it" in asked
+    (joint,) = json.loads(printed(capsys, "query", file, "--intended", "-f", "json"))["joints"]
+    assert (joint["answer"], joint["free"], joint["joint"]) == ("no contact", True, None)

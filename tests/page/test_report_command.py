@@ -34,7 +34,7 @@ def test_a_page_pictures_and_a_summary_that_shows_them_are_written(design_file, 
     summary = found["summary.md"].decode()
     assert "](overview.png)" in summary
     assert "](finding-01-KF201.png)" in summary
-    assert "inconsistent" in summary.splitlines()[0]
+    assert "all 4 intended joints agree; contacts: 1 error" in summary.splitlines()[0]
 
 
 def test_a_file_without_findings_gives_a_page_and_a_warning(tmp_path, capsys):

@@ -9,9 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.hostile import DESIGN
+from support.places import FIXTURES
 
 from kinform.foundation.words import shortened
 from kinform.model.findings import CheckReport, Finding, RuleOutcome
+from kinform.model.function import IntendedJoint
 from kinform.reports import render
 
 LONG = "waveshare_mounting_plate_of_the_second_arm_v2"
@@ -42,7 +44,7 @@ def test_the_verdict_comes_first_and_the_worst_last():
         finding("KF201", "error"), finding("KF202", "warning"), finding("KF303", "note"), undecided=1, skipped=3
     )
     lines = brief(told)
-    assert lines[0].endswith(": inconsistent")
+    assert lines[0].endswith(": no function stated: geometry only; contacts: 1 error")
     assert lines[1].startswith("1 error, 1 warning, 1 note; ")
     assert heads(lines) == ["note", "warning", "not decided", "error"]
     assert any(line.startswith("skipped: 3 rules") for line in lines)
@@ -100,3 +102,45 @@ def test_what_was_assumed_is_said(derive_design):
     ground = next(body.name for body in design.kinematics.bodies if body.ground)
     assert f"assumed ground: {ground}" in render(bare.report, bare, "brief")
     assert "assumed ground" not in render(design.report, design, "brief") or design.assembly.ground is None
+
+
+def stated(design, *joints):
+    function = replace(design.assembly.function, joints=tuple(joints))
+    return replace(design, assembly=replace(design.assembly, function=function))
+
+
+def test_the_verdict_says_what_was_compared_and_what_is_faulty():
+    mesh = finding("KF101", "error", "plate")
+    told = replace(report(mesh), answers=(("agrees", 6),))
+    pan = IntendedJoint("pan", ("a", "b"), "revolute", *[None] * 7)
+    with_function = stated(DESIGN, pan)
+    assert render(told, with_function, "brief").startswith(
+        f"{DESIGN.assembly.name}: all 6 intended joints agree; meshes: 1 error\n"
+    )
+    assert "no function stated: geometry only; meshes: 1 error\n" in render(report(mesh), DESIGN, "brief")
+    against = replace(report(mesh, finding("KF403", "error", "pan")), answers=(("agrees", 5), ("contradicts", 1)))
+    assert "inconsistent; function: 1 error; meshes: 1 error\n" in render(against, with_function, "brief")
+    assert "consistent; no function stated: geometry only\n" in render(
+        report(finding("KF202", "note")), DESIGN, "brief"
+    )
+
+
+def test_what_was_found_is_whole_before_names_and_before_more_findings():
+    joint = "base_motor_holder_so101_v1~waveshare_mounting_plate_so101_v2"
+    found = "2 of 9 patches (4.8 % of the contact) forbid it"
+    warnings = [finding(f"KF20{k}", "warning", joint, found=found) for k in range(3, 9)]
+    lines = brief(report(*(finding("KF201", "error", LONG, LONG) for _ in range(9)), *warnings))
+    assert not any(line.endswith("…") for line in lines)
+    tight = brief(report(*warnings))
+    assert " ".join(" ".join(tight).split()).count(found) == 6
+
+
+def test_many_joints_without_a_function_are_told_how_they_get_fewer(derive_design):
+    design = derive_design(FIXTURES / "mechanisms" / "stewart_platform" / "stewart_platform.toml")
+    bare = stated(design)
+    bare = replace(bare, assembly=replace(bare.assembly, function=replace(bare.assembly.function, complete=())))
+    text = " ".join(render(report(), bare, "brief").split())
+    many = len(design.kinematics.joints)
+    assert f"{many} joints between {len(design.assembly.parts)} parts: if too many, take over those that " in text
+    complete = replace(bare, assembly=replace(bare.assembly, function=replace(bare.assembly.function, complete=("",))))
+    assert "if too many" not in render(report(), complete, "brief")

@@ -63,7 +63,7 @@ def test_full_tells_everything_within_eighty_columns():
         "skipped:\n"
         "  no simulation is requested: KF501\n"
         "\n"
-        "test: inconsistent\n"
+        "test: inconsistent; function: 1 error\n"
         "1 error, 0 warnings, 1 note\n"
         "3 rules ran, 1 skipped, 1 inconclusive\n"
     )

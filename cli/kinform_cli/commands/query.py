@@ -17,6 +17,7 @@ from kinform_cli.options import LookedAt, PrintedTable, TableFormat, argument, e
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
+    from kinform.consistency.comparisons.answers import Answer
     from kinform.design import Design
     from kinform.kinematics import IntendedAnswer, IntendedMotion, QueryAnswer, QueryBlocker
     from kinform_cli.text import Lengths
@@ -26,7 +27,7 @@ EXAMPLES = examples(
     "kinform query arm.h5 base shoulder --turn z@0,-45.2,16.5",
     "kinform query arm.h5 housing lid --slide 0,0,1",
     "kinform query arm.h5 rail carriage --slide x --format json",
-    "kinform query arm.h5 --intended",
+    "kinform query arm.h5 --intended   # of all joints of [function], as the check answers them",
 )
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -100,14 +101,15 @@ def _intended(source: Path, format: TableFormat) -> None:
     """The answers for all intended joints."""
     design = _design(source)
     from kinform import kinematics
+    from kinform.consistency.comparisons.answers import answers
     from kinform_cli import text
 
-    answers = kinematics.intended_answers(design)
+    asked = list(zip(kinematics.intended_answers(design), answers(design), strict=True))
     if format is TableFormat.json:
         head = {"schema": "kinform/query-intended/1", "assembly": design.assembly.name}
-        console.emit(text.dumps(head | {"joints": [_data_intended(design, answer) for answer in answers]}))
+        console.emit(text.dumps(head | {"joints": [_data_intended(*pair) for pair in asked]}))
     else:
-        console.out(_render_intended(answers, text.Lengths.of(design.assembly)))
+        console.out(_render_intended(design, asked))
 
 
 def _turn(value: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -168,11 +170,12 @@ def _answer_fields(answer: QueryAnswer) -> dict[str, Any]:
     }
 
 
-def _data_intended(design: Design, answer: IntendedAnswer) -> dict[str, Any]:
+def _data_intended(answer: IntendedAnswer, given: Answer) -> dict[str, Any]:
     from kinform.reports.values.plain import fields
 
     return {
         **fields(answer.joint, "name", "type", "between"),
+        **fields(given, "answer", "joint"),
         **fields(answer, "free", "text"),
         "motions": [fields(item, "kind", "twist") | _answer_fields(item.answer) for item in answer.motions],
     }
@@ -207,22 +210,23 @@ def _contacts(title: str, blockers: Iterable[QueryBlocker], lengths: Lengths) ->
     return rows
 
 
-def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> RenderableType:
-    """The answer for each intended joint, and for what is not free the contacts that block it."""
+def _render_intended(design: Design, asked: Sequence[tuple[IntendedAnswer, Answer]]) -> RenderableType:
+    """For each intended joint the answer that `run` gives too, what it means for the motion, and for what is not free
+    the contacts that block it."""
     from rich.text import Text
 
     from kinform_cli.tables import stacked
+    from kinform_cli.text import Lengths
 
-    if not answers:
+    if not asked:
         return "no joints are intended: [function] states none"
+    lengths = Lengths.of(design.assembly)
     items: list[RenderableType] = []
-    words = {True: "yes", False: "no", None: "not known"}
-    for answer in answers:
+    for answer, given in asked:
         between = " and ".join(answer.joint.between)
-        items.append(
-            Text(f"{answer.joint.name}: {answer.joint.type} between {between}: {words[answer.free]}", style="bold")
-        )
-        items.append(f"  {answer.text}")
+        said = f"{given.answer}{_codes(design, given.name)}"
+        items.append(Text(f"{answer.joint.name}: {answer.joint.type} between {between}: {said}", style="bold"))
+        items.append(f"  {_meaning(answer, given, lengths)}")
         for item in answer.motions:
             if not item.answer.free_in_assembly:
                 items.append(f"  {item.kind} ({_sense(item)}): {item.answer.text}")
@@ -230,6 +234,30 @@ def _render_intended(answers: Sequence[IntendedAnswer], lengths: Lengths) -> Ren
                 if blocking:
                     items.append(_contacts("Blocked by", blocking.values(), lengths))
     return stacked(*items)
+
+
+def _codes(design: Design, joint: str) -> str:
+    """As in " (KF401)": what the check found of an intended joint."""
+    findings = () if design.report is None else design.report.findings
+    codes = sorted({finding.code for finding in findings if finding.subject == (joint,)})
+    return f" ({', '.join(codes)})" if codes else ""
+
+
+def _meaning(answer: IntendedAnswer, given: Answer, lengths: Lengths) -> str:
+    """Whether the motion is free, and how that goes together with the answer to the joint."""
+    if given.answer == "no contact":
+        gap = f", {lengths.length(given.gap)} {lengths.small} apart" if given.gap else ""
+        free = "the motion is free because nothing holds it" if answer.free else answer.text
+        return f"the two bodies do not touch{gap}: {free}"
+    if given.answer == "not held":
+        return f"{answer.text}; contact leaves more free than that: {given.free}"
+    if given.answer == "contradicts":
+        return f"{given.blocked_by}; the intended motion: {answer.text}"
+    if given.answer == "undecided":
+        return f"contact does not decide whether it is this joint; the intended motion: {answer.text}"
+    if answer.free is False:
+        return f"contact between the two gives this joint; in the whole assembly: {answer.text}"
+    return answer.text
 
 
 def _sense(item: IntendedMotion) -> str:

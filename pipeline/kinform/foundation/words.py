@@ -86,8 +86,8 @@ def rate(value: float, slides: bool, per_slides: bool, units: str) -> str:
 
 
 def direction(vector: Iterable[float]) -> str:
-    """A direction as "(0, 0.942, 0.335)"."""
-    return f"({', '.join(number(round(float(v), 6), 6) for v in vector)})"
+    """A direction as "(0, 0.942, 0.3351)": to four decimals, 0.006°; finer is rounding of meshes."""
+    return f"({', '.join(number(round(float(v), 4) + 0.0) for v in vector)})"
 
 
 def telling(shown: Callable[[float, int], str], *values: float) -> Callable[[float], str]:

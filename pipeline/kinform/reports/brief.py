@@ -16,7 +16,7 @@ from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
 from kinform.model.findings import CheckReport
 from kinform.reports import constants
-from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_line
+from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
 
 _KINDS = ("warning", "not decided", "error")
 """What is told line by line, the worst last."""
@@ -45,20 +45,34 @@ def render(report: CheckReport, design: Design, fail_on: str = "error", *, width
     """Verdict and counts; a line for each group of notes; what was skipped or assumed; the worst findings, the worst
     last. No line is longer than `width`, unless it has one word that is."""
     name = shortened(one_line(design.assembly.name), width // 2)
-    lines = textwrap.wrap(f"{name}: {verdict_line(report, fail_on)}", width, subsequent_indent="  ")
+    lines = textwrap.wrap(
+        f"{name}: {verdict_told(report, design.assembly.function.stated, fail_on)}", width, subsequent_indent="  "
+    )
     lines += textwrap.wrap(f"{severity_counts(report)}; {rule_counts(report)}", width, subsequent_indent="  ")
     lines += _notes(report, width)
     lines += _assumed(report, design, width)
+    lines += _many_joints(design, width)
     if report.answers:
         lines += textwrap.wrap(f"intended joints: {answers_line(report.answers)}", width, subsequent_indent="  ")
-    chosen, rest = _worst(_items(report))
-    if rest:
-        told = []
-        for kind, others in groupby(reversed(rest), lambda item: item.kind):
-            codes = Counter(item.code for item in others)
-            told.append(f"{kind}: " + ", ".join(f"{many} {code}" for code, many in sorted(codes.items())))
-        lines += textwrap.wrap(f"and {len(rest)} more (-v shows all): {'; '.join(told)}", width, subsequent_indent="  ")
-    return "\n".join([*lines, *_groups(chosen, width, constants.BRIEF_LINES - len(lines))]) + "\n"
+    items = _items(report)
+    for most in range(constants.MOST_BRIEF, constants.LEAST_BRIEF - 1, -1):
+        chosen, rest = _worst(items, most)
+        more = _more(rest, width)
+        told, whole = _groups(chosen, width, constants.BRIEF_LINES - len(lines) - len(more))
+        if whole:
+            break
+    return "\n".join([*lines, *more, *told]) + "\n"
+
+
+def _more(rest: Sequence[_Item], width: int) -> list[str]:
+    """How many are not told line by line, by kind and rule."""
+    if not rest:
+        return []
+    told = []
+    for kind, others in groupby(reversed(rest), lambda item: item.kind):
+        codes = Counter(item.code for item in others)
+        told.append(f"{kind}: " + ", ".join(f"{many} {code}" for code, many in sorted(codes.items())))
+    return textwrap.wrap(f"and {len(rest)} more (-v shows all): {'; '.join(told)}", width, subsequent_indent="  ")
 
 
 def _items(report: CheckReport) -> list[_Item]:
@@ -76,46 +90,93 @@ def _items(report: CheckReport) -> list[_Item]:
     return sorted(found + undecided, key=lambda item: -_KINDS.index(item.kind))
 
 
-def _worst(items: Sequence[_Item]) -> tuple[list[_Item], list[_Item]]:
-    """The findings that are shown, the worst last, and the others. Of each kind every rule has its turn: many findings
+def _worst(items: Sequence[_Item], most: int) -> tuple[list[_Item], list[_Item]]:
+    """At most so many findings to be shown, the worst last, and the others. Of each kind every rule has its turn: many findings
     of one do not hide the only one of another."""
     turns: Counter[str] = Counter()
     ranked = []
     for place, item in enumerate(items):
         ranked.append((-_KINDS.index(item.kind), turns[item.head], place))
         turns[item.head] += 1
-    shown = {place for _, _, place in sorted(ranked)[: constants.MOST_BRIEF]}
+    shown = {place for _, _, place in sorted(ranked)[:most]}
     chosen = [item for place, item in enumerate(items) if place in shown]
     chosen.sort(key=lambda item: _KINDS.index(item.kind))
     return chosen, [item for place, item in enumerate(items) if place not in shown]
 
 
-def _groups(chosen: Sequence[_Item], width: int, room: int) -> list[str]:
-    """One line a finding, below the rule that they have in common; a single one stands beside it where it fits. Of the
-    `room` lines those that are left are spent on what would be cut, and on the remedy of the worst; the worst first."""
+def _groups(chosen: Sequence[_Item], width: int, room: int) -> tuple[list[str], bool]:
+    """One line a finding, below the rule that they have in common; a single one stands beside it where it fits. Lines of
+    the `room` that are left are spent, for the worst first, on what would be cut, then on whole names, then on the
+    remedy of the worst. Also whether all that was found is told whole."""
     groups = [list(group) for _, group in groupby(chosen, lambda item: item.head)]
-    spare = room - sum(len(group) + (len(group) > 1) for group in groups)
-    blocks: list[list[str]] = []
-    for group in reversed(groups):
-        left = width - len(group[0].head) - 2
-        beside = f"{group[0].head}: {_line(group[0], left)}"
-        if len(group) == 1 and left >= constants.LEAST_BESIDE and ("…" not in beside or spare < 1):
-            blocks.append([beside])
-            continue
-        spare -= len(group) == 1
-        lines = [group[0].head]
-        for item in group:
-            whole = _wrapped(f"{_subject(item)}{_told(item)}", width)
-            short = ["  " + _line(item, width - 2)]
-            taken = whole if len(whole) - 1 <= spare else short
-            spare -= len(taken) - 1
-            lines += taken
-        blocks.append(lines)
-    if chosen and chosen[-1].remedy:
-        remedy = _wrapped(f"remedy: {one_line(chosen[-1].remedy)}", width)
-        if len(remedy) <= spare:
-            blocks[0] += remedy
-    return [line for block in reversed(blocks) for line in block]
+    blocks = [_Block(group, width) for group in groups]
+    spare = room - sum(block.lines for block in blocks)
+    for level in (1, 2):
+        for block in reversed(blocks):
+            spare = block.raise_to(level, spare)
+    remedy = _wrapped(f"remedy: {one_line(chosen[-1].remedy)}", width) if chosen and chosen[-1].remedy else []
+    lines = [line for block in blocks for line in block.text()] + (remedy if len(remedy) <= spare else [])
+    return lines, all(block.whole for block in blocks)
+
+
+class _Block:
+    """The findings of one rule. Each has three forms, no shorter than the one before: in one line, cut where it must be;
+    with what was found whole, and names shortened; all whole."""
+
+    def __init__(self, group: Sequence[_Item], width: int):
+        if len(group) == 1:
+            self._head: list[str] = []
+            self._forms = [_single(group[0], width)]
+        else:
+            self._head = [group[0].head]
+            self._forms = [_below(item, width) for item in group]
+        self._level = [0] * len(group)
+
+    @property
+    def lines(self) -> int:
+        """How many it takes now."""
+        return len(self.text())
+
+    @property
+    def whole(self) -> bool:
+        """Whether nothing that was found is cut."""
+        return min(self._level) > 0
+
+    def text(self) -> list[str]:
+        """Its lines."""
+        forms = zip(self._forms, self._level, strict=True)
+        return [*self._head, *(line for form, level in forms for line in form[level])]
+
+    def raise_to(self, level: int, spare: int) -> int:
+        """Give its findings this form as far as there are lines to spare; returns how many are left."""
+        for k, form in enumerate(self._forms):
+            more = len(form[level]) - len(form[self._level[k]])
+            if self._level[k] == level - 1 and more <= spare:
+                self._level[k] = level
+                spare -= more
+        return spare
+
+
+def _below(item: _Item, width: int) -> list[list[str]]:
+    """The forms of a finding that stands below its rule."""
+    whole = _wrapped(f"{_subject(item)}{_told(item)}", width)
+    short = _uncut(item, width - 2)
+    return [["  " + _line(item, width - 2)], whole if short is None else ["  " + short], whole]
+
+
+def _single(item: _Item, width: int) -> list[list[str]]:
+    """The forms of the only finding of its rule: beside it where there is room."""
+    below = [[item.head, *form] for form in _below(item, width)]
+    left = width - len(item.head) - 2
+    if left < constants.LEAST_BESIDE:
+        return below
+    uncut = _uncut(item, left)
+    whole = f"{item.head}: {_subject(item)}{_told(item)}"
+    return [
+        [f"{item.head}: {_line(item, left)}"],
+        below[1] if uncut is None else [f"{item.head}: {uncut}"],
+        [whole] if len(whole) <= width else below[2],
+    ]
 
 
 def _wrapped(text: str, width: int) -> list[str]:
@@ -133,7 +194,7 @@ def _told(item: _Item) -> str:
 
 
 def _line(item: _Item, room: int) -> str:
-    """ "housing, shaft: 0.66 mm deep": the subject, and what was found."""
+    """ "housing, shaft: 0.66 mm deep": the subject, and what was found, in one line."""
     text = _told(item)
     if not item.subject:
         return _cut(text, room)
@@ -141,16 +202,37 @@ def _line(item: _Item, room: int) -> str:
     return f"{name}: {_cut(text, room - len(name) - 2)}"
 
 
+def _uncut(item: _Item, room: int) -> str | None:
+    """The same with all that was found; None where the names would not be recognised any more."""
+    text = _told(item)
+    left = room - len(text) - 2
+    bodies = [body for name in item.subject for body in one_line(name).split("~")]
+    least = sum(min(len(body), constants.LEAST_NAME) for body in bodies) + 2 * len(bodies) - 2
+    if not item.subject:
+        return text if len(text) <= room else None
+    return f"{_names(item.subject, left)}: {text}" if left >= least else None
+
+
 def _names(subject: Sequence[str], room: int) -> str:
-    """The names with commas, each shortened to its share of the room where all do not fit."""
+    """The names with commas, in full where they fit; else the longest are shortened, all to the same length."""
     names = [one_line(name) for name in subject]
-    share = (room - 2 * (len(names) - 1)) // len(names)
-    whole = ", ".join(names)
-    return whole if len(whole) <= room else _cut(", ".join(shortened_ends(name, share) for name in names), room)
+    left, share = room - 2 * (len(names) - 1), room
+    for k, name in enumerate(sorted(names, key=len)):
+        share = left // (len(names) - k)
+        if len(name) > share:
+            break
+        left -= len(name)
+    return _cut(", ".join(shortened_ends(name, max(share, 3)) for name in names), room)
 
 
 def _cut(text: str, room: int) -> str:
-    return text if len(text) <= room else text[: max(room - 1, 1)].rstrip(" ,;:(") + "…"
+    """The text up to the last word that fits."""
+    if len(text) <= room:
+        return text
+    kept = text[: max(room - 1, 1)]
+    if not text[len(kept)].isspace() and " " in kept[len(kept) // 2 :]:
+        kept = kept.rpartition(" ")[0]
+    return kept.rstrip(" ,;:(") + "…"
 
 
 def _notes(report: CheckReport, width: int) -> list[str]:
@@ -182,3 +264,13 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
             yield f"assumed ground: {shortened(one_line(ground), constants.BRIEF_NAME)}"
     if design.assembly.notes:
         yield f"{counted(len(design.assembly.notes), 'remark')} on what was read (-v)"
+
+
+def _many_joints(design: Design, width: int) -> list[str]:
+    """Where contact alone tells the joints, and there are many: how to have those that are meant."""
+    function, kinematics = design.assembly.function, design.kinematics
+    if kinematics is None or function.complete or len(kinematics.joints) < constants.MANY_JOINTS:
+        return []
+    many = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(design.assembly.parts), 'part')}"
+    advice = "if too many, take over those that `kinform init` proposes, with `complete = true`"
+    return textwrap.wrap(f"{many}: {advice}", width, subsequent_indent="  ", break_on_hyphens=False)

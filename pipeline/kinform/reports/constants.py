@@ -14,6 +14,9 @@ WIDTH = 80
 MOST_BRIEF = 10
 """Findings that are told line by line, the worst; with all that stands around them they fill a screen of 24 lines."""
 
+LEAST_BRIEF = 5
+"""Findings that are told line by line though what was found has to be cut; above, fewer are told, and whole."""
+
 BRIEF_LINES = 21
 """Lines up to which single findings that do not fit beside their rule take a second one: a screen of 24, without the
 two of the next commands and the prompt."""
@@ -23,6 +26,14 @@ COMPARED = ("KF3", "KF4")
 
 LEAST_BESIDE = 12
 """Characters beside a rule below which a finding goes below it: two shortened names and what was found need so many."""
+
+LEAST_NAME = 12
+"""Characters of the name of a part to which names are shortened before what was found is: both its ends are still
+recognised. A choice."""
+
+MANY_JOINTS = 9
+"""Derived joints from which a design without a complete function is told how it gets fewer: contact alone counts each
+part that is screwed on; few mechanisms are meant to have so many. A choice."""
 
 BRIEF_NAME = 28
 """Characters of the name of the ground: with the rest of its line it fits in 80."""

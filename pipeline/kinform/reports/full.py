@@ -8,7 +8,7 @@ from kinform.design import Design
 from kinform.foundation.words import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
 from kinform.reports.constants import WIDTH
-from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_line, where
+from kinform.reports.phrases import accepted, place, rule_counts, severity_counts, skipped, verdict_told, where
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
@@ -26,7 +26,15 @@ def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
         if told:
             blocks.append("\n".join([head, *(line for text in told for line in _wrapped(text, "  ", "      "))]))
     name = one_line(design.assembly.name)
-    blocks.append("\n".join([f"{name}: {verdict_line(report, fail_on)}", severity_counts(report), rule_counts(report)]))
+    blocks.append(
+        "\n".join(
+            [
+                f"{name}: {verdict_told(report, design.assembly.function.stated, fail_on)}",
+                severity_counts(report),
+                rule_counts(report),
+            ]
+        )
+    )
     return "\n\n".join(blocks) + "\n"
 
 

@@ -12,14 +12,14 @@ from collections.abc import Sequence
 from kinform.design import Design
 from kinform.foundation.words import one_line
 from kinform.model.findings import SEVERITIES, CheckReport, Finding
-from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_line, where
+from kinform.reports.phrases import accepted, details, rule_counts, severity_counts, skipped, verdict_told, where
 
 
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is
     ignored or skipped."""
     blocks = [
-        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_line(report, fail_on))}",
+        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_told(report, design.assembly.function.stated, fail_on))}",
         f"{severity_counts(report)}; {rule_counts(report)}",
     ]
     found = sorted(report.findings, key=lambda finding: -SEVERITIES.index(finding.severity))

@@ -79,6 +79,54 @@ def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
     return "consistent"
 
 
+def verdict_told(report: CheckReport, stated: bool, fail_on: str = "error") -> str:
+    """The verdict for people: what was compared, and what is wrong with what. "inconsistent" is a design that does not do
+    what is stated; where only meshes or contacts are faulty, or no function is `stated`, that is said."""
+    line = verdict_line(report, fail_on)
+    if line != "inconsistent":
+        return line if stated or report.ran == 0 else f"{line}; {GEOMETRY_ONLY}"
+    level = SEVERITIES.index(fail_on)
+    failing = [finding for finding in report.findings if SEVERITIES.index(finding.severity) >= level]
+    groups = {subject: _severities(failing, subject) for subject in dict.fromkeys(FAMILIES.values())}
+    told = [f"{subject}: {counts}" for subject, counts in groups.items() if counts]
+    return "; ".join([_compared(report, stated, failing), *told])
+
+
+def _compared(report: CheckReport, stated: bool, failing: Sequence[Finding]) -> str:
+    """What came of the comparison with the function."""
+    if not all(finding.code.startswith(FORM) for finding in failing):
+        return "inconsistent"
+    if not stated:
+        return GEOMETRY_ONLY
+    agreeing = dict(report.answers).get("agrees", 0)
+    if not agreeing or len(report.answers) > 1:
+        return "inconsistent"
+    return f"all {agreeing} intended joints agree" if agreeing > 1 else "the intended joint agrees"
+
+
+def _severities(findings: Sequence[Finding], subject: str) -> str:
+    """ "1 error, 2 warnings": of the findings about this."""
+    counts = Counter(finding.severity for finding in findings if _family(finding.code) == subject)
+    return ", ".join(counted(counts[severity], severity) for severity in reversed(SEVERITIES) if counts[severity])
+
+
+def _family(code: str) -> str:
+    return next((subject for start, subject in FAMILIES.items() if code.startswith(start)), "other")
+
+
+GEOMETRY_ONLY = "no function stated: geometry only"
+
+FORM = ("KF10", "KF11", "KF2")
+"""Rules about meshes and contacts, by how their codes begin."""
+
+FAMILIES = {
+    "KF44": "settings", "KF45": "lock", "KF42": "requirements", "KF43": "requirements", "KF4": "function",
+    "KF3": "mobility", "KF5": "motion", "KF12": "masses", "KF13": "description", "KF2": "contacts", "KF1": "meshes",
+    "": "other",
+}  # fmt: skip
+"""What rules are about, by how their codes begin, the first that fits."""
+
+
 def answers_line(counts: Sequence[tuple[str, int]]) -> str:
     """ "5 agree, 1 not held, 2 undecided (25 %)": how many are undecided is told in any case."""
     told = dict(counts)

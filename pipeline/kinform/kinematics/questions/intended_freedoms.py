@@ -55,6 +55,8 @@ def _answer(design: Derived, joint: IntendedJoint) -> IntendedAnswer:
         return IntendedAnswer(joint, True, asked, "every freedom is there, in the whole assembly")
     if bodies[0] == bodies[1]:
         return IntendedAnswer(joint, False, asked, "both sides are one body")
+    if len(asked) == 1:
+        return IntendedAnswer(joint, False, asked, "its freedom is not there, or one way only")
     return IntendedAnswer(joint, False, asked, f"of {len(asked)} freedoms {len(missing)} not there, or one way only")
 
 

@@ -15,7 +15,7 @@ from kinform.model.kinematics import Joint
 from kinform.reports.constants import MOST_LISTED_PATCHES
 from kinform.reports.page.phrases import assumption, joint_sentence, patch_words
 from kinform.reports.page.subjects import wanted_names
-from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, where
+from kinform.reports.phrases import rule_counts, severity_counts, verdict_line, verdict_told, where
 
 SIGNS = {"error": "✕", "warning": "▲", "note": "●"}
 
@@ -83,7 +83,8 @@ def verdict_of(design: Design) -> Verdict:
     line = verdict_line(design.report)
     kind = line if line in ("consistent", "inconsistent") else "unverified"
     sign = {"consistent": "✓", "inconsistent": "✕", "unverified": "?"}[kind]
-    return Verdict(kind, sign, line, f"{severity_counts(design.report)} · {rule_counts(design.report)}")
+    told = verdict_told(design.report, design.assembly.function.stated)
+    return Verdict(kind, sign, told, f"{severity_counts(design.report)} · {rule_counts(design.report)}")
 
 
 def findings(design: Design) -> list[FindingFacts]:
