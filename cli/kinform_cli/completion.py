@@ -14,10 +14,12 @@ if TYPE_CHECKING:
 
 
 def codes(incomplete: str) -> list[str]:
-    """Codes of rules."""
+    """Codes of rules, and words that are explained."""
     from kinform.consistency import RULES
+    from kinform.consistency.glossary import GLOSSARY
 
-    return [rule.code for rule in RULES if rule.code.startswith(incomplete.upper())]
+    words = [word for word in GLOSSARY if incomplete and word.startswith(incomplete.casefold())]
+    return [rule.code for rule in RULES if rule.code.startswith(incomplete.upper())] + words
 
 
 def parts(ctx: Any, incomplete: str) -> list[str]:

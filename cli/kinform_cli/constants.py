@@ -120,3 +120,8 @@ MOST_MOVES = 12
 """Joints that were moved that are listed; the JSON has them all. A choice."""
 INSET = 2
 """Blanks before the columns that stand below what heads them; a choice."""
+
+# text
+
+LARGE = 10.0
+"""m: diagonal of a part from which on places are told in m; a choice."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinform.foundation import words
-from kinform_cli.constants import FEW, FINE, MANY, NO_LENGTH, NO_VALUE, ROUNDING
+from kinform_cli.constants import FEW, FINE, LARGE, MANY, NO_LENGTH, NO_VALUE, ROUNDING
 
 if TYPE_CHECKING:
     from kinform.design import Design
@@ -118,14 +118,14 @@ def vector(direction: Iterable[float] | None) -> str:
 
 @dataclass(frozen=True)
 class Lengths:
-    """Lengths without the name of their unit: places in that of the assembly, as the command line takes them too; gaps,
-    areas and volumes in one in which they read well."""
+    """Lengths without the name of their unit, as findings tell them: in mm where the assembly has metric units, places
+    of very large ones in m; else in the unit of the assembly."""
 
     unit: str
     metres: float
     """A unit of places."""
     small: str
-    """The unit of gaps, areas and volumes: mm where that of places is larger."""
+    """The unit of gaps, areas and volumes."""
     small_metres: float
     decimals: int
     """Of places."""
@@ -134,15 +134,17 @@ class Lengths:
 
     @staticmethod
     def of(assembly: Assembly) -> Lengths:
-        """In the unit of that assembly's manifest, as fine as its parts call for."""
+        """As fine as the parts of that assembly call for."""
         from kinform.foundation.units import metres_per
 
-        metres = metres_per(assembly.units)
         largest = max((part.mesh.diagonal for part in assembly.parts if part.mesh is not None), default=0.0)
+        metric = assembly.units in ("m", "cm", "mm")
+        unit = assembly.units if not metric else "m" if largest >= LARGE else "mm"
+        metres = metres_per(unit)
         fine = FINE * (largest or 1.0) / metres
-        small = "mm" if assembly.units in ("m", "cm") else assembly.units
+        small = "mm" if metric else assembly.units
         nothing = max(NO_LENGTH, ROUNDING * largest)
-        return Lengths(assembly.units, metres, small, metres_per(small), math.ceil(-math.log10(fine)), nothing)
+        return Lengths(unit, metres, small, metres_per(small), math.ceil(-math.log10(fine)), nothing)
 
     def length(self, metres: float | None) -> str:
         """A gap, a depth, a pitch: to four digits, and zero where it is rounding."""
@@ -178,7 +180,10 @@ def ground_note(design: Design) -> str | None:
         return None
     assert design.kinematics is not None
     chosen = [body.name for body in design.kinematics.bodies if body.ground]
-    return f"note: no ground is stated: {', '.join(chosen)} is taken, as the heaviest (else the largest) body"
+    return (
+        f"note: no ground is stated: {', '.join(chosen)} is taken, as the heaviest (else the largest) body; "
+        'ground = "PART" in [assembly] chooses another'
+    )
 
 
 def dumps(value: Any) -> str:

@@ -89,7 +89,7 @@ def test_a_unit_that_is_hard_to_believe_is_said_at_once_and_nothing_is_proposed(
     ran = kinform(folder, "init", *(f"{name}.stl" for name in servo_and_bracket()), "--units", "um", "-o", "tiny.toml")
     assert ran.returncode == 0
     assert "warning: doubtful: in um the assembly is" in ran.stderr
-    assert "proposed" not in ran.stderr
+    assert "no groups and no joints are looked for or proposed" in ran.stderr
     assert "## " not in (folder / "tiny.toml").read_text()
 
 
@@ -170,3 +170,39 @@ def test_a_cad_file_without_function_gets_proposals_as_meshes_do(tmp_path):
     assert np.linalg.norm(beside) < 0.02
     without = kinform(tmp_path, "init", source.name, "--no-suggest")
     assert "function.joint" not in without.stdout
+
+
+def test_a_doubtful_unit_is_said_to_leave_nothing_proposed(begun):
+    folder, _ = begun
+    meshes = sorted(path.name for path in folder.glob("*.stl"))
+    ran = kinform(folder, "init", *meshes, "--units", "m", "-o", "metres.toml")
+    assert ran.returncode == 0
+    assert "doubtful: in m" in ran.stderr
+    assert "no groups and no joints are looked for or proposed while the unit is doubtful" in ran.stderr
+
+
+def test_no_material_is_suggested_that_nothing_speaks_for(begun):
+    text = (begun[0] / "m.toml").read_text()
+    assert text.count('# material = "…"') == 4
+    assert 'material = "steel"' not in text
+    assert "pla, " in text and "density (kg/m³)" in " ".join(text.replace("# ", "").split())
+
+
+def test_what_is_outside_the_folder_is_said_once_with_how_many(begun):
+    folder, _ = begun
+    (folder / "below").mkdir(exist_ok=True)
+    text = (folder / "m.toml").read_text().replace('mesh = "', 'mesh = "../')
+    (folder / "below" / "m.toml").write_text(text)
+    ran = kinform(folder, "run", "below/m.toml")
+    assert ran.returncode == 2
+    assert ran.stderr.count("lies outside the manifest's folder") == 1
+    assert "(and 3 more such files)" in ran.stderr
+
+
+def test_what_is_rounding_in_a_proposed_joint_is_not_written():
+    from kinform.form.without_manifest import _joint_lines
+    from kinform.model.function import IntendedJoint
+
+    axis, point = np.array([-6e-06, 1.0, 5e-06]), np.array([0.097234, -7.76e-05, 1e-7])
+    noisy = IntendedJoint("j", ("a", "b"), "revolute", axis, None, point, None, None, None, None)
+    assert {"axis = [0, 1, 0]", "point = [0.097234, -7.76e-05, 0]"} < set(_joint_lines(noisy, "m"))

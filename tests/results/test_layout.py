@@ -14,6 +14,7 @@ from support.places import FIXTURES
 
 from kinform import results
 from kinform.design import Design
+from kinform.function import designers_joints
 
 GROUPS = {
     "assembly", "surfaces", "contacts", "constraints", "joints", "mobility", "mass", "behaviour", "simulation",
@@ -141,3 +142,39 @@ def test_parts_of_one_mesh_share_it_after_reading(design: Design, tmp_path: Path
     results.write(design, tmp_path / "r.h5")
     assembly = results.read(tmp_path / "r.h5").assembly
     assert assembly.part("yaw_motor/stator").mesh is assembly.part("pitch_motor/stator").mesh
+
+
+@pytest.fixture(scope="module")
+def driven(derive_design) -> Design:
+    """A run with its own joint called by the designer, about the axis turned round."""
+    design = derive_design(FIXTURES / "mechanisms/slider_crank/slider_crank.toml")
+    joints = tuple(
+        joint if joint.axis is None else replace(joint, axis=-joint.axis) for joint in design.assembly.function.joints
+    )
+    function = replace(design.assembly.function, joints=joints)
+    return replace(design, assembly=replace(design.assembly, function=function))
+
+
+def test_a_run_in_a_file_has_the_designers_names_and_signs(driven: Design) -> None:
+    assert driven.kinematics is not None
+    assert driven.simulation is not None
+    known = designers_joints(driven.assembly, driven.kinematics)
+    file = h5py.File(io.BytesIO(results.to_bytes(driven)), "r")["simulation"]
+    derived = [name.decode() for name in file["derived_joints"][()]]
+    assert tuple(derived) == driven.simulation.joint_names
+    named = [known[name].name if name in known else name for name in derived]
+    assert [name.decode() for name in file["joint_names"][()]] == named != derived
+    assert -1 in file["joint_signs"][()]
+    signs = np.repeat(file["joint_signs"][()], np.diff(file["joint_offset"][()]))
+    np.testing.assert_array_equal(file["joint_position"][()] * signs, driven.simulation.joint_position)
+
+
+def test_a_run_whose_joints_are_called_otherwise_comes_back(driven: Design, tmp_path: Path) -> None:
+    results.write(driven, tmp_path / "r.h5")
+    again, run = results.read(tmp_path / "r.h5").simulation, driven.simulation
+    assert again is not None
+    assert run is not None
+    assert again.joint_names == run.joint_names
+    assert [use.joint for use in again.drives] == [use.joint for use in run.drives]
+    for name in ("joint_position", "joint_velocity", "joint_effort", "joint_acceleration"):
+        assert getattr(again, name).tobytes() == getattr(run, name).tobytes()

@@ -57,31 +57,35 @@ def init(
     from kinform import form
 
     folder = Path(".") if output is None else output.parent
-    hints = _Hints() if suggest else None
-    if described:
-        from kinform.form.write_manifest import init_from_source
+    with Working("import") as working:
+        hints = _Hints(working, suggest)
+        if described:
+            from kinform.form.write_manifest import init_from_source
 
-        text = init_from_source(
-            meshes[0],
-            relative_to=folder,
-            reading=reading(geometry, packages),
-            fastened=None if hints is None else hints.groups,
-            jointed=None if hints is None else hints.joints,
-        )
-        _write(text, output)
-        return
-    assert units is not None
-    name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
-    text = form.init_manifest(
-        meshes,
-        units=units,
-        name=name,
-        relative_to=folder,
-        fastened=_no_groups if hints is None else hints.groups,
-        jointed=None if hints is None else hints.joints,
-    )
+            text = init_from_source(
+                meshes[0],
+                relative_to=folder,
+                reading=reading(geometry, packages),
+                fastened=hints.groups,
+                jointed=hints.joints,
+            )
+        else:
+            assert units is not None
+            name = None if len(meshes) == 1 else meshes[0].resolve().parent.name if output is None else output.stem
+            text = form.init_manifest(
+                meshes,
+                units=units,
+                name=name,
+                relative_to=folder,
+                fastened=hints.groups,
+                jointed=hints.joints,
+            )
+    for doubt in hints.doubts:
+        console.warn(doubt)
+    if hints.doubts and suggest:
+        console.warn("no groups and no joints are looked for or proposed while the unit is doubtful")
     _write(text, output)
-    if output is not None and "\n# doubtful: " in text:
+    if output is not None and hints.doubts:
         console.say("for another unit: the same command with that --units, and --force")
 
 
@@ -114,33 +118,29 @@ def _proposals(text: str) -> str:
     return f", {' and '.join(found)} proposed as comments" if found else ""
 
 
-def _no_groups(assembly: Assembly) -> list[tuple[list[PartName], str]]:
-    """Nothing is proposed; but a unit that is hard to believe is said at once."""
-    from kinform.form.without_manifest import doubts
-
-    for doubt in doubts(assembly):
-        console.warn(doubt)
-    return []
-
-
 class _Hints:
-    """What the contacts of an assembly suggest; nothing where the unit is doubtful: tolerances depend on it."""
+    """What the contacts of an assembly suggest, where that is wanted; nothing where the unit is doubtful: whoever took
+    millimetres for metres is to correct that first."""
 
-    def __init__(self) -> None:
+    def __init__(self, working: Working, wanted: bool) -> None:
         self.design: Design | None = None
+        self.doubts: list[str] = []
+        self._working = working
+        self._wanted = wanted
 
     def groups(self, assembly: Assembly) -> list[tuple[list[PartName], str]]:
         """Parts that are probably one body."""
         from kinform.form.without_manifest import doubts
 
-        if doubts(assembly):
-            return _no_groups(assembly)
+        self.doubts = doubts(assembly)
+        if self.doubts or not self._wanted:
+            return []
         from kinform import stages
         from kinform.contacts.fastening import fastened
         from kinform.design import Design
 
-        with Working("contacts") as progress:
-            self.design = stages.contacts(Design(assembly), jobs=cores(None), progress=progress)
+        self._working.stage("contacts")
+        self.design = stages.contacts(Design(assembly), jobs=cores(None), progress=self._working)
         contacts = self.design.contacts
         return [] if contacts is None else fastened(contacts.suggestions)
 
@@ -150,4 +150,5 @@ class _Hints:
             return []
         from kinform.kinematics import proposed_joints
 
+        self._working.step("joints that may be meant", 0, 0)
         return proposed_joints(assembly, self.design.surfaces, self.design.contacts)

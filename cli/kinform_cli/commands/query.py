@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from kinform.foundation.units import METRES_PER_UNIT, metres_per
 from kinform_cli import completion, console, files
 from kinform_cli.designs import looked_at
 from kinform_cli.errors import refuse
@@ -44,7 +45,8 @@ def query(
         option(
             "--turn",
             "AXIS@POINT",
-            "Rotation about an axis (x, y, z, -x … or 0,0,1) through a point (as in 0,0,0; in the assembly's units).",
+            "Rotation about an axis (x, y, z, -x … or 0,0,1) through a point (as in 0,0,0: in the assembly's units; or "
+            "0,0,44.9mm).",
         ),
     ] = None,
     slide: Annotated[str | None, option("--slide", "DIRECTION", "Translation: x, y, z, -x … or 0,0,1.")] = None,
@@ -66,7 +68,7 @@ def query(
         raise typer.BadParameter("name A and B, or ask for --intended")
     if (turn is None) == (slide is None):
         raise typer.BadParameter("give either --turn AXIS@POINT or --slide DIRECTION")
-    axis, point = (None, None) if turn is None else _turn(turn)
+    axis, point, unit = (None, None, None) if turn is None else _turn(turn)
     direction = None if slide is None else _direction(slide, "--slide")
     design = _design(source)
     import numpy as np
@@ -75,7 +77,8 @@ def query(
     from kinform_cli import text
 
     lengths = text.Lengths.of(design.assembly)
-    rotation = None if point is None else (np.array(axis), np.array(point) * lengths.metres)
+    metres = metres_per(unit or design.assembly.units)
+    rotation = None if point is None else (np.array(axis), np.array(point) * metres)
     try:
         answer = kinematics.query(design, a, b, turn=rotation, slide=None if direction is None else np.array(direction))
     except KeyError as error:
@@ -112,11 +115,13 @@ def _intended(source: Path, format: TableFormat) -> None:
         console.out(_render_intended(design, asked))
 
 
-def _turn(value: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _turn(value: str) -> tuple[tuple[float, ...], tuple[float, ...], str | None]:
+    """The axis, the point, and the unit that stands behind it."""
     axis, at, point = value.partition("@")
     if not at:
         raise typer.BadParameter(f"{value!r} has no @POINT, as in z@0,0,0", param_hint="--turn")
-    return _direction(axis, "--turn"), _triple(point, "--turn")
+    unit = next((name for name in sorted(METRES_PER_UNIT, key=len, reverse=True) if point.endswith(name)), None)
+    return _direction(axis, "--turn"), _triple(point.removesuffix(unit or ""), "--turn"), unit
 
 
 def _direction(value: str, option: str) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.function.body_titles import body_titles
 from kinform.model.kinematics import Membership
 from kinform_cli.tables import Rows, stacked
 from kinform_cli.text import NONE, number
@@ -21,10 +22,12 @@ def render(design: Design) -> RenderableType:
     title = counted(len(kinematics.bodies), "body", "bodies")
     rows = Rows("body", "parts", "made one by", title=title, names=["body"], texts=["parts", "made one by"])
     single = [b for b in kinematics.bodies if (*map(str, b.parts),) == (str(b.name),) and not (b.merged or b.ground)]
+    titles = body_titles(design.assembly, kinematics)
     for body in kinematics.bodies:
         if body not in single:
             ground = " (ground)" if body.ground else ""
-            rows.add(body.name + ground, ", ".join(body.parts), "; ".join(body.merged) or NONE)
+            title = f", the {titles[body.name]}" if body.name in titles else ""
+            rows.add(f"{body.name}{title}{ground}", ", ".join(body.parts), "; ".join(body.merged) or NONE)
     alone = [f"\nof one part each: {', '.join(body.name for body in single)}"] if single else []
     unclear = sorted((one for one in kinematics.membership if one.either), key=lambda one: (one.margin, one.part))
     if not unclear:

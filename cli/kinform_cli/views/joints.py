@@ -7,15 +7,16 @@ from collections.abc import Sequence
 from rich.console import RenderableType
 from rich.text import Text
 
-from kinform.consistency.comparisons.answers import answer_counts, answers
+from kinform.consistency.comparisons.answers import Answer, answer_counts, answers
 from kinform.design import Design
 from kinform.foundation.words import counted
+from kinform.function.body_titles import body_titles
 from kinform.model.collisions import JointRange
 from kinform.model.kinematics import Joint, Kinematics, Release
 from kinform.reports.phrases import answers_line
 from kinform_cli.constants import MOST_WAYS
 from kinform_cli.tables import Rows, stacked
-from kinform_cli.text import Lengths, degrees, ground_note, singular, vector
+from kinform_cli.text import NONE, Lengths, degrees, ground_note, singular, vector
 
 
 def render(design: Design) -> RenderableType:
@@ -25,8 +26,15 @@ def render(design: Design) -> RenderableType:
     title = f"{counted(len(kinematics.joints), 'joint')} between {counted(len(kinematics.bodies), 'body', 'bodies')}"
     run = design.simulation
     ranges = {item.joint: item for item in (run.ranges if run is not None else None) or ()}
-    headings = ("name", "type", "axis", f"point {lengths.unit}", "free", "status")
+    given = answers(design) if design.assembly.function.joints else ()
+    meant: dict[str, list[str]] = {}
+    for one in given:
+        if one.joint is not None:
+            meant.setdefault(one.joint, []).append(one.name)
+    headings = ("type", "axis", f"point {lengths.unit}", "free", "status")
     rows = Rows(
+        "name",
+        *(["intended"] if meant else []),
         *headings,
         *(["range"] if ranges else []),
         "evidence",
@@ -38,6 +46,7 @@ def render(design: Design) -> RenderableType:
     for joint in kinematics.joints:
         rows.add(
             joint.name,
+            *([", ".join(meant.get(joint.name, [])) or NONE] if meant else []),
             joint.type if joint.pitch is None else f"{joint.type} ({lengths.length(joint.pitch)} {lengths.small}/turn)",
             vector(joint.axis) if joint.axis2 is None else f"{vector(joint.axis)}; {vector(joint.axis2)}",
             lengths.point(joint.point),
@@ -47,24 +56,23 @@ def render(design: Design) -> RenderableType:
             ", ".join(joint.evidence),
         )
     items: list[RenderableType] = [rows]
-    items += _intended(design, lengths)
+    items += _intended(design, given, lengths)
     items += _leaving(kinematics)
     for joint in kinematics.joints:
         if joint.status != "determined":
             items += _doubt(joint, lengths)
     items += [Text(f"\n{j.name}: {j.motion}") for j in kinematics.joints if j.type == "general" and j.motion]
-    items += _bodies(kinematics)
+    items += _bodies(design)
     note = ground_note(design)
     if note is not None:
         items.append(note)
     return stacked(*items)
 
 
-def _intended(design: Design, lengths: Lengths) -> list[RenderableType]:
+def _intended(design: Design, given: Sequence[Answer], lengths: Lengths) -> list[RenderableType]:
     """The answer to each intended joint."""
-    if not design.assembly.function.joints:
+    if not given:
         return []
-    given = answers(design)
     title = f"\nIntended joints: {answers_line(answer_counts(given))}"
     rows = Rows("intended", "type", "answer", "because", title=title, names=["intended"], texts=["because"])
     for one in given:
@@ -128,7 +136,9 @@ def _leaving(kinematics: Kinematics) -> list[RenderableType]:
     if held:
         lines.append(f"{'' if loose else chr(10)}held by contact: {held} of {counted(len(kinematics.joints), 'joint')}")
     if kinematics.separations:
-        lines.append(Text("\nCan leave the assembly, the rest at rest", style="bold"))
+        lines.append(
+            Text("\nNothing stated holds these; contact alone lets them leave, the rest at rest", style="bold")
+        )
         lines += [f"  {', '.join(item.bodies)}: {_ways(item.releases)}" for item in kinematics.separations]
     if kinematics.separations_reason:
         lines.append(f"\n{kinematics.separations_reason}")
@@ -154,7 +164,10 @@ def blockers(joint: Joint, lengths: Lengths) -> list[RenderableType]:
     return lines
 
 
-def _bodies(kinematics: Kinematics) -> list[RenderableType]:
+def _bodies(design: Design) -> list[RenderableType]:
+    kinematics = design.kinematics
+    assert kinematics is not None
+    titles = body_titles(design.assembly, kinematics)
     bodies = [body for body in kinematics.bodies if body.ground or len(body.parts) > 1]
     if not bodies:
         return []
@@ -162,5 +175,6 @@ def _bodies(kinematics: Kinematics) -> list[RenderableType]:
     for body in bodies:
         ground = " (ground)" if body.ground else ""
         merged = f"  [{'; '.join(body.merged)}]" if body.merged else ""
-        lines.append(f"  {body.name}{ground}: {', '.join(body.parts)}{merged}")
+        title = f", the {titles[body.name]}" if body.name in titles else ""
+        lines.append(f"  {body.name}{title}{ground}: {', '.join(body.parts)}{merged}")
     return lines

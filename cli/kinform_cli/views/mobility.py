@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from rich.console import RenderableType
 
 from kinform.design import Design
 from kinform.foundation.words import counted, length, rate
+from kinform.function.body_titles import body_titles
 from kinform.kinematics import Motions
 from kinform.model.kinematics import Coupling, Mobility
 from kinform.reports.freedom_phrases import follower_rates, freedom_text
@@ -75,7 +77,7 @@ def _coupling(coupling: Coupling, design: Design) -> str:
     first, second = coupling.joints
     types = {joint.name: joint.type for joint in design.kinematics.joints}
     slides = [types.get(name) == "prismatic" for name in coupling.joints]
-    ratio = rate(coupling.ratio, slides[0], slides[1], design.assembly.units)
+    ratio = rate(coupling.ratio, slides[0], slides[1], Lengths.of(design.assembly).unit)
     share = coupling.uncertainty / abs(coupling.ratio) if coupling.ratio else math.inf
     spread = f" ± {100.0 * share:.1g} %" if math.isfinite(share) else ""
     pose = ", at this pose" if coupling.kind == "cam" else ""
@@ -83,7 +85,7 @@ def _coupling(coupling: Coupling, design: Design) -> str:
     text = f"{coupling.kind}: {first} = {ratio}{spread} · {second} through {coupling.through}{pose}{sure}"
     if coupling.meshing is not None:
         first_teeth, second_teeth = coupling.meshing.teeth
-        whole = rate(coupling.meshing.ratio, slides[0], slides[1], design.assembly.units)
+        whole = rate(coupling.meshing.ratio, slides[0], slides[1], Lengths.of(design.assembly).unit)
         return f"{text}; {whole} over whole teeth, of {first_teeth} and {second_teeth}"
     return f"{text}; {coupling.reason}" if coupling.reason else text
 
@@ -94,18 +96,21 @@ def _freedoms(design: Design) -> Rows:
     assert kinematics is not None
     lengths, motions = Lengths.of(design.assembly), Motions.of(kinematics)
     joints = {str(joint.name): joint for joint in kinematics.joints}
+    titles = body_titles(design.assembly, kinematics)
     texts = ("freedom", "moves", "follow")
     grid = Rows("freedom", "driven at", "moves", "follow", title="Freedoms", names=["driven at"], texts=texts)
     for freedom in kinematics.mobility.named:
         rates = follower_rates(freedom, joints, lengths.unit, lengths.metres)
         grid.add(
             freedom_text(
-                freedom,
+                replace(freedom, body=type(freedom.body)(titles.get(freedom.body, freedom.body))),
                 lambda point: f"({lengths.point(point)}) {lengths.unit}",
                 lambda lead: f"{lengths.length(lead)} {lengths.small}",
             ),
             freedom.driver or NONE,
-            _first_names([str(name) for name in motions.twists(freedom)]),
+            _first_names(
+                [titles.get(str(name), str(name)).removeprefix("body of ") for name in motions.twists(freedom)]
+            ),
             _first_names([f"{name} {rate}" for name, rate in rates]) or NONE,
         )
     return grid

@@ -7,6 +7,7 @@ import inspect
 import re
 
 from kinform.consistency import profiles
+from kinform.consistency.glossary import GLOSSARY, meaning
 from kinform.consistency.rule import Rule
 from kinform.consistency.rules import RULES
 from kinform.errors import KinformError
@@ -34,21 +35,24 @@ not apply). Findings are errors, warnings or notes. Exit code of the gate: 1 wit
 
 
 class UnknownRuleError(KinformError):
-    """No rule has this code or name; lists the nearest ones."""
+    """No rule has this code or name, and no word that is explained is this; lists the nearest ones."""
 
     def __init__(self, code: str, near: tuple[str, ...]):
         self.code, self.near = code, near
-        hint = f"did you mean {', '.join(near)}?" if near else "`kinform explain` lists all rules"
-        super().__init__(f"no rule has the code or name {code!r}: {hint}")
+        hint = f"did you mean {', '.join(near)}?" if near else "`kinform explain` lists all rules and words"
+        super().__init__(f"no rule has the code or name {code!r}, and no word of results is that: {hint}")
 
 
 def explain(code: str) -> str:
     """Documentation of the rule with this code or name (case does not matter); of the beginning of codes ("KF4") the
-    list of its rules; UnknownRuleError otherwise."""
+    list of its rules; what a word means that results are told in ("blocked"); UnknownRuleError otherwise."""
     wanted = code.strip().casefold()
     for rule in RULES:
         if wanted in (rule.code.casefold(), rule.name):
             return f"{rule.code} {rule.name} ({rule.severity})\n\n{_text(rule)}\n"
+    word = meaning(code)
+    if word is not None:
+        return word
     family = [rule for rule in RULES if len(wanted) > 1 and rule.code.casefold().startswith(wanted)]
     if family:
         return "".join(f"{rule.code} {rule.name} ({rule.severity})\n" for rule in family)
@@ -89,7 +93,8 @@ def _anchor(rule: Rule) -> str:
 
 
 def _near(wanted: str) -> tuple[str, ...]:
-    names = {rule.code.casefold(): rule for rule in RULES} | {rule.name: rule for rule in RULES}
+    names = {name: f"{rule.code} {rule.name}" for rule in RULES for name in (rule.code.casefold(), rule.name)}
+    names |= {word: word for word in GLOSSARY}
     close = difflib.get_close_matches(wanted, names, n=5, cutoff=0.5)
     close += [name for name in names if len(wanted) > 2 and wanted in name]
-    return tuple(dict.fromkeys(f"{names[name].code} {names[name].name}" for name in close))[:5]
+    return tuple(dict.fromkeys(names[name] for name in close))[:5]

@@ -263,3 +263,12 @@ SIBLING_BYTES = 4 * 1024 * 1024
 
 COVERED_FACETS = 2000
 """Facets of a visual mesh that are held against the collision geometry, about: of larger ones every second, third, …"""
+
+# ---- manifests that are written
+
+WIDTH = 100
+"""Columns of comments."""
+
+NOISE = 2e-5
+"""Components of a proposed axis or point below this share of the largest are written as zero: 0.001°, or 6 µm at 0.3 m,
+is the rounding of meshes in float32 far from the origin, and nothing that is meant."""

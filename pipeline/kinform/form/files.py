@@ -158,7 +158,7 @@ class DesignFiles:
         path = folder / stated
         if not self._outside and not any(self._inside(path, root) for root in {self.top, folder, *self._allowed}):
             remedy = "move it into the folder of the manifest, or allow this with --allow-outside"
-            self.problems.add(f"{what} {stated} lies outside the manifest's folder", file, line, remedy)
+            self.problems.add_alike(f"{what} {stated}", "lies outside the manifest's folder", file, line, remedy)
             return None
         try:
             there = path.is_file()

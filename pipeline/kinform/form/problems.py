@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from kinform.errors import InputError, Problem
 from kinform.form.constants import PROBLEMS_MOST
 from kinform.foundation.words import counted
@@ -12,6 +14,7 @@ class Problems:
 
     def __init__(self) -> None:
         self._items: dict[Problem, None] = {}
+        self._alike: dict[tuple[str, str | None], list[str]] = {}
         self._more = 0
 
     def __len__(self) -> int:
@@ -24,12 +27,28 @@ class Problems:
         else:
             self._items.setdefault(Problem(message=message, file=file, line=line, remedy=remedy))
 
+    def add_alike(self, what: str, fault: str, file: str | None, line: int | None, remedy: str) -> None:
+        """Note that `what` has a `fault` that others of the file have too: they become one problem, at the first."""
+        others = self._alike.setdefault((fault, file), [])
+        if not others:
+            self._items.setdefault(Problem(message=fault, file=file, line=line, remedy=remedy))
+        if what not in others:
+            others.append(what)
+
+    def _told(self, problem: Problem) -> Problem:
+        """The problem with how many have it."""
+        alike = self._alike.get((problem.message, problem.file))
+        if alike is None:
+            return problem
+        many = f" (and {counted(len(alike) - 1, 'more such file')})" if len(alike) > 1 else ""
+        return replace(problem, message=f"{alike[0]} {problem.message}{many}")
+
     def raise_if_any(self) -> None:
         """Raise InputError with all problems, by file in the order of their first problem, then by line."""
         if not self._items:
             return
         order = {file: i for i, file in reversed(list(enumerate(p.file for p in self._items)))}
-        told = sorted(self._items, key=lambda p: (order[p.file], p.line or 0))
+        told = sorted(map(self._told, self._items), key=lambda p: (order[p.file], p.line or 0))
         if self._more:
             told.append(
                 Problem(f"{counted(self._more, 'more problem')} of this input", None, None, "repair these first")

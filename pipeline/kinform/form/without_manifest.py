@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import math
 import os
+import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from kinform.errors import InputError, Problem
-from kinform.form.constants import LARGEST_ASSEMBLY, MISTAKEN_METRES, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY
+from kinform.form.constants import LARGEST_ASSEMBLY, MISTAKEN_METRES, NOISE, SMALLEST_ASSEMBLY, USUAL_ASSEMBLY, WIDTH
 from kinform.form.files import read_raw
+from kinform.form.materials import BUILT_IN
 from kinform.form.meshes.bodies import named_bodies, shell_bodies
 from kinform.form.meshes.health import build_mesh
 from kinform.form.meshes.raw import MeshError, RawMesh
@@ -91,12 +93,15 @@ def init_manifest(
     lines = ["schema = 1", "", "[assembly]", f"name = {_text(assembly.name)}", f"units = {_text(units)}"]
     lines += [f"# {doubt}" for doubt in doubts(assembly)]
     lines += ['# ground = "…"   # the part or group at rest; else the heaviest body']
+    built_in = ", ".join(sorted(BUILT_IN))
+    told = f"There is no mass without a material ({built_in}, or your own: [materials.NAME]) or density (kg/m³)."
+    lines += ["", *textwrap.wrap(told, WIDTH, initial_indent="# ", subsequent_indent="# ")]
     for part in assembly.parts:
         assert part.mesh is not None
         lines += ["", "[[part]]", f"name = {_text(part.name)}", f"mesh = {_text(where[part.mesh.path])}"]
         if part.mesh.body is not None:
             lines.append(f"body = {_text(part.mesh.body)}")
-        lines.append('# material = "steel"   # or density = 7850.0 (kg/m³)')
+        lines.append('# material = "…"')
     lines += proposals(assembly, units, fastened, jointed)
     lines.append("")
     return "\n".join(lines)
@@ -136,10 +141,16 @@ def _joint_lines(joint: IntendedJoint, units: str) -> list[str]:
     lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
     lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
     if joint.axis is not None:
-        lines.append(f"axis = {_numbers(joint.axis, 6)}")
+        lines.append(f"axis = {_numbers(_without_noise(joint.axis), 6)}")
     if joint.point is not None:
-        lines.append(f"point = {_numbers(joint.point / metres_per(units), 7)}")
+        lines.append(f"point = {_numbers(_without_noise(joint.point / metres_per(units)), 6)}")
     return lines
+
+
+def _without_noise(values: Array) -> Array:
+    """The values without those that are rounding of meshes beside the largest."""
+    rest: Array = np.where(np.abs(values) < NOISE * np.abs(values).max(), 0.0, values)
+    return rest
 
 
 def _numbers(values: Array, digits: int) -> str:

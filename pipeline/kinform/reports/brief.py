@@ -14,6 +14,7 @@ from itertools import groupby
 
 from kinform.design import Design
 from kinform.foundation.words import counted, one_line, shortened, shortened_ends
+from kinform.function.body_titles import body_titles
 from kinform.model.findings import CheckReport
 from kinform.reports import constants
 from kinform.reports.phrases import answers_line, rule_counts, severity_counts, verdict_told
@@ -91,8 +92,8 @@ def _items(report: CheckReport) -> list[_Item]:
 
 
 def _worst(items: Sequence[_Item], most: int) -> tuple[list[_Item], list[_Item]]:
-    """At most so many findings to be shown, the worst last, and the others. Of each kind every rule has its turn: many findings
-    of one do not hide the only one of another."""
+    """At most so many findings to be shown, the worst last, and the others. Of each kind every rule has its turn: many
+    findings of one do not hide the only one of another."""
     turns: Counter[str] = Counter()
     ranked = []
     for place, item in enumerate(items):
@@ -105,8 +106,8 @@ def _worst(items: Sequence[_Item], most: int) -> tuple[list[_Item], list[_Item]]
 
 
 def _groups(chosen: Sequence[_Item], width: int, room: int) -> tuple[list[str], bool]:
-    """One line a finding, below the rule that they have in common; a single one stands beside it where it fits. Lines of
-    the `room` that are left are spent, for the worst first, on what would be cut, then on whole names, then on the
+    """One line a finding, below the rule that they have in common; a single one stands beside it where it fits. Lines
+    of the `room` that are left are spent, for the worst first, on what would be cut, then on whole names, then on the
     remedy of the worst. Also whether all that was found is told whole."""
     groups = [list(group) for _, group in groupby(chosen, lambda item: item.head)]
     blocks = [_Block(group, width) for group in groups]
@@ -120,8 +121,8 @@ def _groups(chosen: Sequence[_Item], width: int, room: int) -> tuple[list[str], 
 
 
 class _Block:
-    """The findings of one rule. Each has three forms, no shorter than the one before: in one line, cut where it must be;
-    with what was found whole, and names shortened; all whole."""
+    """The findings of one rule. Each has three forms, no shorter than the one before: in one line, cut where it must
+    be; with what was found whole, and names shortened; all whole."""
 
     def __init__(self, group: Sequence[_Item], width: int):
         if len(group) == 1:
@@ -259,9 +260,10 @@ def _assumptions(report: CheckReport, design: Design) -> Iterable[str]:
     if skipped:
         yield f"skipped: {counted(skipped, 'rule')}{why}"
     if design.assembly.ground is None and design.kinematics is not None:
-        ground = next((str(body.name) for body in design.kinematics.bodies if body.ground), None)
+        titles = body_titles(design.assembly, design.kinematics)
+        ground = next((titles.get(b.name, str(b.name)) for b in design.kinematics.bodies if b.ground), None)
         if ground is not None:
-            yield f"assumed ground: {shortened(one_line(ground), constants.BRIEF_NAME)}"
+            yield f"assumed ground: {shortened(one_line(ground), constants.BRIEF_NAME)} (`ground` in [assembly])"
     if design.assembly.notes:
         yield f"{counted(len(design.assembly.notes), 'remark')} on what was read (-v)"
 

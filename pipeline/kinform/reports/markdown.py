@@ -18,8 +18,9 @@ from kinform.reports.phrases import accepted, details, rule_counts, severity_cou
 def render(report: CheckReport, design: Design, fail_on: str = "error") -> str:
     """Verdict, a table of findings (the most severe first), their details, the rules that could not decide, and what is
     ignored or skipped."""
+    verdict = verdict_told(report, design.assembly.function.stated, fail_on)
     blocks = [
-        f"### kinform: {code(design.assembly.name)} – {escaped(verdict_told(report, design.assembly.function.stated, fail_on))}",
+        f"### kinform: {code(design.assembly.name)} – {escaped(verdict)}",
         f"{severity_counts(report)}; {rule_counts(report)}",
     ]
     found = sorted(report.findings, key=lambda finding: -SEVERITIES.index(finding.severity))

@@ -80,8 +80,8 @@ def verdict_line(report: CheckReport, fail_on: str = "error") -> str:
 
 
 def verdict_told(report: CheckReport, stated: bool, fail_on: str = "error") -> str:
-    """The verdict for people: what was compared, and what is wrong with what. "inconsistent" is a design that does not do
-    what is stated; where only meshes or contacts are faulty, or no function is `stated`, that is said."""
+    """The verdict for people: what was compared, and what is wrong with what. "inconsistent" is a design that does not
+    do what is stated; where only meshes or contacts are faulty, or no function is `stated`, that is said."""
     line = verdict_line(report, fail_on)
     if line != "inconsistent":
         return line if stated or report.ran == 0 else f"{line}; {GEOMETRY_ONLY}"

@@ -60,6 +60,7 @@ ARRAYS: dict[str, Form] = {
     "simulation/F_A": _WRENCHES,
     "simulation/F_B": _WRENCHES,
     "simulation/undetermined": Form("u", (JOINTS, 6), or_none=True),
+    "simulation/joint_signs": Form("i", (JOINTS,)),
     "simulation/gear_effort": Form("f", (TIME, GEARS, 2), or_none=True),
     "simulation/gear_force": Form("f", (TIME, GEARS), or_none=True),
     "simulation/energy": Form("f", (TIME, 3), or_none=True),
@@ -90,6 +91,7 @@ AS_LONG = {
     "constraints/indptr": ("constraints/rows", "constraints/data"),
     "simulation/joint_offset": (JOINTS, None),
     "simulation/joint_types": (JOINTS, None),
+    "simulation/derived_joints": (JOINTS, None),
     "simulation/monitors": (TIME, None),
 }
 """Rows of another dataset, one more for places; and what the last place is the length of."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from kinform.consistency import explain
 from kinform.design import Design
 from kinform.foundation import words
+from kinform.function import as_intended, designers_joints
 from kinform.model.collisions import RangeEnd
 from kinform.model.findings import SEVERITIES, RuleOutcome
 from kinform.model.kinematics import Joint
@@ -167,9 +168,13 @@ def _joint(design: Design, index: int, joint: Joint, wanted: list[str]) -> Joint
 
 
 def _range(design: Design, joint: Joint) -> str:
-    """How far the joint goes to both sides, and what stops it there."""
-    ranges = () if design.simulation is None else design.simulation.ranges or ()
-    computed = next((item for item in ranges if item.joint == joint.name), None)
+    """How far the joint goes to both sides, in the designer's sense where there is one, and what stops it there."""
+    if design.simulation is None or design.kinematics is None:
+        return "not looked for"
+    known = designers_joints(design.assembly, design.kinematics)
+    name = known[joint.name].name if joint.name in known else joint.name
+    ranges = as_intended(design.simulation, known).ranges or ()
+    computed = next((item for item in ranges if item.joint == name), None)
     if computed is None:
         return "not looked for"
     if computed.status == "unbounded":

@@ -63,6 +63,7 @@ def page_html(design: Design, artist: Artist | None = None, live: str = "") -> s
         rules=rules,
         undecided=[rule for rule in rules if rule.outcome == "inconclusive"],
         bodies=_bodies(design, scene),
+        titles={str(body.name): scene.titles.get(body.name, "") for body in scene.bodies},
         facets=sum(len(p.mesh.faces) for p in design.assembly.parts if p.mesh is not None),
         graph=Markup("" if design.kinematics is None else graph_panel(design.kinematics, scene.colours)),
         legend=[] if design.kinematics is None else graph_legend(design.kinematics),

@@ -6,7 +6,7 @@ asks for, and else a little to both sides. Marks name where parts run into each 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from kinform.design import Design
 from kinform.foundation import words
 from kinform.foundation.algebra.spatial import quaternions, to_matrix
-from kinform.function import stated_ranges
+from kinform.function import DesignersJoint, designers_joints, stated_ranges
 from kinform.model.arrays import Array
 from kinform.model.collisions import Collision, RangeEnd
 from kinform.model.names import PartName
@@ -83,8 +83,10 @@ def movements_of(design: Design, size: float) -> list[Movement]:
     if design.kinematics is not None:
         spans = _Spans(design)
         names = wanted_names(design)
+        senses = designers_joints(design.assembly, design.kinematics)
         for showing in freedom_motions(design.kinematics, size, spans.known):
-            out.append(_freedom(design, showing, spans, names))
+            made = _freedom(design, showing, spans, names)
+            out.append(_as_designed(made, senses.get(showing.driver or "")))
     return out
 
 
@@ -136,11 +138,28 @@ def _freedom(design: Design, showing: Showing, spans: _Spans, names: dict[str, l
     )
 
 
+def _as_designed(made: Movement, joint: DesignersJoint | None) -> Movement:
+    """The movement with the parameter in the designer's sense: what goes to plus goes to the right."""
+    if joint is None or joint.sign > 0:
+        return made
+    return replace(
+        made,
+        time=0.0 - made.time[::-1],
+        places=made.places[::-1],
+        turns=made.turns[::-1],
+        marks=tuple(replace(mark, time=0.0 - mark.time) for mark in reversed(made.marks)),
+        ends=(0.0 - made.ends[1], 0.0 - made.ends[0]),
+    )
+
+
 class _Spans:
     """How far to show each joint, and where it stops on the way."""
 
     def __init__(self, design: Design):
         self.design = design
+        kinematics = design.kinematics
+        known = {} if kinematics is None else designers_joints(design.assembly, kinematics)
+        self.signs = {name: one.sign for name, one in known.items()}
         run = design.simulation
         found = () if run is None else run.ranges or ()
         self.ranges = {str(item.joint): item for item in found}
@@ -176,7 +195,8 @@ class _Spans:
             if value is None or not end.parts or not 0.0 <= sign * value <= sign * reach * (1.0 + 1e-9):
                 continue
             units = self.design.assembly.units
-            shown = words.angle(value, 4) if showing.turns else words.length(value, units)
+            told = self.signs.get(showing.driver, 1) * value
+            shown = words.angle(told, 4) if showing.turns else words.length(told, units)
             text = f"{shown}: {' and '.join(end.parts)} meet"
             share = sign * min(1.0, value / reach) if reach else float(sign)
             out.append(Mark(share, "collision", text, end.parts, end.place))

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from kinform.design import Design
+from kinform.function.body_titles import body_titles
 from kinform.model.arrays import Array
 from kinform.model.assembly import Mesh
 from kinform.model.kinematics import Body, Joint
@@ -52,6 +53,11 @@ class Scene:
     def body_number(self) -> dict[str, int]:
         """The number of each body, by name."""
         return {body.name: k for k, body in enumerate(self.bodies)}
+
+    @cached_property
+    def titles(self) -> dict[str, str]:
+        """What bodies are called beside their names: "body of base"."""
+        return {} if self.design.kinematics is None else body_titles(self.design.assembly, self.design.kinematics)
 
     @cached_property
     def body_index(self) -> dict[str, int]:

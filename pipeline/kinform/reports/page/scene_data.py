@@ -40,7 +40,7 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
         "metres": metres_per(scene.design.assembly.units),
         "meshes": meshes,
         "bodies": [
-            {"name": body.name, "ground": body.ground, "colour": colour}
+            {"name": body.name, "title": scene.titles.get(body.name, ""), "ground": body.ground, "colour": colour}
             for body, colour in zip(scene.bodies, scene.colours, strict=True)
         ],
         "parts": [

@@ -98,9 +98,10 @@ class Controls {
       if (element.tagName === "BUTTON" || element.getAttribute("role") === "button") element.setAttribute("aria-current", "true");
     });
     let text = "";
+    const called = (body) => body.title ? `${body.name} (${body.title})` : body.name;
     if (kind === "part") {
       const part = scene.parts[index];
-      text = `Part ${part.name}, of body ${scene.bodies[part.body].name}`;
+      text = `Part ${part.name}, of body ${called(scene.bodies[part.body])}`;
       mark(`[data-part="${index}"]`);
       mark(`[data-body="${part.body}"]`);
     } else if (kind === "joint") {
@@ -109,7 +110,7 @@ class Controls {
       mark(`[data-joint="${index}"]`);
       joint.bodies.forEach((body) => mark(`svg [data-body="${body}"]`));
     } else if (kind === "body") {
-      text = `Body ${scene.bodies[index].name}`;
+      text = `Body ${called(scene.bodies[index])}`;
       mark(`[data-body="${index}"]`);
     } else if (kind === "finding") {
       const finding = scene.findings[index];
