@@ -182,6 +182,6 @@ def test_small_lengths_are_in_a_unit_that_a_person_reads(units, small, derive_de
 
     design = derive_design(BLOCK / "planar_block.toml")
     lengths = Lengths.of(replace(design.assembly, units=units))
-    assert (lengths.unit, lengths.small) == (units, small)
+    assert (lengths.unit, lengths.small) == (small, small)
     if small == "mm":
         assert (lengths.length(2.5e-4), lengths.area(2.002e-5)) == ("0.25", "20.02")

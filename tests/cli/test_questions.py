@@ -96,3 +96,24 @@ def test_a_joint_without_contact_is_answered_as_the_check_answers_it(
     assert "the motion is free because nothing holds it" in asked
     (joint,) = json.loads(printed(capsys, "query", file, "--intended", "-f", "json"))["joints"]
     assert (joint["answer"], joint["free"], joint["joint"]) == ("no contact", True, None)
+
+
+def test_tables_of_joints_have_the_designers_names_and_places_in_mm(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = FIXTURES / "pairs" / "revolute_collars"
+    for mesh in source.iterdir():
+        (tmp_path / mesh.name).write_bytes(mesh.read_bytes())
+    manifest = tmp_path / "revolute_collars.toml"
+    text = manifest.read_text()
+    name = re.findall(r'\[\[function.joint\]\]\nname = "(.*)"', text)[0]
+    file = tmp_path / "r.h5"
+    main(["run", str(manifest), "-o", str(file), "-q"])
+    shown = " ".join(printed(capsys, "show", file, "joints").split())
+    assert "point mm: " in shown or "point mm " in shown
+    assert re.search(f"block~shaft (intended: )?{name} (type: )?revolute", shown)
+    (joint,) = json.loads(printed(capsys, "show", file, "joints", "-f", "json"))["joints"]
+    asked = ["query", file, "block", "shaft", "--turn"]
+    place = ",".join(f"{1e3 * value:.6f}" for value in joint["point"])
+    metres = printed(capsys, *asked, f"{','.join(map(str, joint['axis']))}@{place}mm")
+    assert "leaves the turn free" in " ".join(metres.split())

@@ -225,3 +225,18 @@ def test_bodies_stand_with_their_colour_and_intended_joints_with_their_answer(de
     assert {row.name: row.answer for row in answer_rows(design)} == told
     assert answer_rows(design)[0].answer == "contradicts"
     assert "its axis is elsewhere" in text.partition('id="intended"')[2].partition("</details>")[0]
+
+
+def test_sliders_go_in_the_designers_sense(derive_design):
+    design = derive_design(FIXTURES / "mechanisms" / "slider_crank" / "slider_crank.toml")
+    function = design.assembly.function
+    joints = tuple(one if one.axis is None else replace(one, axis=-one.axis) for one in function.joints)
+    turned = replace(design, assembly=replace(design.assembly, function=replace(function, joints=joints)))
+    one, other = ([m for m in Scene(d).movements if m.kind == "freedom"] for d in (design, turned))
+    assert len(one) == len(other) > 0
+    for before, after in zip(one, other, strict=True):
+        assert after.ends == (-before.ends[1], -before.ends[0])
+        assert np.all(np.diff(after.time) > 0.0)
+        for t in (-0.7, 0.0, 0.4):
+            poses, same = before.at(t), after.at(-t)
+            assert all(np.abs(poses[name] - same[name]).max() < 1e-12 for name in poses)
