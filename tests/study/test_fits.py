@@ -16,9 +16,9 @@ def means() -> list[float]:
 
 @pytest.mark.parametrize(("grade", "factor"), [(5, 7), (6, 10), (7, 16), (8, 25), (9, 40), (10, 64), (11, 100)])
 def test_grades_are_the_formula_rounded(grade, factor):
-    for value, size in zip(GRADES[grade], means(), strict=True):
+    for k, (value, size) in enumerate(zip(GRADES[grade], means(), strict=True)):
         unit = 0.45 * size ** (1 / 3) + 0.001 * size
-        assert value == pytest.approx(factor * unit, rel=0.06, abs=1.0)
+        assert value == pytest.approx(factor * unit, rel=0.06 if k else 0.16, abs=1.0)  # up to 3 mm it is rounded up
 
 
 @pytest.mark.parametrize(
