@@ -74,4 +74,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 5
+CODE_VERSION: int = 6

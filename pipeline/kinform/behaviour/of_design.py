@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
 from kinform.behaviour.ports import Component, Node
+from kinform.function import resolve_joint
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
@@ -31,6 +33,9 @@ class Behaviour:
     """(subject, why) of joints and drives without which the model is not that of the design."""
     forces_missing: tuple[Reason, ...]
     """(subject, why) of what acts only by forces: dynamics would be wrong without, kinematics is not."""
+    held: tuple[Reason, ...] = ()
+    """(subject, why) of joints that are not understood and rigid in the model, and of what acts on them and is left
+    out: what is asked for with `[simulation] partial = true`."""
 
 
 class _Builder:
@@ -58,10 +63,13 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
     """The port model: bodies and ground, joints, drives, loads, and with `gears` the couplings of
     `[function]`, which geometry does not show.
 
-    Joints that are ambiguous or general are failures, as are drives on freedoms that do not exist.
+    Joints that are ambiguous or general are failures, as are drives on freedoms that do not exist; where `[simulation]`
+    is partial such joints are rigid instead, and what acts on them is left out.
     """
     builder = _Builder()
+    partial = assembly.simulation is not None and assembly.simulation.partial
     failures: list[tuple[str, str]] = []
+    held: list[tuple[str, str]] = []
     forces_missing: list[tuple[str, str]] = []
     masses = {} if mass is None else {body.name: body for body in mass.bodies}
     for body in kinematics.bodies:
@@ -80,16 +88,23 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
         if joint.type == "general" and (joint.freedoms == 6 or joint.name in ties):
             continue
         made, why = _joint(joint)
-        if made is None:
-            failures.append((joint.name, why))
-            continue
         first, second = (f"body {name}" for name in joint.bodies)
+        if made is None:
+            if partial:
+                builder.add(_rigid(joint.name), a=first, b=second)
+            (held if partial else failures).append((joint.name, why))
+            continue
         builder.add(made, a=first, b=second, shaft=f"shaft {joint.name}")
     modelled = {c.subject: c for c in builder.components if isinstance(c, JointComponent)}
+    stiff = {name for name, _ in held}
+    modelled = {name: joint for name, joint in modelled.items() if name not in stiff}
     for name, coupling in sorted(ties.items()):
         teeth = mesh_gear(coupling, modelled)
         if isinstance(teeth, str):
-            failures.append((name, teeth))
+            if partial:
+                bodies = next(joint.bodies for joint in kinematics.joints if joint.name == name)
+                builder.add(_rigid(name), a=f"body {bodies[0]}", b=f"body {bodies[1]}")
+            (held if partial else failures).append((name, teeth))
         else:
             builder.add(teeth, **{port: f"shaft {joint}" for port, joint in zip("ab", coupling.joints, strict=True)})
     for number, drive in enumerate(assembly.function.drives, start=1):
@@ -97,7 +112,8 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
         for component in actors:
             builder.add(component, shaft=f"shaft {joint_name}", terminals=f"terminals {number}")
         if not actors:
-            (forces_missing if by_force else failures).append((drive.joint, why))
+            lost = held if partial and _acts_on(assembly, kinematics, drive.joint, held) else failures
+            (forces_missing if by_force else lost).append((drive.joint, why))
     if gears:
         for number, stated in enumerate(assembly.function.couplings, start=1):
             gear, sides, why = make_gear(assembly, kinematics, modelled, stated, number)
@@ -114,7 +130,18 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
     system = builder.system()
     parts = {str(body.name): body.parts for body in kinematics.bodies}
     nested = nest(system, homes(system, parts))
-    return Behaviour(system, nested, tuple(failures), tuple(forces_missing))
+    return Behaviour(system, nested, tuple(failures), tuple(forces_missing), tuple(held))
+
+
+def _rigid(name: str) -> JointComponent:
+    """What holds a joint that is not understood."""
+    return JointComponent(f"joint {name}", name, KINDS["fixed"], JointGeometry())
+
+
+def _acts_on(assembly: Assembly, kinematics: Kinematics, name: str, held: Sequence[Reason]) -> bool:
+    """Whether what acts on the joint of that name acts on one that is held."""
+    joint = resolve_joint(assembly, kinematics, name).joint
+    return joint is not None and joint.name in [subject for subject, _ in held]
 
 
 def _joint(joint: Joint) -> tuple[JointComponent | None, str]:

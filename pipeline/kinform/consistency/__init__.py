@@ -40,7 +40,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 24
+CODE_VERSION: int = 25
 
 __getattr__ = first_used(
     __name__,

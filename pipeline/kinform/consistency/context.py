@@ -30,7 +30,8 @@ from kinform.model.simulation import Simulation
 Stage = TypeVar("Stage")
 Need = Literal[
     "meshes", "solid meshes", "closed meshes", "stated masses", "sizes", "contacts", "kinematics", "mass",
-    "simulation", "motion", "comparisons", "stated mobility", "stated joints", "stated ranges", "stated couplings",
+    "attempt", "simulation", "motion", "comparisons", "stated mobility", "stated joints", "stated ranges",
+    "stated couplings",
     "stated drives", "stated loads", "stated assumptions", "stated initial values", "inferred fasteners",
     "several parts", "stated mobility of sub-assemblies", "descriptions", "weighed shapes", "collision geometry",
     "described limits",
@@ -78,7 +79,7 @@ NOT_RUN: dict[Need, str] = {
     "contacts": "contacts have not been found: run `kinform contacts`",
     "kinematics": "joints have not been derived: run `kinform joints`",
     "mass": "mass has not been computed: run `kinform mass`",
-    "simulation": "the simulation has not been run: run `kinform simulate`",
+    "attempt": "the simulation has not been run: run `kinform simulate`",
 }
 """By stage: why a rule that needs its result is inconclusive."""
 
@@ -193,6 +194,12 @@ class Context:
         if need in APPLIES:
             present, reason = APPLIES[need]
             return None if present(self) else skipped(reason)
+        if need == "simulation":
+            missing, attempt = self.lacks("attempt"), self.design.simulation
+            if missing is not None or attempt is None or not attempt.partial:
+                return missing
+            held = ", ".join(dict.fromkeys(subject for subject, _ in attempt.failures))
+            return inconclusive(f"the simulation is partial: {held}: held, because not understood")
         if need == "motion":
             still = skipped("nothing moved")
             return self.lacks("simulation") or (still if len(self.simulation.time) < 2 else None)
@@ -202,12 +209,12 @@ class Context:
             return missing or (no_geometry if all(c.state == "stated" for c in self._every_comparison) else None)
         if need == "contacts" and not self.meshes:
             return self.lacks("meshes")
-        if need == "simulation" and not self.simulation_requested:
+        if need == "attempt" and not self.simulation_requested:
             return skipped("no simulation is requested")
         if need != "mass" and self._nothing_to_touch is not None:
             return self._nothing_to_touch
-        result = getattr(self.design, need)
-        run = result is not None and not (need == "simulation" and result.status == "not requested")
+        result = self.design.simulation if need == "attempt" else getattr(self.design, need)
+        run = result is not None and not (isinstance(result, Simulation) and result.status == "not requested")
         return None if run else inconclusive(NOT_RUN[need])
 
     def _result(self, need: Need, result: Stage | None) -> Stage:
@@ -239,8 +246,13 @@ class Context:
         return ran or self.assembly.simulation is not None or self.function.driven
 
     @cached_property
+    def attempt(self) -> Simulation:
+        """The simulation, whatever came of it: also where parts of it were held."""
+        return self._result("attempt", self.design.simulation)
+
+    @cached_property
     def simulation(self) -> Simulation:
-        """The simulation, which may have been refused, or have stopped early."""
+        """The simulation of the whole, which may have been refused, or have stopped early."""
         return self._result("simulation", self.design.simulation)
 
     @cached_property

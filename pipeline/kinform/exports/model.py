@@ -115,7 +115,7 @@ def export_model(design: Design) -> ExportModel:
         raise StageError("`kinform export`", "joints")
     assembly, run = design.assembly, design.simulation
     refused = run.reason if run is not None and run.status == "refused" else ""
-    if run is not None and run.status not in ("done", "stopped"):
+    if run is not None and run.status not in ("done", "partial", "stopped"):
         run = None
     kinematics, gears = design.ranged, all(part.mesh is None for part in assembly.parts)
     if run is not None and run.level == "functional":
@@ -209,6 +209,7 @@ def _elsewhere(system: System) -> tuple[str, ...]:
 
 def _missing(behaviour: Behaviour, adrift: tuple[str, ...]) -> tuple[str, ...]:
     out = [f"{subject}: {why}" for subject, why in (*behaviour.failures, *behaviour.forces_missing)]
+    out += [f"{subject}: it is held: {why}" for subject, why in behaviour.held]
     out += [f"{body.subject}: its mass is not known" for body in _weightless(behaviour.system)]
     out += [f"{name}: no joints connect this body with the ground; it is free" for name in sorted(adrift)]
     return tuple(out)

@@ -197,5 +197,7 @@ class SimulationRequest:
     initial: tuple[InitialValue, ...] = ()
     file: str | None = None
     line: int | None = None
+    partial: bool = False
+    """Whether joints that are not understood are held while the rest moves."""
     assumed: tuple[str, ...] = ()
     """Which of duration, step and gravity the manifest does not state, sorted."""

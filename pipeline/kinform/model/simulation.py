@@ -39,7 +39,8 @@ class DriveUse:
 class Simulation:
     """T output times, B bodies, n joint coordinates (order: joint_names with joint_offset).
 
-    `status`: done; not requested; refused (cannot be simulated, see `reason`); stopped (ended early).
+    `status`: done; partial (joints that are not understood were held, see `failures`); not requested; refused (cannot
+    be simulated, see `reason`); stopped (ended early).
     """
 
     status: str
@@ -101,6 +102,11 @@ class Simulation:
     """First contacts of parts outside of their mates, in the order of time; None: not looked for."""
     uncollided: tuple[Annotated[tuple[str, str, str], columns("part_a", "part_b", "reason")], ...] = ()
     """(part, part, why it is not known whether they collide)."""
+
+    @property
+    def partial(self) -> bool:
+        """Whether it ran, to its end or not, with joints held that are not understood: it proves nothing."""
+        return bool(self.failures) and self.status in ("partial", "stopped")
 
     def __repr__(self) -> str:
         level = f" {self.level}" if self.level else ""

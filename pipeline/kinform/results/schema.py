@@ -158,7 +158,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "findings/rules.outcome": OUTCOMES,
     "simulation/ranges.status": RANGE_STATUSES,
     "simulation/ranges.side": ("lower", "upper"),
-    "simulation/summary.status": ("done", "not requested", "refused", "stopped"),
+    "simulation/summary.status": ("done", "not requested", "partial", "refused", "stopped"),
 }
 """Texts that are words of a list."""
 

@@ -51,7 +51,10 @@ def simulate_assembly(
     if behaviour is None:
         behaviour = build(assembly, kinematics, mass, gears=gears)
     if behaviour.failures:
-        return refuse("the model is not complete", behaviour.failures)
+        reason = "the model is not complete"
+        if all(_not_understood(kinematics, subject) for subject, _ in behaviour.failures):
+            reason += " (partial = true in [simulation] holds what is not understood, and moves the rest)"
+        return refuse(reason, behaviour.failures)
     mechanism, adrift = assemble(behaviour.system)
     mechanism = replace(mechanism, uncertain=loop_uncertainty(kinematics, mechanism.length))
     formless = all(part.mesh is None for part in assembly.parts)
@@ -73,7 +76,22 @@ def simulate_assembly(
     if failures:
         return refuse("the drives or the initial values cannot be applied", failures)
     course = Course(request.duration, request.step, np.asarray(request.gravity, dtype=np.float64), choice.level)
-    return run_course(system, mechanism, course, stated, notes, conduct)
+    run = run_course(system, mechanism, course, stated, notes, conduct)
+    return _partial(run, behaviour.held) if behaviour.held else run
+
+
+def _not_understood(kinematics: Kinematics, subject: str) -> bool:
+    """Whether it is a joint of geometry that a partial simulation holds."""
+    return subject in [joint.name for joint in kinematics.joints]
+
+
+def _partial(run: Simulation, held: Failures) -> Simulation:
+    """The run for what it is: one of a mechanism in which these joints were held."""
+    names = ", ".join(dict.fromkeys(subject for subject, _ in held))
+    why = f"held, because not understood: {names}"
+    if run.status == "done":
+        return replace(run, status="partial", reason=why, failures=held)
+    return replace(run, reason=f"{run.reason} ({why})", failures=(*run.failures, *held))
 
 
 def _stated_values(

@@ -6,7 +6,9 @@ reasons; where one of them is a mistake of the design, another rule reports it a
 
 Why it matters: a run that did not happen proves nothing.
 
-What to do: remove the cause that is given, or ask for a lower `level`.
+What to do: remove the cause that is given, or ask for a lower `level`. With `partial = true` in `[simulation]` joints
+that are not understood are held and named, and the rest moves; what that shows is not verified, so this rule and all
+that read the motion stay inconclusive.
 
 Example: `level = "dynamic"` for an arm of which one joint came out ambiguous.
 """
@@ -29,7 +31,7 @@ GROUP = "Fasten what is loose, such as a pin, to one of the two parts with a [[g
 
 def check(context: Context) -> Outcome:
     """Refusals, of the whole simulation or of single elements."""
-    simulation = context.simulation
+    simulation = context.attempt
     if simulation.status != "refused" and not simulation.failures:
         return decided()
     failures = simulation.failures or ((context.assembly.name, simulation.reason),)
@@ -51,8 +53,16 @@ def _finding(context: Context, subject: str, reason: str) -> Finding:
         found="not simulated",
         intended=f"a {level} simulation" if level else "a simulation",
         declared=_declaring(context, subject, names) or asked or context.assembly.source,
-        remedy=GROUP if carried else "Remove the cause, or ask for a lower `level`.",
+        remedy=GROUP if carried else _remedy(context, subject),
     )
+
+
+def _remedy(context: Context, subject: str) -> str:
+    usual = "Remove the cause, or ask for a lower `level`."
+    joint = context.joint(subject)
+    if context.attempt.partial or joint is None or not (joint.type == "general" or joint.status == "ambiguous"):
+        return usual
+    return f"{usual[:-1]}; `partial = true` in [simulation] holds what is not understood and moves the rest."
 
 
 def _joints_in(context: Context, subject: str) -> list[str]:
@@ -79,4 +89,4 @@ def _declaring(context: Context, subject: str, names: Sequence[str]) -> Declared
     return next((item for matches, item in acting if matches), None)
 
 
-RULE = Rule("KF501", "simulation-refused", "note", __doc__, check, needs=("simulation",), speaks_for=SPEAKS_FOR)
+RULE = Rule("KF501", "simulation-refused", "note", __doc__, check, needs=("attempt",), speaks_for=SPEAKS_FOR)

@@ -51,6 +51,10 @@ class SimulationTable(Table):
     duration: Positive = Field(1.0, description="seconds")
     step: Positive = Field(0.01, description="seconds between outputs")
     gravity: Vector = Field([0.0, 0.0, -9.81], description="m/s², whatever the units of the file")
+    partial: bool = Field(
+        False,
+        description="hold the joints that are not understood, and move the rest: what that shows is not verified",
+    )
     initial: dict[str, Initial] = Field({}, description="by name of a function.joint, or as kinform names it")
 
 

@@ -238,4 +238,6 @@ class FunctionReader:
         gravity = np.array(table.gravity, dtype=float)
         defaults = tuple(sorted({"duration", "step", "gravity"} - table.model_fields_set))
         where = self.scope.where("simulation")
-        return SimulationRequest(table.level, table.duration, table.step, gravity, tuple(initial), *where, defaults)
+        return SimulationRequest(
+            table.level, table.duration, table.step, gravity, tuple(initial), *where, table.partial, defaults
+        )

@@ -75,7 +75,7 @@ TABLES = {
     "exposed": EXPOSED_ROWS, "laws": LAW_ROWS,
 }  # fmt: skip
 """In the order of the file."""
-REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"))
+REASONS = Layout(Behaviour, layout.Table("failures"), layout.Table("forces_missing"), layout.Table("held"))
 
 
 def write(group: h5py.Group, design: Design) -> None:

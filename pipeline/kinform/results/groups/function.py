@@ -57,6 +57,6 @@ FUNCTION = Layout(
 )
 REQUEST = Layout(
     SimulationRequest,
-    Row("request", "level", "duration", "step", "gravity", "file", "line", "assumed"),
+    Row("request", "level", "duration", "step", "gravity", "file", "line", "partial", "assumed"),
     Table("initial"),
 )
