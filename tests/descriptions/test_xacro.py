@@ -107,3 +107,37 @@ def test_what_is_wrong_in_an_included_file_is_told_there(tmp_path):
     with pytest.raises(InputError) as caught:
         form.load(path)
     assert caught.value.problems[0].file == "parts.xacro"
+
+
+def doubling(deep):
+    """Macros of which each calls the one before twice."""
+    calls = "".join(
+        f'<xacro:macro name="m{k}" params="n"><xacro:m{k - 1} n="${{n}}a"/>\n<xacro:m{k - 1} n="${{n}}b"/></xacro:macro>\n'
+        for k in range(1, deep + 1)
+    )
+    first = '<xacro:macro name="m0" params="n"><link name="l${n}"/></xacro:macro>\n'
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    return f'<robot name="r" {space}>\n{first}{calls}<xacro:m{deep} n=""/></robot>'
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (doubling(30), "more than 1 s to expand"),
+        (
+            '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a${9**9**9}"/></robot>',
+            "more than 1 s",
+        ),
+        ('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="${\'a\'*10**10}"/></robot>', "GB"),
+        (doubling(1).replace("xacro:m0 n=", "xacro:m1 n="), "contain themselves"),
+    ],
+    ids=["doubling", "power", "text", "itself"],
+)
+def test_what_has_no_end_is_refused_in_bounded_time_and_memory(tmp_path, monkeypatch, text, words):
+    monkeypatch.setattr("kinform.form.descriptions.xacro.XACRO_SECONDS", 1)
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        form.load(path)
+    (problem,) = caught.value.problems
+    assert words in problem.message and problem.file == path.name and problem.line and problem.remedy

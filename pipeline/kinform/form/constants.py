@@ -227,6 +227,13 @@ much memory."""
 STEP_END = 4096
 """Bytes at either end of a STEP file in which its first and last keyword stand: comments and blanks may be around."""
 
+XACRO_SECONDS = 20
+"""Seconds of processor time that the expansion of a xacro file may take: robots take one or two, and macros that call
+each other twice, thirty deep, never end."""
+
+XACRO_MEMORY = 4 << 30
+"""Bytes of memory that it may take, which an expression can ask for with a few letters; robots take some MB."""
+
 STEP_MEMORY = 12 << 30
 """Bytes of memory that the tessellation of a STEP file may take: beyond, it fails with a message, not the machine."""
 

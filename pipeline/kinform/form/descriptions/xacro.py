@@ -1,5 +1,6 @@
 """xacro: expanded by the program of that name, which the optional package xacrodoc brings, then read as URDF.
 
+It runs in a process of its own, which is bounded in time and memory: a few macros can ask for more than there is.
 Lines are those of the text as written, as far as an element of that name stands there; else the first.
 """
 
@@ -7,21 +8,23 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from kinform.form.constants import XACRO_FILES
+from kinform.form.constants import XACRO_FILES, XACRO_MEMORY, XACRO_SECONDS
 from kinform.form.descriptions import urdf
 from kinform.form.descriptions.elements import declares_entities
 from kinform.form.descriptions.meshes import MeshFiles, files_below
 from kinform.form.descriptions.robot import Robot
 from kinform.form.problems import Problems
+from kinform.foundation.processes import Crash, in_own_process
 
 
 def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFiles) -> Robot | None:
     """The robot of a xacro file; None where nothing can be made of it, after noting why."""
     try:
-        import xacro
+        import xacro  # noqa: F401
         from xacrodoc import packages  # xacro asks it where packages are
     except ImportError:
         remedy = "pip install 'kinform[xacro]', or expand it: xacro F.urdf.xacro > F.urdf"
@@ -32,30 +35,91 @@ def read(path: Path, data: bytes, file: str, problems: Problems, meshes: MeshFil
     wanted = _packages_of(data, meshes.home)
     folders = {name: folder for name in wanted if (folder := _package(name, meshes)) is not None}
     packages.update_package_cache(folders)
-    xacro.all_includes.clear()
     try:
-        text = str(xacro.process_file(str(path)).toxml())
-    except (Exception, SystemExit) as error:  # xacro raises whatever its expressions raise
-        at = Path(xacro.filestack[-1]) if xacro.filestack else path
-        _complain(
-            error, file if at == path else f"{Path(file).parent / os.path.relpath(at, path.parent)}", at, problems
-        )
+        done = in_own_process(lambda: _in_the_fork(path))
+    except Crash as crash:
+        done = _too_long() if "SIGXCPU" in crash.cause or "SIGKILL" in crash.cause else _Fault(crash.cause)
+    except MemoryError:
+        done = _too_large()
+    if isinstance(done, _Fault):
+        _complain(done, file, path, problems)
         return None
-    robot = urdf.read_text(path, text.encode(), file, problems, meshes, data.decode("utf-8", "replace"))
-    included = dict.fromkeys(Path(name) for name in xacro.all_includes)
+    robot = urdf.read_text(path, done.text.encode(), file, problems, meshes, data.decode("utf-8", "replace"))
+    included = dict.fromkeys(Path(name) for name in done.includes)
     return None if robot is None else replace(robot, files=tuple(included))
 
 
-def _complain(error: BaseException, file: str, at: Path, problems: Problems) -> None:
+@dataclass(frozen=True)
+class _Expanded:
+    text: str
+    includes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Fault:
+    words: str
+    """What xacro says; or, with a remedy, what is told."""
+    remedy: str | None = None
+    at: str | None = None
+    """The file that it was in."""
+
+
+def _too_long() -> _Fault:
+    words = f"takes more than {XACRO_SECONDS} s to expand: do its macros call each other more than once?"
+    return _Fault(words, "call them in turn; or expand it yourself: xacro F.urdf.xacro > F.urdf")
+
+
+def _too_large() -> _Fault:
+    words = f"takes more than {XACRO_MEMORY >> 30} GB of memory to expand: is there a text or a number without end?"
+    return _Fault(words, "shorten what its expressions make; or expand it yourself: xacro F.urdf.xacro > F.urdf")
+
+
+def _in_the_fork(path: Path) -> _Expanded | _Fault:
+    """The text, with macros expanded, and the files that it includes; bounded in time and memory."""
+    import xacro
+
+    _bound()
+    xacro.all_includes.clear()
+    try:
+        text = str(xacro.process_file(str(path)).toxml())
+    except RecursionError:
+        return _Fault("macros or includes contain themselves", "remove one of them", _file_now(xacro))
+    except MemoryError:
+        return _too_large()
+    except (Exception, SystemExit) as error:  # xacro raises whatever its expressions raise
+        if isinstance(error.__cause__ or error.__context__, MemoryError):
+            return _too_large()
+        return _Fault(" ".join(str(error).split()) or type(error).__name__, None, _file_now(xacro))
+    return _Expanded(text, tuple(map(str, xacro.all_includes)))
+
+
+def _file_now(xacro: Any) -> str | None:
+    return str(xacro.filestack[-1]) if xacro.filestack else None
+
+
+def _bound() -> None:
+    """This process may not take more than its share of time and memory."""
+    try:
+        import resource
+    except ImportError:
+        return
+    for kind, most in ((resource.RLIMIT_CPU, XACRO_SECONDS), (resource.RLIMIT_AS, XACRO_MEMORY)):
+        soft, hard = resource.getrlimit(kind)
+        if soft == resource.RLIM_INFINITY or soft > most:
+            resource.setrlimit(kind, (most, hard))
+
+
+def _complain(fault: _Fault, file: str, path: Path, problems: Problems) -> None:
     """Note what went wrong, at the line of the file on which it is written as far as the message tells that."""
-    words = " ".join(str(error).split()) or type(error).__name__
+    at = path if fault.at is None else Path(fault.at)
+    if at != path:
+        file = f"{Path(file).parent / os.path.relpath(at, path.parent)}"
+    words, remedy = fault.words, fault.remedy
     unknown = _NO_PACKAGE.search(words)
     if unknown is not None:
         words = f"package {unknown[1]} is not found"
         remedy = f"add --package {unknown[1]}=FOLDER, or set ROS_PACKAGE_PATH"
-    elif isinstance(error, RecursionError):
-        words, remedy = "macros or includes contain themselves", "remove one of them"
-    else:
+    elif remedy is None:
         words, remedy = f"cannot be expanded by xacro: {words}", "correct it, or expand it yourself"
     try:
         written = at.read_text("utf-8", "replace")
