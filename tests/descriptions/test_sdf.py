@@ -300,3 +300,15 @@ def test_what_is_wrong_is_told_with_line_and_remedy(tmp_path, text, words, line)
     assert problem.file == "a.sdf" and problem.remedy
     assert line in (0, problem.line)
     assert len(caught.value.problems) == 1
+
+
+def test_includes_that_double_are_refused_at_a_number_of_models(tmp_path):
+    link = f'<link name="a"><visual name="v">{BOX}</visual></link>'
+    (tmp_path / "d0.sdf").write_text(f'<sdf version="1.9"><model name="m">{link}</model></sdf>')
+    for k in range(1, 26):
+        twice = "".join(f"<include><uri>d{k - 1}.sdf</uri><name>{name}</name></include>" for name in "xy")
+        (tmp_path / f"d{k}.sdf").write_text(f'<sdf version="1.9"><model name="m">{link}{twice}</model></sdf>')
+    with pytest.raises(InputError) as caught:
+        form.load(tmp_path / "d25.sdf")
+    (problem,) = caught.value.problems
+    assert "more than 2,000 models" in problem.message and problem.line and problem.remedy

@@ -112,7 +112,8 @@ def test_what_is_wrong_in_an_included_file_is_told_there(tmp_path):
 def doubling(deep):
     """Macros of which each calls the one before twice."""
     calls = "".join(
-        f'<xacro:macro name="m{k}" params="n"><xacro:m{k - 1} n="${{n}}a"/>\n<xacro:m{k - 1} n="${{n}}b"/></xacro:macro>\n'
+        f'<xacro:macro name="m{k}" params="n">\n<xacro:m{k - 1} n="${{n}}a"/>\n<xacro:m{k - 1} n="${{n}}b"/>'
+        "</xacro:macro>\n"
         for k in range(1, deep + 1)
     )
     first = '<xacro:macro name="m0" params="n"><link name="l${n}"/></xacro:macro>\n'

@@ -172,6 +172,10 @@ QUARTER_TURN = 1e-11
 """Quarter turns by which an angle may miss a whole one and be taken for it: what eleven printed digits lose. The pose
 that "1.5708" states is kept as it is: it differs by more than forward kinematics is compared to."""
 
+SDF_MODELS = 2000
+"""Models of an SDF, included ones too, beyond which no include is read: files that include each other twice, thirty
+deep, never end."""
+
 INCLUDES = 32
 """Files in files in files that a description may include: more are a loop that no check of names has seen."""
 

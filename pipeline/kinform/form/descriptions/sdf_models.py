@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kinform.form.constants import INCLUDES
+from kinform.form.constants import INCLUDES, SDF_MODELS
 from kinform.form.descriptions.elements import FILE, Element, Xml, parse_xml, tag_of
 from kinform.form.descriptions.meshes import MeshFiles
 from kinform.form.descriptions.sdf_frames import MODEL, WORLD, Frame, Frames
@@ -55,6 +55,7 @@ class Models:
         self.folders: list[Path] = []
         self.included: list[Included] = []
         """The outer before the inner."""
+        self._full = False
 
     def collect(self, root: Element, path: Path) -> None:
         """All models of a file."""
@@ -122,8 +123,12 @@ class Models:
         if uri is None:
             xml.complain(element, "<include> has no <uri>", "add <uri>model://NAME</uri>")
             return
-        path = self._file(element, uri, here.folder)
+        path = self._file(element, uri, here.folder) if len(self.models) < SDF_MODELS else None
         if path is None:
+            if len(self.models) == SDF_MODELS and not self._full:
+                self._full = True
+                wrong = f"has more than {SDF_MODELS:,} models, with those that are included"
+                xml.complain(element, wrong, "divide it, or remove includes")
             return
         if path.resolve() in here.above or len(here.above) > INCLUDES:
             xml.complain(element, f"the include {in_quotes(uri)} includes itself", "remove one of the includes")
