@@ -5,8 +5,10 @@
 one density, and the intended joints (`complete = true`, the largest part of either side named) go through import,
 contacts, joints, mass and `export --to urdf`. Every joint of the original is looked for in that URDF (which calls
 joints by their bodies), each once: its axis at the pose of the meshes within 0.5° and 0.2 mm, and the mass of the
-link that it carries within 2 % of that of the original's parts. Closing joints of loops do not count. Exit 0 when all
-agree, or, with the reason, where there is no corpus.
+link that it carries within 2 % of that of the original's parts. Closing joints of loops do not count. `--contacts
+FOLDER` takes contacts that were made before, from `<robot>-score-function.h5` there. `-v` lists what disagrees, with
+both masses; a link with an open mesh has no mass that is known. Exit 0 when all agree, or, with the reason, where there
+is no corpus.
 """
 
 from __future__ import annotations
@@ -34,23 +36,25 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("corpus", type=Path)
     parser.add_argument("robots", nargs="*", default=ROBOTS)
+    parser.add_argument("--contacts", type=Path, help="folder of results files that have contacts")
+    parser.add_argument("-v", action="store_true", dest="verbose", help="list what disagrees")
     options = parser.parse_args()
     if not options.corpus.is_dir():
         print(f"skipped: {options.corpus} is no folder; ../shared/robots/make_robots.py makes one")
         return 0
     print("| robot | joints | axes agree | worst angle | worst offset | links | masses agree | worst mass |")
     print("|---|---|---|---|---|---|---|---|")
-    return max(row(options.corpus / robot) for robot in options.robots)
+    return max(row(options.corpus / robot, options.contacts, options.verbose) for robot in options.robots)
 
 
-def row(robot: Path) -> int:
+def row(robot: Path, contacts: Path | None, verbose: bool) -> int:
     """One robot; 0 where all agrees."""
     if not (robot / "truth.json").exists():
         print(f"| {robot.name} | not there | | | | | | |")
         return 0
     truth = json.loads((robot / "truth.json").read_text())
     with tempfile.TemporaryDirectory() as folder:
-        written, why = urdf(robot, truth, Path(folder))
+        written, why = urdf(robot, truth, Path(folder), contacts)
     if written is None:
         print(f"| {robot.name} | {why} | | | | | | |")
         return 1
@@ -58,7 +62,7 @@ def row(robot: Path) -> int:
     weight = {p["name"]: DENSITY * abs(trimesh.load_mesh(robot / p["file"]).volume) for p in truth["parts"]}
     moving = [joint for joint in truth["joints"] if joint["type"] != "fixed"]
     unused = dict(joints)
-    angles, offsets, shares = [], [], []
+    angles, offsets, shares, said = [], [], [], []
     for joint in moving:
         expected = sum(weight[name] for name in truth["rigid_groups"][joint["child_group"]])
         ways = sorted(
@@ -71,6 +75,9 @@ def row(robot: Path) -> int:
         angles.append(angle)
         offsets.append(offset)
         shares.append(share)
+        if angle > ANGLE or offset > OFFSET or share > MASS:
+            own = f"{masses.get(joints[name][2], math.nan):.4g} kg for {expected:.4g} kg"
+            said.append(f"  {joint['name']}: {angle:.2g}°, {1e3 * offset:.2g} mm, link {joints[name][2]}: {own}")
     right = sum(a <= ANGLE and o <= OFFSET for a, o in zip(angles, offsets, strict=True))
     heavy = sum(share <= MASS for share in shares)
     worst = (max(angles, default=0.0), 1e3 * max(offsets, default=0.0), 100.0 * max(shares, default=0.0))
@@ -79,6 +86,8 @@ def row(robot: Path) -> int:
         f"| {worst[2]:.2g} % |",
         flush=True,
     )
+    for line in said if verbose else ():
+        print(line, flush=True)
     return int(right < len(moving) or heavy < len(moving))
 
 
@@ -92,17 +101,22 @@ def away(joint: dict[str, Any], found: tuple[Any, Any, str]) -> tuple[float, flo
     return angle, 0.0 if slides else float(np.linalg.norm(gap - (gap @ wanted) * wanted))
 
 
-def urdf(robot: Path, truth: dict[str, Any], folder: Path) -> tuple[Any, str]:
+def urdf(robot: Path, truth: dict[str, Any], folder: Path, contacts: Path | None) -> tuple[Any, str]:
     """Joints (axis, point, child link) and masses of links in the URDF that kinform writes; None and why not."""
-    (folder / "m.toml").write_text(manifest(robot, truth))
-    shutil.copytree(robot / "parts", folder / "parts")
-    steps = [["import", "m.toml", "-o", "r.h5"]]
-    steps += [[stage, "r.h5", "-o", "r.h5"] for stage in ("contacts", "joints", "mass")]
+    made = None if contacts is None else contacts / f"{robot.name}-score-function.h5"
+    steps = []
+    if made is not None and made.exists():
+        shutil.copy(made, folder / "r.h5")
+    else:
+        (folder / "m.toml").write_text(manifest(robot, truth))
+        shutil.copytree(robot / "parts", folder / "parts")
+        steps = [["import", "m.toml", "-o", "r.h5"], ["contacts", "r.h5", "-o", "r.h5"]]
+    steps += [[stage, "r.h5", "-o", "r.h5"] for stage in ("joints", "mass")]
     steps += [["export", "r.h5", "--to", "urdf", "-o", "out"]]
     for step in steps:
         ran = subprocess.run([sys.executable, "-m", "kinform_cli", *step], cwd=folder, capture_output=True, text=True)
         if ran.returncode:
-            return None, f"{step[0]}: exit {ran.returncode}: {' '.join(ran.stderr.split())[:120]}"
+            return None, f"{step[0]}: exit {ran.returncode}: {' '.join(ran.stderr.split())[:240]}"
     (file,) = folder.glob("**/*.urdf")
     return placed(ET.parse(file).getroot()), ""
 

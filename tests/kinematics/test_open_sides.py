@@ -111,6 +111,28 @@ def test_an_axis_beside_the_journal_parts_nothing_and_the_nearest_is_told():
         with_sides(stated(whole, opened(off)), touching)
 
 
+def test_contact_far_along_the_axis_is_not_taken_unseen():
+    """A pair that turns about the same line, far from the joint, is a coincidence: it was taken."""
+    whole, _, touching = arm()
+    far = replace(ARM, point=np.array([0.0, 0.0, 0.2]))
+    with pytest.raises(InputError, match=r"the only way of parting is: 'base' from 'low', 194 mm along the axis"):
+        with_sides(stated(whole, opened(far)), touching)
+    assert bodies(stated(whole, far), touching) == bodies(stated(whole, ARM), touching)
+
+
+def test_a_bracket_between_two_legs_may_be_of_the_frame():
+    """It touches only the legs, not the frame that the other leg hangs on: it was given to that leg."""
+    frame, bracket = box(-100, 100, -20, 20, -60, -40), box(-20, 20, -10, 10, -10, 10)
+    left, right = box(20, 40, -10, 10, -10, 10), box(-40, -20, -10, 10, -10, 10)
+    foot = box(20, 40, -10, 10, -30, -10)
+    whole, _, touching = shaped(frame=frame, bracket=bracket, left=left, right=right, foot=foot)
+    legs = [joint(name, ("frame", name), axis=(1, 0, 0), point=(0, 0, 0.03)) for name in ("left", "right")]
+    knee = joint("knee", ("left", "foot"), axis=(1, 0, 0), point=(0.03, 0, -0.03))
+    with pytest.raises(InputError) as error:
+        with_sides(stated(whole, opened(legs[0]), legs[1], knee), touching)
+    assert "'frame' from 'left'" in error.value.problems[0].message
+
+
 @pytest.mark.parametrize("complete", [("",), ()])
 def test_a_slider_needs_no_name(complete):
     whole, found, touching = drawer()

@@ -48,7 +48,7 @@ __all__ = [
     "query",
 ]
 
-CODE_VERSION = 29
+CODE_VERSION = 30
 """Bumped when the results of this stage change for the same input."""
 
 __getattr__ = first_used(

@@ -2,8 +2,9 @@
 possible. Where there are several, or none, it is an error that lists them: nothing is guessed.
 
 Joints whose sides are known cut first. A way of parting is taken where every other one would part what is dearer by
-the price of a pocket, where it breaks no contact that no joint may part, and where it does not just take out a single
-part that goes round the axis, as the ring of a bearing does. It divides the bodies that the other joints leave, and
+the price of a pocket (other bodies next to what it parts might have that, too), where it breaks no contact that no
+joint may part, where it touches near the joint's point, and where it does not just take out a single part that goes
+round the axis, as the ring of a bearing does. It divides the bodies that the other joints leave, and
 rearranges none of them. What was taken while other joints were open is asked again with all of them.
 """
 
@@ -86,7 +87,10 @@ def _clear(ways: Ways, joint: int, known: Mapping[int, Names]) -> tuple[Way, flo
     lone = [name for side in found[0].bodies if len(side) == 1 for name in side - named]
     if any(ways.round(joint, name) for name in lone) and ways.held_about(joint, found[0]):
         return None
-    return (found[0], ahead) if ahead >= constants.ONLY_WAY else None
+    far = found[0].beyond > constants.FAR_ALONG * ways.size
+    if far or ahead < constants.ONLY_WAY or ways.elsewhere(joint, known, found[0]):
+        return None
+    return found[0], ahead
 
 
 def _problem(ways: Ways, joint: int, known: Mapping[int, Names]) -> Problem:
@@ -95,6 +99,7 @@ def _problem(ways: Ways, joint: int, known: Mapping[int, Names]) -> Problem:
     what = f"[[function.joint]] '{it.name}' names "
     what += f"one side only, '{it.between[0]}'" if it.between[0] else "none of its sides"
     found = ways.ways(joint, known)
+    found[1:1] = ways.elsewhere(joint, known, found[0]) if found else []
     if not found:
         where = "along it" if it.type in ("prismatic", "planar") else "about its axis"
         what += f", and no contact {where} parts two bodies there that no other joint parts; {_nearest(ways, it)}"

@@ -75,6 +75,13 @@ class Ways:
         return stated_merger(self.assembly, sorted(self.assembly.function.joints, key=lambda joint: joint.name))
 
     @cached_property
+    def size(self) -> float:
+        """m: the diagonal of the assembly's box."""
+        boxes = [part.mesh.placed_box(part.X_WP) for part in self.assembly.parts if part.mesh is not None]
+        low, high = (np.array([box[k] for box in boxes]) for k in (0, 1))
+        return float(np.linalg.norm(high.max(axis=0) - low.min(axis=0))) if boxes else 0.0
+
+    @cached_property
     def piece(self) -> dict[PartName, PartName]:
         """The largest of the parts that no joint may part from a part, by part."""
         number = {name: k for k, name in enumerate(sorted(self.volume))}
@@ -123,6 +130,27 @@ class Ways:
             if found:
                 return found
         return []
+
+    def elsewhere(self, number: int, known: Mapping[int, Names], way: Way) -> list[Way]:
+        """Ways that part what touches in a way as well, at a price about the same, but leave it to other bodies: those
+        that the other joints name, and that touch one of its sides or have a joint with it."""
+        parted = self.parted(dict(known) | {number: way.names})
+        names: dict[int | None, PartName] = {}
+        for name in sorted(name for both in known.values() for name in both):
+            names.setdefault(parted.body[name], name)
+        sides = set(parted.sides[number])
+        touching = {frozenset(parted.body[name] for name in pair) for pair in self.contact}
+        touching |= {frozenset(labels) for labels in parted.sides.values()}
+        out = []
+        for k, own in enumerate(way.names):
+            near = {body for pair in touching if parted.body[own] in pair for body in pair}
+            for body in sorted((near & names.keys()) - sides - {None}, key=str):
+                other = (names[body], way.names[1]) if k == 0 else (way.names[0], names[body])
+                found = self.parted(dict(known) | {number: other})
+                ends = {found.body[name] for name in way.names}
+                if ends == set(found.sides[number]) and found.cost - parted.cost < constants.ONLY_WAY:
+                    out.append(self._way(other, found, found.sides[number], way.beyond))
+        return [one for one in out if not self.alike(one, way)]
 
     def _alone(self, number: int, flats: bool) -> list[Way]:
         """Ways of parting by a joint without any other, those that are alike once."""
