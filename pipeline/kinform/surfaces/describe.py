@@ -117,7 +117,7 @@ def curved(surfaces: Candidates, batch: Batch, scale: Scales) -> list[Descriptio
     columns, group = kind.jacobian(columns_of(placed, region), points), region
     if kind.name == "cone":
         tips = np.flatnonzero(cylindrical(params[region], points).rho < constants.APEX * params[region, 6])
-        group, columns, _ = with_apices(placed[region], points, region, columns, distance, tips)
+        group, columns, _ = with_apices(placed[region[tips]], points[tips], region, columns, distance, tips)
     has_axis = kind.name != "sphere"
     angular, linear = _uncertainties(group, columns, squares, samples, scale, has_axis)
     chords = _chords(kind, batch, params)

@@ -148,18 +148,17 @@ def spheres_of(groups: Ints, coordinates: Sequence[Array], count: int, *more: Ar
     for column in coordinates[1:]:
         square += column**2
     columns = [*coordinates, np.ones(len(square)), *more]
-    matrix, right = _normal_equations(groups, columns, square, count)
+    matrix, right = normal_equations(groups, columns, square, count)
     solution = solve_normal(matrix, right)
     centre = solution[:, :size] / 2
     return centre, solution[:, size] + (centre**2).sum(axis=1)
 
 
-def normal_equations(groups: Ints, jacobian: Array, residual: Array, count: int) -> tuple[Array, Array]:
-    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group."""
-    return _normal_equations(groups, list(jacobian.T), residual, count)
-
-
-def _normal_equations(groups: Ints, columns: Sequence[Array], residual: Array, count: int) -> tuple[Array, Array]:
+def normal_equations(
+    groups: Ints, jacobian: Sequence[Array] | Array, residual: Array, count: int
+) -> tuple[Array, Array]:  # fmt: skip
+    """JᵀJ (count, k, k) and Jᵀr (count, k) of each group, of a Jacobian (n, k), or its k columns."""
+    columns = jacobian.T if isinstance(jacobian, np.ndarray) else jacobian
     k = len(columns)
     matrix: Array = np.empty((count, k, k))
     for i in range(k):

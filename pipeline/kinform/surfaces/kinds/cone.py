@@ -73,12 +73,14 @@ def _taper(batch: Batch, axis: Array, region: Ints, edge: Ints) -> tuple[Params,
         offset = work.vertices[vertex[rows]] - middle[mine]
         for out, direction in ((u, x), (v, y), (t, axis)):
             out[rows] = dot(offset, direction[mine])
+    del vertex
     centre, _ = spheres_of(group, (u, v), count, t, t * t)
     # two rings leave the size of the ring open above, but not its middle; the rest is a line
     u -= centre[group, 0]
     v -= centre[group, 1]
-    rho = np.hypot(u, v)
-    line = solve_normal(*normal_equations(group, np.stack([np.ones_like(t), t], axis=1), rho, count))
+    rho = np.hypot(u, v, out=u)
+    del v
+    line = solve_normal(*normal_equations(group, [np.ones_like(t), t], rho, count))
     params = np.zeros((count, 8))
     params[:, :3] = axis
     params[:, 3:6] = middle + centre[:, :1] * x + centre[:, 1:] * y

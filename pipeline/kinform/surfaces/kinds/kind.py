@@ -112,8 +112,15 @@ class Batch:
             self._inner[least] = parted(key[times >= least], int(total))
         return self._inner[least]
 
+    def forget(self) -> None:
+        """Drops what is found when asked for: what is large, and is needed no longer or rarely."""
+        self._edges = self._corners = self._points = None
+        self._inner = {}
+
     def select(self, keep: Flags) -> Batch:
-        """The batch without some of its pairs."""
+        """The batch without some of its pairs; itself, with what it has already found, where all are kept."""
+        if keep.all():
+            return self
         return Batch(self.patchwork, self.region[keep], self.polygon[keep], self.count)
 
 

@@ -36,24 +36,43 @@ class Ruled(Kind, Protocol):
                 region, vertex = moving.only(*self.defining(batch, params, tolerance))
             if not len(region):
                 break
-            points = work.at(vertex)
-            at = cylindrical(columns_of(params, region), points)
-            before = params
+            at, before = self._about(work, params, region, vertex), params
             params, middle = _recentre(params, region, at.t, count)
             at.t[:] -= middle[region]
-            radius, angle = params[region, 6], params[region, 7]
-            x, y = frames(params[:, :3])
-            frame = columns_of(x, region), columns_of(y, region)
-            group, columns = region, self._columns(at, frame, radius, angle)
-            residual = (at.rho - radius) * np.cos(angle) - at.t * np.sin(angle) if self.tapers else at.rho - radius
+            group, columns, residual = region, *self._equations(at, params, region)
             if self.tapers:
-                tips = np.flatnonzero(at.rho < constants.APEX * radius)
-                group, columns, residual = with_apices(params[region], points, region, columns, residual, tips)
+                tips = np.flatnonzero(at.rho < constants.APEX * params[region, 6])
+                mine, points = params[region[tips]], work.at(vertex[tips])
+                group, columns, residual = with_apices(mine, points, region, columns, residual, tips)
             matrix, right = normal_equations(group, columns, residual, count)
             change = -solve_normal(matrix, right, constants.DAMPING)
             params = moving.taken(self.step(params, change), before)
             region, vertex = moving.after(change, constants.CONVERGED, region, vertex)
         return params
+
+    @staticmethod
+    def _about(work: Patchwork, params: Params, region: Ints, vertex: Ints) -> Cylindrical:
+        """The vertices as the axes of their regions see them."""
+        count = len(region)
+        at = Cylindrical(np.empty(count), np.empty(count), np.empty((3, count)).T)
+        for rows in slices(count, constants.ROWS):
+            part = cylindrical(columns_of(params, region[rows]), work.at(vertex[rows]))
+            at.t[rows], at.rho[rows], at.radial[rows] = part
+        return at
+
+    def _equations(self, at: Cylindrical, params: Params, region: Ints) -> tuple[Array, Array]:
+        """Derivatives (N, 5 or 6) and distances (N,) of points at these coordinates about their regions' axes."""
+        columns, residual = np.empty((6 if self.tapers else 5, len(region))).T, np.empty(len(region))
+        x, y = frames(params[:, :3])
+        for rows in slices(len(region), constants.ROWS):
+            mine = region[rows]
+            part = Cylindrical(at.t[rows], at.rho[rows], at.radial[rows])
+            radius, angle = params[mine, 6], params[mine, 7]
+            columns[rows] = self._columns(part, (columns_of(x, mine), columns_of(y, mine)), radius, angle)
+            residual[rows] = part.rho - radius
+            if self.tapers:
+                residual[rows] = residual[rows] * np.cos(angle) - part.t * np.sin(angle)
+        return columns, residual
 
     def probe(self, params: Params, points: Array) -> Probe:
         """Distance, normal and radius of curvature."""
@@ -186,16 +205,16 @@ def with_apices(
     params: Params, points: Array, region: Ints, columns: Array, residual: Array, at: Ints
 ) -> tuple[Ints, Array, Array]:  # fmt: skip
     """The equations, with vertices at an apex put on the axis: their distance has no gradient there, and
-    without them a cone of one ring and a point may tilt as it likes."""
+    without them a cone of one ring and a point may tilt as it likes. `at` says which vertices those are, `params` and
+    `points` are theirs."""
     if not len(at):
         return region, columns, residual
     columns = columns.copy()
     columns[at, :4] = 0.0
-    mine = params[at]
-    t = dot(points[at] - mine[:, 3:6], mine[:, :3])
-    across = points[at] - mine[:, 3:6] - t[:, None] * mine[:, :3]
+    t = dot(points - params[:, 3:6], params[:, :3])
+    across = points - params[:, 3:6] - t[:, None] * params[:, :3]
     extra, off = [], []
-    for number, direction in enumerate(frames(mine[:, :3])):
+    for number, direction in enumerate(frames(params[:, :3])):
         row = np.zeros((len(at), columns.shape[1]))
         row[:, number], row[:, 2 + number] = -1.0, -t
         extra.append(row)

@@ -84,6 +84,7 @@ def partition(work: Patchwork, scales: Scales) -> Partition:
         for region in chosen:
             gained[work.mesh[region.polygons[0]]] += work.area[region.polygons].sum()
         tried |= (gained < constants.WORTH * work.total)[of_edge]
+    del bent, like, tried  # large, and needed no longer
     for factor in constants.CHORD_FITS:
         batch, side = _pieces(territory, link, link.alike)
         regions += _choose([decimated(territory, CYLINDER, batch, side, factor)], territory)
@@ -138,6 +139,7 @@ def _whole_pieces(
         low, high = kind.bends
         suits = (middle >= low) & (middle <= high) & (batch.size >= kind.least)
         growths.append(whole(territory, kind, batch.select(suits[batch.region]), side))
+        batch.forget()
         explained = growths[-1].batch.size >= constants.EXPLAINED * batch.size
         batch = batch.select(~explained[batch.region])
     return growths
