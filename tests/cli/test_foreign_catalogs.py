@@ -17,7 +17,9 @@ def catalog(tmp_path):
     return tmp_path / "c.db"
 
 
-DESIGN = "INSERT INTO designs VALUES ('a.h5', 'd', {name}, 'mm', {bodies}, 1, 1, 1, 0, 0, {mass}, 1.0, 1.0, {z}, NULL)"
+DESIGN = (
+    "INSERT INTO designs VALUES ('a.h5', 'd', {name}, 'mm', {bodies}, 1, 1, 1, 0, 0, {mass}, 1.0, 1.0, {z}, NULL, 'g')"
+)
 
 
 def edited(catalog, *statements):

@@ -104,6 +104,7 @@ def _results_of(source: Path, packages: Packages) -> Path:
         "kinform catalog find --joint revolute --mobility 1",
         "kinform catalog find --joint revolute:2+ --loops 1 --max-mass 0.5",
         "kinform catalog find --name seeker --format json",
+        "kinform catalog find --like arm.h5",
     ),
 )
 def find(
@@ -132,6 +133,10 @@ def find(
         list[str] | None, option("--meets", "WHAT", "Meets its requirements of this kind, or of this name.")
     ] = None,
     verified: Annotated[bool, typer.Option("--verified", help="Only designs that passed the gate.")] = False,
+    alike: Annotated[
+        Path | None,
+        option("--like", "F.h5", "Designs that do the same: graph of joints and mobility, then axes and size; alone."),
+    ] = None,
     file: File = _DEFAULT,
     format: PrintedTable = TableFormat.table,
 ) -> None:
@@ -148,7 +153,13 @@ def find(
         _joint_counts(joint or []), joints, mobility, instantaneous, loops, min_mass, max_mass, max_size,
         tuple(name or ()), tuple(meets or ()), verified,
     )  # fmt: skip
-    designs, total = catalog.find(file, wanted)
+    if alike is not None:
+        if wanted != catalog.Wanted():
+            raise typer.BadParameter("asks for all that a design does: give it alone", param_hint="--like")
+        near, total = catalog.like(file, catalog.entry_of(files.read(alike), "", ""))
+        designs = tuple(entry for _, entry in near)
+    else:
+        designs, total = catalog.find(file, wanted)
     states = [catalog.source_state(entry, file.parent) for entry in designs]
     from kinform_cli.views import catalog as view
 

@@ -5,7 +5,7 @@ It holds nothing that the results files do not say, and can be rebuilt from them
 
 from kinform.catalog.build import Refused, add, rebuild
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, entry_of
-from kinform.catalog.search import Wanted, find, joint_count, source_state
+from kinform.catalog.search import Wanted, distance, find, joint_count, like, source_state
 from kinform.catalog.store import SCHEMA, Catalog, read, write
 
 __all__ = [
@@ -17,9 +17,11 @@ __all__ = [
     "Refused",
     "Wanted",
     "add",
+    "distance",
     "entry_of",
     "find",
     "joint_count",
+    "like",
     "read",
     "rebuild",
     "source_state",

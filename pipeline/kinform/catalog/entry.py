@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,6 +85,8 @@ class Entry:
     """verified, findings, not verified; None where it was not checked."""
     joints: tuple[CatalogJoint, ...]
     requirements: tuple[CatalogRequirement, ...]
+    graph: str = ""
+    """The same for designs whose graph of bodies and joints, with the types of joints and the ground, is the same."""
 
 
 def entry_of(design: Design, path: str, digest: str) -> Entry:
@@ -107,7 +111,41 @@ def entry_of(design: Design, path: str, digest: str) -> Entry:
         verdict=None if design.report is None else VERDICTS[verdict(design.report)],
         joints=_joints(design.assembly, kinematics),
         requirements=tuple(_requirement(wanted, design.report) for wanted in design.assembly.function.requirements),
+        graph=graph_of(
+            [body.ground for body in kinematics.bodies],
+            [(j.type, _index(kinematics, j.bodies[0]), _index(kinematics, j.bodies[1])) for j in kinematics.joints],
+        ),
     )  # fmt: skip
+
+
+def graph_of(grounds: Sequence[bool], joints: Iterable[tuple[str, int, int]]) -> str:
+    """A hash of a graph that is the same however bodies are numbered: of bodies, whether each is the ground, and
+    joints, each its type and its two bodies.
+
+    Colours of bodies are refined by those of their neighbours until they part no further (Weisfeiler and Lehman 1968).
+    Graphs that are not the same can have one hash where they are as regular as two triangles and a hexagon.
+    """
+    edges = list(joints)
+    colours = ["ground" if ground else "body" for ground in grounds]
+    for _ in range(len(colours)):
+        around: list[list[str]] = [[] for _ in colours]
+        for kind, a, b in edges:
+            around[a].append(f"{kind} {colours[b]}")
+            around[b].append(f"{kind} {colours[a]}")
+        finer = [_hash(colour, *sorted(near)) for colour, near in zip(colours, around, strict=True)]
+        if len(set(finer)) == len(set(colours)) and _ > 0:
+            break
+        colours = finer
+    told = [f"{kind} {' '.join(sorted((colours[a], colours[b])))}" for kind, a, b in edges]
+    return _hash(*sorted(colours), "joints", *sorted(told))
+
+
+def _hash(*words: str) -> str:
+    return hashlib.sha256("\0".join(words).encode()).hexdigest()[:32]
+
+
+def _index(kinematics: Kinematics, body: str) -> int:
+    return next(k for k, one in enumerate(kinematics.bodies) if one.name == body)
 
 
 def _loops(kinematics: Kinematics) -> int:

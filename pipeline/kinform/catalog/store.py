@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import sqlite3
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -19,7 +20,7 @@ from kinform.errors import InputError, Problem
 from kinform.foundation.regular import not_a_file
 from kinform.results import replace_file
 
-SCHEMA = "kinform/catalog/1"
+SCHEMA = "kinform/catalog/2"
 
 _TABLES = """
 CREATE TABLE catalog (schema TEXT NOT NULL);
@@ -27,7 +28,8 @@ CREATE TABLE sources (path TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE TABLE designs (
   path TEXT PRIMARY KEY, digest TEXT NOT NULL, name TEXT NOT NULL, units TEXT NOT NULL,
   bodies INTEGER NOT NULL, instantaneous INTEGER NOT NULL, finite INTEGER, effective INTEGER NOT NULL,
-  idle INTEGER NOT NULL, loops INTEGER NOT NULL, mass REAL, size_x REAL, size_y REAL, size_z REAL, verdict TEXT
+  idle INTEGER NOT NULL, loops INTEGER NOT NULL, mass REAL, size_x REAL, size_y REAL, size_z REAL, verdict TEXT,
+  graph TEXT NOT NULL
 ) WITHOUT ROWID;
 CREATE TABLE parts (design TEXT NOT NULL REFERENCES designs, name TEXT NOT NULL, PRIMARY KEY (design, name))
   WITHOUT ROWID;
@@ -41,6 +43,13 @@ CREATE TABLE requirements (
   design TEXT NOT NULL REFERENCES designs, name TEXT NOT NULL, kind TEXT NOT NULL, met INTEGER,
   PRIMARY KEY (design, name)
 ) WITHOUT ROWID;
+CREATE TABLE kinds (
+  type TEXT NOT NULL, joints INTEGER NOT NULL, design TEXT NOT NULL REFERENCES designs,
+  PRIMARY KEY (type, joints, design)
+) WITHOUT ROWID;
+CREATE TABLE texts (design TEXT PRIMARY KEY REFERENCES designs, folded TEXT NOT NULL) WITHOUT ROWID;
+CREATE INDEX designs_by_graph ON designs (graph, effective);
+CREATE INDEX designs_by_behaviour ON designs (effective, loops, mass);
 """
 _SIGNATURE = b"SQLite format 3\0"
 
@@ -115,7 +124,6 @@ def _connection(path: Path) -> sqlite3.Connection:
         database.close()
         raise _refuse(path, *other)
     database.row_factory = sqlite3.Row
-    database.create_function("fold", 1, lambda text: "" if text is None else str(text).casefold(), deterministic=True)
     return database
 
 
@@ -197,7 +205,7 @@ def _insert_entry(database: sqlite3.Connection, entry: Entry) -> None:
     nothing = (None, None, None)
     counts = (entry.bodies, entry.instantaneous, entry.finite, entry.effective, entry.idle, entry.loops)
     head = (entry.path, entry.digest, entry.name, entry.units, *counts)
-    _insert(database, "designs", [(*head, entry.mass, *(entry.size or nothing), entry.verdict)])
+    _insert(database, "designs", [(*head, entry.mass, *(entry.size or nothing), entry.verdict, entry.graph)])
     _insert(database, "parts", [(entry.path, part) for part in sorted(set(entry.parts))])
     joints = [
         (
@@ -207,6 +215,10 @@ def _insert_entry(database: sqlite3.Connection, entry: Entry) -> None:
         for j in sorted(entry.joints, key=lambda j: j.name)
     ]  # fmt: skip
     _insert(database, "joints", joints)
+    kinds = Counter(j.type for j in entry.joints)
+    _insert(database, "kinds", [(kind, many, entry.path) for kind, many in sorted(kinds.items())])
+    told = [entry.name, entry.path, *sorted(set(entry.parts)), *(j.intended for j in entry.joints if j.intended)]
+    _insert(database, "texts", [(entry.path, "\n".join(told).casefold())])
     wanted = sorted(entry.requirements, key=lambda r: r.name)
     _insert(database, "requirements", [(entry.path, r.name, r.kind, r.met) for r in wanted])
 
