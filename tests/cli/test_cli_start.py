@@ -146,7 +146,7 @@ def test_completion_offers_commands_topics_and_choices(kinform: Callable[..., Ra
         ran = kinform(_KINFORM_COMPLETE="complete_bash", COMP_WORDS=line, COMP_CWORD=str(len(words) - 1))
         return set(ran.stdout.split())
 
-    assert offered("kinform s") == {"simulate", "show", "schema"}
+    assert offered("kinform s") == {"simulate", "show", "schema", "study"}
     assert {"joints", "findings"} <= offered("kinform show a.h5 ")
     assert offered("kinform check --fail-on ") == {"error", "warning", "note"}
 

@@ -28,7 +28,7 @@ EXAMPLES = examples(
     "kinform query arm.h5 base shoulder --turn z@0,-45.2,16.5",
     "kinform query arm.h5 housing lid --slide 0,0,1",
     "kinform query arm.h5 rail carriage --slide x --format json",
-    "kinform query arm.h5 --intended   # of all joints of [function], as the check answers them",
+    "kinform query arm.h5 --intended   # every joint of [function]",
 )
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
