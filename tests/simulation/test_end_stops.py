@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from support.manifests import stated_joint, stated_part
 
+import kinform
 from kinform.behaviour import Constant, Model, Sine
 from kinform.simulation import Course, SolverSettings, simulate_system
 
@@ -120,3 +122,56 @@ def test_a_prescribed_motion_through_a_stop_ends_there_and_says_so():
 def test_a_course_of_impossible_numbers_is_refused(duration, step, gravity):
     with pytest.raises(ValueError, match=r"duration|step|gravity"):
         Course(duration, step, gravity)
+
+
+def test_a_bouncing_body_leaps_as_high_as_restitution_says_and_comes_to_rest():
+    height, e, g = 0.5, 0.6, 9.81
+    system = sliders([2.0], [(0.0, np.inf, e)], [None], axis=(0, 0, 1))
+    run = simulate_system(system, Course(2.0, 0.001), initial={"j0": (height, 0.0)})
+    assert run.status == "done"
+    begin, leap = np.sqrt(2.0 * height / g), np.sqrt(2.0 * g * height) * e
+    expected = np.where(run.time < begin, height - 0.5 * g * run.time**2, 0.0)
+    for _ in range(200):
+        t = run.time - begin
+        expected = np.where((t >= 0.0) & (t < 2.0 * leap / g), leap * t - 0.5 * g * t**2, expected)
+        begin, leap = begin + 2.0 * leap / g, e * leap
+    np.testing.assert_allclose(run.joint_position[:, 0], expected, atol=1e-7)
+    assert any("leave 0.6 of the speed" in note for note in run.assumptions)
+    # Half of the energy that is lost is lost at the first impact, by e².
+    lost = -run.energy[-1] @ [1.0, 1.0, -1.0] + run.energy[0] @ [1.0, 1.0, -1.0]
+    assert abs(lost) < 1e-9 and run.energy[-1, 2] == pytest.approx(-2.0 * g * height, rel=1e-8)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
+def test_a_bead_that_strikes_the_end_of_its_track_shares_its_momentum(e):
+    """Two free bodies: momentum stays, and they part at a share of the pace at which they met."""
+    first, second = 2.0, 0.5
+    system = sliders([first, second], [None, (-1.0, 0.2, e)], [None, None])
+    run = simulate_system(system, Course(0.5, 0.01, NOTHING), initial={"j0": (0.0, 0.0), "j1": (0.0, 1.0)})
+    cart = second * (1.0 + e) / (first + second)
+    t = np.maximum(run.time - 0.2, 0.0)
+    np.testing.assert_allclose(run.joint_position[:, 0], cart * t, atol=1e-10)
+    np.testing.assert_allclose(run.joint_position[:, 1], np.minimum(run.time, 0.2) - e * t, atol=1e-10)
+
+
+def test_a_restitution_that_is_no_share_is_refused():
+    run = simulate_system(sliders([1.0], [(0.0, 1.0, 1.5)], [None]), Course(0.1, 0.05, NOTHING))
+    assert run.status == "refused" and "its restitution is 1.5" in run.reason
+
+
+@pytest.mark.parametrize(("named", "axis"), [(("rail", "block"), 1.0), (("block", "rail"), -1.0)])
+def test_a_manifest_has_stops_at_the_ends_of_stated_ranges(named, axis, tmp_path):
+    """A block thrown along its rail, with the axis and the order of the bodies as the designer likes."""
+    path = tmp_path / "rail.toml"
+    path.write_text(
+        'schema = 1\n[assembly]\nname = "rail"\nunits = "mm"\nground = "rail"\n[[part]]\nname = "rail"\n'
+        + stated_part("block", 1.0)
+        + stated_joint("way", named, "prismatic", (axis, 0.0, 0.0))
+        + "range = [-1000, 30]\n"
+        + '[simulation]\nduration = 1.0\ngravity = [0, 0, 0]\nstops = "range"\nrestitution = 0.5\n'
+        + "[simulation.initial.way]\nvelocity = 100\n"
+    )
+    run = kinform.run(path).simulation
+    expected = np.where(run.time < 0.3, 0.1 * run.time, 0.03 - 0.05 * (run.time - 0.3))
+    np.testing.assert_allclose(np.abs(run.joint_position[:, 0]), np.abs(expected), atol=1e-9)
+    assert [use.kind for use in run.drives] == ["stop"]

@@ -136,7 +136,7 @@ _PARAMETERS: dict[type[Component], Callable[[Any, Lengths], str]] = {
     EffortDrive: lambda c, u: f"{_signal(c.signal)} N·m or N",
     Spring: lambda c, u: f"{number(c.stiffness)} N·m/rad or N/m, rest {number(c.rest)} rad or m",
     Damper: lambda c, u: f"{number(c.damping)} N·m·s/rad or N·s/m",
-    EndStop: lambda c, u: f"{number(c.lower)} to {number(c.upper)} rad or m",
+    EndStop: lambda c, u: f"{number(c.lower)} to {number(c.upper)} rad or m, restitution {number(c.restitution)}",
     Servo: lambda c, u: f"target {_signal(c.target)} rad or m, {_controller(c.controller)}",
     DcMotor: lambda c, u: (
         f"{number(c.resistance)} Ω, {number(c.inductance)} H, {number(c.constant)} N·m/A, gear {number(c.gear)}"

@@ -74,4 +74,4 @@ __all__ = [
     "smooth",
 ]
 
-CODE_VERSION: int = 6
+CODE_VERSION: int = 7

@@ -51,6 +51,8 @@ def _faults_of_values(component: Component) -> Iterator[str]:
             yield from _rows(value)
         elif isinstance(value, float | int | np.ndarray) and not isinstance(value, bool):
             yield from _number(field.name, value, "its ")
+    if isinstance(component, EndStop) and not 0.0 <= component.restitution <= 1.0:
+        yield f"its restitution is {component.restitution:g}: a share of the speed is between 0 and 1"
     if isinstance(component, EndStop) and component.lower > component.upper:
         yield f"its lower limit {component.lower:g} is above the upper {component.upper:g}"
     if isinstance(component, DcMotor) and (component.resistance <= 0.0 or component.inductance < 0.0):

@@ -167,10 +167,17 @@ class Model:
         self.add(shafts.Damper(name, name, damping, **self._on(joint, freedom)), shaft=joint)
 
     def stop(
-        self, name: str, joint: Where, lower: float = -math.inf, upper: float = math.inf, *, freedom: int | None = None
+        self,
+        name: str,
+        joint: Where,
+        lower: float = -math.inf,
+        upper: float = math.inf,
+        restitution: float = 0.0,
+        *,
+        freedom: int | None = None,
     ) -> None:
-        """The joint's value stays between the limits, rad or m."""
-        self.add(shafts.EndStop(name, name, lower, upper, **self._on(joint, freedom)), shaft=joint)
+        """The joint's value stays between the limits, rad or m; impacts leave this share of the speed."""
+        self.add(shafts.EndStop(name, name, lower, upper, restitution, **self._on(joint, freedom)), shaft=joint)
 
     def gear(
         self,

@@ -14,7 +14,8 @@ from kinform.behaviour.homes import homes
 from kinform.behaviour.joints import KINDS, JointGeometry
 from kinform.behaviour.nested import nest
 from kinform.behaviour.ports import Component, Node
-from kinform.function import resolve_joint
+from kinform.behaviour.shafts import EndStop
+from kinform.function import resolve_joint, stated_ranges
 from kinform.model.assembly import Assembly
 from kinform.model.kinematics import Joint, Kinematics
 from kinform.model.mass import MassReport
@@ -121,6 +122,11 @@ def build(assembly: Assembly, kinematics: Kinematics, mass: MassReport | None, *
                 builder.add(gear, a=f"shaft {sides[0]}", b=f"shaft {sides[1]}")
             else:
                 failures.append(("coupling of " + " and ".join(stated.joints), why))
+    if assembly.simulation is not None and assembly.simulation.stops == "range":
+        for name, (lower, upper) in stated_ranges(assembly, kinematics):
+            if name in modelled and modelled[name].kind.rates == 1 and not np.all(np.isinf([lower, upper])):
+                stop = EndStop(f"stop {name}", name, lower, upper, assembly.simulation.restitution)
+                builder.add(stop, shaft=f"shaft {name}")
     for number, load in enumerate(assembly.function.loads, start=1):
         component_load, body_name, why = make_load(assembly, kinematics, mass, load, number)
         if component_load is not None:

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 
 from kinform.behaviour.ports import Component, Port
 from kinform.behaviour.signals import Signal
-from kinform.model.quantities import JointValue
+from kinform.model.quantities import JointValue, Ratio
 
 
 @dataclass(frozen=True)
@@ -61,10 +61,12 @@ class Damper(OnShaft):
 
 @dataclass(frozen=True)
 class EndStop(OnShaft):
-    """The value stays between `lower` and `upper` (rad or m); impacts are without rebound."""
+    """The value stays between `lower` and `upper` (rad or m). An impact turns the rate round and leaves it this share
+    (Newton): 0 is without rebound, 1 without loss."""
 
     lower: JointValue = -math.inf
     upper: JointValue = math.inf
+    restitution: Ratio = 0.0
 
 
 @dataclass(frozen=True)

@@ -158,6 +158,8 @@ class _Entry:
     read: Callable[[Any], Any] = lambda value: value
     sparse: bool = False
     """Left out where it is null, or a count that is the usual one."""
+    usual: Any = ...
+    """What it is where a file does not say it; `...`: it must."""
 
     @property
     def key(self) -> str:
@@ -196,6 +198,8 @@ def _entry(record: type, field: dataclasses.Field[Any], hint: Any) -> _Entry:
         usual = field.default
         written: Callable[[Any], Any] = lambda value: None if value == usual else value
         return _Entry(name, int | None, written, lambda value: usual if value is None else value, True)
+    if isinstance(field.default, float):
+        return _Entry(name, hint, usual=field.default)
     return _Entry(name, hint)
 
 
@@ -230,7 +234,7 @@ def _table_of(record: type, *parts: type, **keys: Any) -> type[_Strict]:
     """The table of a record: these keys, then one for each field of the record, or of its `parts` where they are
     given."""
     for entry in (entry for part in parts or (record,) for entry in _entries(part)):
-        default = None if entry.sparse else ...
+        default = None if entry.sparse else entry.usual
         keys[entry.key] = (entry.type, Field(default, description=DESCRIPTIONS.get(entry.key)))
     return create_model(record.__name__, __base__=_Strict, __doc__=record.__doc__, **keys)
 

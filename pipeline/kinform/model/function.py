@@ -199,5 +199,9 @@ class SimulationRequest:
     line: int | None = None
     partial: bool = False
     """Whether joints that are not understood are held while the rest moves."""
+    stops: str = ""
+    """"range": joints stop at the ends of their stated ranges; "": they pass them."""
+    restitution: Ratio = 0.0
+    """Of these stops: the share of the speed that an impact leaves."""
     assumed: tuple[str, ...] = ()
     """Which of duration, step and gravity the manifest does not state, sorted."""

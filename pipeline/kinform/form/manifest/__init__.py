@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -54,6 +54,12 @@ class SimulationTable(Table):
     partial: bool = Field(
         False,
         description="hold the joints that are not understood, and move the rest: what that shows is not verified",
+    )
+    stops: Literal["range"] | None = Field(
+        None, description="joints with one freedom stop at the ends of their stated ranges; default they pass them"
+    )
+    restitution: Annotated[float, Field(ge=0.0, le=1.0)] = Field(
+        0.0, description="of these stops: share of the speed that an impact leaves"
     )
     initial: dict[str, Initial] = Field({}, description="by name of a function.joint, or as kinform names it")
 

@@ -239,5 +239,14 @@ class FunctionReader:
         defaults = tuple(sorted({"duration", "step", "gravity"} - table.model_fields_set))
         where = self.scope.where("simulation")
         return SimulationRequest(
-            table.level, table.duration, table.step, gravity, tuple(initial), *where, table.partial, defaults
+            table.level,
+            table.duration,
+            table.step,
+            gravity,
+            tuple(initial),
+            *where,
+            table.partial,
+            table.stops or "",
+            table.restitution,
+            defaults,
         )

@@ -57,6 +57,8 @@ FUNCTION = Layout(
 )
 REQUEST = Layout(
     SimulationRequest,
-    Row("request", "level", "duration", "step", "gravity", "file", "line", "partial", "assumed"),
+    Row(
+        "request", "level", "duration", "step", "gravity", "file", "line", "partial", "stops", "restitution", "assumed"
+    ),
     Table("initial"),
 )

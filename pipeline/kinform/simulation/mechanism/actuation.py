@@ -65,6 +65,8 @@ class Stop:
     v: int
     sense: int
     limit: float
+    restitution: float = 0.0
+    """Share of the rate that an impact leaves, turned round."""
 
 
 class Actuation:
@@ -114,7 +116,7 @@ class Actuation:
         elif isinstance(actor, shafts.EndStop):
             for sense, limit in ((-1, actor.lower), (1, actor.upper)):
                 if np.isfinite(limit):
-                    self.stops.append(Stop(slot.name, q, v, sense, limit))
+                    self.stops.append(Stop(slot.name, q, v, sense, limit, actor.restitution))
         else:
             self.actors.append(_acts(system, slot.name, q, v, actor))
 

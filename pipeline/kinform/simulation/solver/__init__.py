@@ -39,7 +39,7 @@ other; where ε is within what is known of the lengths, the run ends (TURNED).
 
 What interrupts. Laws are smooth between knots, so a stretch ends at each knot and the next begins with a short step
 (`dynamic`). An end stop that the dense output passes is found by halving, and the step ends there (`stops`): rates
-take the impact without rebound (Moreau 1988), and the joint is held like a led one until the stop would have to
+take the impact (Moreau 1988; Newton's restitution), and the joint is held like a led one until the stop would have to
 pull. A change of what is led makes new tables, a new rank and a new choice.
 
 Stiff models. The kernel comes back where the change of slopes over the change of states between the last two

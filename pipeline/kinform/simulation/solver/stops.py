@@ -1,8 +1,9 @@
-"""End stops: impact without rebound, contact while the stop is pushed, release when it would pull.
+"""End stops: impact, contact while the stop is pushed, release when it would pull.
 
 At an impact the rates become the nearest, by the mass matrix, that no stop in contact forbids: stops push and never
 pull, so that an impact on one can lift joints off others (Moreau, Unilateral contact and dry friction in finite freedom
-dynamics, 1988, without restitution). In contact the joint is held like a prescribed one.
+dynamics, 1988). With restitution joints go back at no less than that share of the pace at which they came (Newton). In
+contact the joint is held like a prescribed one.
 """
 
 from __future__ import annotations
@@ -58,7 +59,8 @@ class Contact:
             )
         if stop.joint not in self.struck:
             self.struck.add(stop.joint)
-            run.notes.append(f"{stop.joint} reaches its end stop at t = {t:.6g} s; impacts are without rebound")
+            kept = f"leave {stop.restitution:g} of the speed" if stop.restitution else "are without rebound"
+            run.notes.append(f"{stop.joint} reaches its end stop at t = {t:.6g} s; impacts {kept}")
         change, after = impact
         q[stop.q] = stop.limit
         run.y[-1] += float(change @ matrix @ (v + 0.5 * change))
@@ -224,12 +226,13 @@ def _impact(null: Array, matrix: Array, v: Array, stops: Sequence[Stop]) -> tupl
     """
     outward = np.array([stop.sense * null[stop.v] for stop in stops])
     pace = np.array([stop.sense * v[stop.v] for stop in stops])
+    back = np.array([stop.restitution for stop in stops]) * np.maximum(pace, 0.0)
     root = np.linalg.cholesky(null.T @ matrix @ null)
     ways = np.linalg.solve(root, outward.T)
     held = np.linalg.norm(outward, axis=1) > constants.STOP_MOVES
     pushes = np.zeros(len(stops))
     if held.any():
-        pushes[held] = _pushes(ways[:, held], pace[held])
+        pushes[held] = _pushes(ways[:, held], (pace + back)[held])
     change = -null @ np.linalg.solve(root.T, ways @ pushes)
     after = pace + np.array([stop.sense * change[stop.v] for stop in stops])
     if (after > constants.IMPACT_ROUNDING * np.abs(pace).max()).any():
