@@ -126,7 +126,7 @@ def test_a_bracket_between_two_legs_may_be_of_the_frame():
     left, right = box(20, 40, -10, 10, -10, 10), box(-40, -20, -10, 10, -10, 10)
     foot = box(20, 40, -10, 10, -30, -10)
     whole, _, touching = shaped(frame=frame, bracket=bracket, left=left, right=right, foot=foot)
-    legs = [joint(name, ("frame", name), axis=(1, 0, 0), point=(0, 0, 0.03)) for name in ("left", "right")]
+    legs = [joint(name, ("frame", name), axis=(1, 0, 0), point=(0, 0, 0.012)) for name in ("left", "right")]
     knee = joint("knee", ("left", "foot"), axis=(1, 0, 0), point=(0.03, 0, -0.03))
     with pytest.raises(InputError) as error:
         with_sides(stated(whole, opened(legs[0]), legs[1], knee), touching)
