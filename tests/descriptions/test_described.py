@@ -136,6 +136,10 @@ def test_a_collision_mesh_that_is_not_there_is_an_error_at_its_line_and_one_with
     assert (missing.code, missing.severity, missing.line) == ("KF131", "error", 2)
     assert "meshes/gone.stl" in missing.message
     assert (stray.code, stray.severity) == ("KF131", "note") and "meshes/stray.stl" in stray.message
+    walker.links["left_shin"].more = mesh.format("gone.stl")
+    twice, _ = findings(tmp_path, walker)
+    assert twice.line == 2 and "named 2 times, does not exist" in twice.message and "'left_shin'" in twice.message
+    walker.links["left_shin"].more = ""
     (tmp_path / "other.urdf").write_text('<mesh filename="meshes/stray.stl"/>')  # another of the package names it
     assert [f.severity for f in findings(tmp_path, walker)] == ["error"]
 

@@ -40,7 +40,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 25
+CODE_VERSION: int = 26
 
 __getattr__ = first_used(
     __name__,

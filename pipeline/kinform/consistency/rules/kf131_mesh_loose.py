@@ -1,7 +1,7 @@
 """A robot description names a mesh that is not there, or leaves meshes beside its own unnamed.
 
-A mesh that is not there is an error. The link stands without it: stated masses, sides and collision geometry are not
-compared there, and a joint may be found not held for want of what is missing. Where none of the meshes is there,
+A mesh that is not there is an error, told once a file. The link stands without it: stated masses, sides and collision
+geometry are not compared there, and a joint may be found not held for want of what is missing. Where none of the meshes is there,
 nothing can be judged, and the reading ends. Mesh files in the folders of the description's meshes that neither it nor
 another text of its package names are one note.
 
@@ -14,6 +14,8 @@ Example: `arm_collision.stl` was renamed to `arm_coll.stl`, and the URDF was not
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from kinform.consistency.context import Context
 from kinform.consistency.outcome import Outcome, decided
@@ -28,9 +30,11 @@ def check(context: Context) -> Outcome:
     """The loose meshes of every description."""
     findings: list[Finding] = []
     for description in context.assembly.descriptions:
+        missing: dict[str, list[LooseMesh]] = {}
         for mesh in description.meshes:
             if mesh.missing:
-                findings.append(_missing(mesh))
+                missing.setdefault(mesh.path, []).append(mesh)
+        findings += map(_missing, missing.values())
         unnamed = [mesh.path for mesh in description.meshes if not mesh.missing]
         if unnamed:
             findings.append(
@@ -47,11 +51,19 @@ def check(context: Context) -> Outcome:
     return decided(findings)
 
 
-def _missing(mesh: LooseMesh) -> Finding:
-    lost = "it is judged without it" if mesh.left_out else "it has no such collision geometry"
+def _missing(uses: Sequence[LooseMesh]) -> Finding:
+    """One finding of a file, however often it is named."""
+    mesh, many = uses[0], len(uses) > 1
+    links = quoted(dict.fromkeys(use.link for use in uses))
+    left_out = any(use.left_out for use in uses)
+    lost = "it is judged without it" if left_out else "it has no such collision geometry"
+    of = f"link {links}"
+    if many:
+        of = f"{links}, named {len(uses)} times,"
+        lost = "they are judged without it" if left_out else "they have no such collision geometry"
     return RULE.finding(
         [mesh.path],
-        f"the mesh {mesh.path} of link '{mesh.link}' does not exist: {lost}",
+        f"the mesh {mesh.path} of {of} does not exist: {lost}",
         found="no file",
         intended="a mesh",
         declared=Source(mesh.file, mesh.line),
