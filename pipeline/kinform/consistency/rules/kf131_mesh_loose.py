@@ -1,9 +1,9 @@
 """A robot description names a mesh that is not there, or leaves meshes beside its own unnamed.
 
 A mesh that is not there is an error, told once a file. The link stands without it: stated masses, sides and collision
-geometry are not compared there, and a joint may be found not held for want of what is missing. Where none of the meshes is there,
-nothing can be judged, and the reading ends. Mesh files in the folders of the description's meshes that neither it nor
-another text of its package names are one note.
+geometry are not compared there, and a joint may be found not held for want of what is missing. Where none of the meshes
+is there, nothing can be judged, and the reading ends. Mesh files in the folders of the description's meshes that
+neither it nor another text of its package names are one note.
 
 Why it matters: a simulator refuses the description, and a planner that cannot load a collision mesh sees no obstacle
 there. A file that nobody names is forgotten, or misspelt where it was meant.
