@@ -92,9 +92,9 @@ def test_a_missing_mesh_and_a_near_name(folder, kinform):
 
 def test_all_errors_of_a_manifest_come_at_once_with_their_lines(folder, command):
     (folder / "m.toml").write_text(
-        'schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\ncolour = 1\n[[part]]\nname = "a"\nmesh = "no.stl"\n'
+        'schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\nshade = 1\n[[part]]\nname = "a"\nmesh = "no.stl"\n'
     )
-    refused(command("run", "m.toml", "-o", "r.h5"), "m.toml:2", "units", "m.toml:6", "colour", "m.toml:8", "m.toml:9")
+    refused(command("run", "m.toml", "-o", "r.h5"), "m.toml:2", "units", "m.toml:6", "shade", "m.toml:8", "m.toml:9")
 
 
 def test_a_cycle_of_sub_assemblies(folder, command):
