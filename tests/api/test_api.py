@@ -88,7 +88,7 @@ def test_the_public_names_are_there_and_run_is_callable_however_it_is_imported()
 
 def test_problems_of_the_input_come_all_at_once(tmp_path):
     manifest = tmp_path / "m.toml"
-    manifest.write_text('schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\nmesh = "none.stl"\ncolour = 1\n')
+    manifest.write_text('schema = 1\n[assembly]\nname = "x"\n[[part]]\nname = "a"\nmesh = "none.stl"\nshade = 1\n')
     with pytest.raises(kinform.InputError) as caught:
         kinform.run(manifest)
     lines = sorted(p.line for p in caught.value.problems)
