@@ -200,9 +200,9 @@ def test_what_is_outside_the_folder_is_said_once_with_how_many(begun):
 
 
 def test_what_is_rounding_in_a_proposed_joint_is_not_written():
-    from kinform.form.without_manifest import _joint_lines
+    from kinform.form.without_manifest import joint_lines
     from kinform.model.function import IntendedJoint
 
     axis, point = np.array([-6e-06, 1.0, 5e-06]), np.array([0.097234, -7.76e-05, 1e-7])
     noisy = IntendedJoint("j", ("a", "b"), "revolute", axis, None, point, None, None, None, None)
-    assert {"axis = [0, 1, 0]", "point = [0.097234, -7.76e-05, 0]"} < set(_joint_lines(noisy, "m"))
+    assert {"axis = [0, 1, 0]", "point = [0.097234, -7.76e-05, 0]"} < set(joint_lines(noisy, "m"))

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import base64
+import shutil
+import tomllib
 
 import numpy as np
 import pytest
+from support.browser import Browser, program
 from support.places import FIXTURES
 from support.validators import npm
 from support.view import drawn, inside, layer, press
@@ -325,3 +328,44 @@ def test_the_page_is_accessible(browser, request, which, dark):
         assert browser.run("document.documentElement.scrollWidth") == width
     browser.resize(1280, 900)
     browser.dark(False)
+
+
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
+def test_proposed_joints_move_what_they_would_and_their_toml_is_copied(derive_design, page_of, tmp_path, width, height):
+    """A collared shaft without function: its slider turns it, to the angle that is said; its table can be read back."""
+    source = FIXTURES / "pairs" / "revolute_collars"
+    for mesh in source.glob("*.stl"):
+        shutil.copy(mesh, tmp_path)
+    text = (source / "revolute_collars.toml").read_text()
+    (tmp_path / "bare.toml").write_text(text[: text.index("[function]")])
+    (tmp_path / "bare.html").write_text(page_of(derive_design(tmp_path / "bare.toml")), encoding="utf-8")
+    if program() is None:
+        pytest.skip("no Chromium here")
+    page = Browser(width, height)
+    try:
+        page.open(tmp_path / "bare.html")
+        page.settle()
+        assert page.run("document.querySelectorAll('.proposed').length") == 1
+        assert page.run("document.documentElement.scrollWidth") == width
+        page.run(
+            "(() => { const s = document.querySelector('[data-proposes]'); s.value = '1000';"
+            " s.dispatchEvent(new Event('input', { bubbles: true })); })()"
+        )
+        page.settle()
+        assert page.run("document.querySelector('.proposed output').textContent") == "28.0°"
+        state = "window.kinformViewer.state"
+        turned = page.run(f"{state}.shown.map((pose) => Math.max(...pose.map((x, k) => Math.abs(x - (k % 5 === 0)))))")
+        assert sorted(angle > 0.1 for angle in turned) == [False, True]
+        table = tomllib.loads(page.run("document.querySelector('[data-toml=all]').textContent"))["function"]
+        assert table["complete"] is True
+        (joint,) = table["joint"]
+        assert joint["type"] == "revolute"
+        assert abs(np.dot(joint["axis"], [0.883022222, -0.321393805, 0.342020143])) > 0.9999
+        page.run("navigator.clipboard.writeText = (text) => { window.copied = text; return Promise.resolve(); }")
+        page.run("document.querySelector('button[data-copies=all]').click()")
+        page.settle()
+        assert tomllib.loads(page.run("window.copied"))["function"] == table
+        assert "Copied" in page.run("document.getElementById('copied').textContent")
+        assert page.said == []
+    finally:
+        page.close()

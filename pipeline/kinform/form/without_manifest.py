@@ -132,12 +132,12 @@ def proposals(
         lines += ["# missing: with complete = true the bodies follow from them."]
     lines += ["# [function]", "# complete = true" if joints else "# mobility = 1"]
     for joint, evidence in joints:
-        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in _joint_lines(joint, units))]
+        lines += ["#", f"## {_text(evidence)[1:-1]}", *(f"# {line}" for line in joint_lines(joint, units))]
     return lines
 
 
-def _joint_lines(joint: IntendedJoint, units: str) -> list[str]:
-    """A joint in the manifest's unit."""
+def joint_lines(joint: IntendedJoint, units: str) -> list[str]:
+    """Lines of a `[[function.joint]]` in the manifest's unit."""
     lines = ["[[function.joint]]", f"name = {_text(joint.name)}", f"type = {_text(joint.type)}"]
     lines.append("between = [" + ", ".join(_text(name) for name in joint.between) + "]")
     if joint.axis is not None:

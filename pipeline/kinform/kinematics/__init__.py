@@ -25,7 +25,7 @@ from kinform.foundation.lazily import first_used
 if TYPE_CHECKING:
     from kinform.kinematics.derivation import derive, functional, mobility_within
     from kinform.kinematics.mobility.named_freedoms import Motions
-    from kinform.kinematics.partition import propose, proposed_joints
+    from kinform.kinematics.partition import propose, proposed_joints, stated_proposals
     from kinform.kinematics.questions.intended_freedoms import IntendedAnswer, IntendedMotion, intended_answers
     from kinform.kinematics.questions.joint_insight import Insight, insight
     from kinform.kinematics.questions.motion_query import QueryAnswer, QueryBlocker, query
@@ -46,6 +46,7 @@ __all__ = [
     "propose",
     "proposed_joints",
     "query",
+    "stated_proposals",
 ]
 
 CODE_VERSION = 30
@@ -60,6 +61,7 @@ __getattr__ = first_used(
         "Motions": "mobility.named_freedoms",
         "propose": "partition",
         "proposed_joints": "partition",
+        "stated_proposals": "partition",
         "IntendedAnswer": "questions.intended_freedoms",
         "IntendedMotion": "questions.intended_freedoms",
         "intended_answers": "questions.intended_freedoms",

@@ -95,6 +95,8 @@ FULL_TURN = 2.0 * math.pi
 """rad: no turn is shown further."""
 SHOWN_TURN = math.radians(28.0)
 """rad, greatest turn of a driver whose range is not known; a choice."""
+MOST_PROPOSED_PARTS = 400
+"""Joints are proposed on the page of assemblies of so many parts at most: beyond, looking takes longer than drawing."""
 SHOWN_SLIDE = 0.14
 """Greatest slide of such a driver as a share of the assembly's size; a choice."""
 FOLLOWER_TURN = 1.4

@@ -15,6 +15,6 @@ The method is a multiway cut as an integer program (Boykov, Veksler, Zabih 2001 
 
 from kinform.kinematics.partition.bodies import Partition, partition
 from kinform.kinematics.partition.open_sides import with_sides
-from kinform.kinematics.partition.proposals import Proposal, propose, proposed_joints
+from kinform.kinematics.partition.proposals import Proposal, propose, proposed_joints, stated_proposals
 
-__all__ = ["Partition", "Proposal", "partition", "propose", "proposed_joints", "with_sides"]
+__all__ = ["Partition", "Proposal", "partition", "propose", "proposed_joints", "stated_proposals", "with_sides"]

@@ -49,6 +49,12 @@ class Proposal:
     borne: frozenset[PartName]
     """Parts that touch about the axis."""
 
+    @property
+    def words(self) -> str:
+        """What it would move."""
+        moving = sorted(self.sides[1])
+        return f"moves {counted(len(moving), 'part')}, {100 * self.share:.2g} % of the volume: {quoted(moving)}"
+
     def between(self, volume: Mapping[PartName, float]) -> tuple[PartName, PartName]:
         """The largest part of either side that touches about the axis: other joints may part the side further."""
         first, second = (max(self.borne & set(side), key=lambda name: (volume[name], name)) for side in self.sides)
@@ -101,7 +107,14 @@ def propose(assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: 
 def proposed_joints(
     assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
 ) -> list[tuple[IntendedJoint, str]]:
-    """Joints that may be meant as a function states them, named joint_1, joint_2 …, each with what it would move.
+    """Joints that may be meant as a function states them, each with what it would move."""
+    return [(joint, one.words) for joint, one in stated_proposals(assembly, surfaces, contacts)]
+
+
+def stated_proposals(
+    assembly: Assembly, surfaces: Mapping[str, MeshSurfaces], contacts: Contacts
+) -> list[tuple[IntendedJoint, Proposal]]:
+    """Joints that may be meant as a function states them, named joint_1, joint_2 …, each with its proposal.
 
     Their sides are named by the largest part of the body that all of them together make of what touches about the axis.
     """
@@ -117,10 +130,7 @@ def proposed_joints(
     for one, joint in zip(ways, joints, strict=True):
         bodies = [found.placed[PartName(name)].body for name in joint.between]
         first, second = (largest[body] for body in bodies) if bodies[0] != bodies[1] else joint.between
-        moving = sorted(one.sides[1])
-        words = f"moves {counted(len(moving), 'part')}, {100 * one.share:.2g} % of the volume: "
-        words += quoted(moving)
-        out.append((replace(joint, between=(first, second)), words))
+        out.append((replace(joint, between=(first, second)), one))
     return out
 
 

@@ -59,6 +59,7 @@ def page_html(design: Design, artist: Artist | None = None, live: str = "") -> s
         findings=findings,
         pictures=pictures,
         joints=facts.joints(design),
+        proposed=list(enumerate(scene.proposed, len(scene.movements))),
         assumed=facts.assumptions(design),
         rules=rules,
         undecided=[rule for rule in rules if rule.outcome == "inconclusive"],

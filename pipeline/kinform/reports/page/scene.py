@@ -18,6 +18,7 @@ from kinform.reports.page.focus import Focus, focus_of
 from kinform.reports.page.meshes import Shape, shape_of
 from kinform.reports.page.movements import Movement, movements_of
 from kinform.reports.page.overlaps import overlap_shapes
+from kinform.reports.page.proposed import ProposedJoint, proposed
 from kinform.reports.page.subjects import wanted_names
 
 
@@ -103,6 +104,11 @@ class Scene:
     def movements(self) -> list[Movement]:
         """The simulated run and the freedoms."""
         return movements_of(self.design, self.size)
+
+    @cached_property
+    def proposed(self) -> list[ProposedJoint]:
+        """Joints that may be meant, where no function is stated."""
+        return proposed(self.design, self.bodies)
 
     @cached_property
     def focuses(self) -> list[Focus]:

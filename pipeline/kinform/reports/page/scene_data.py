@@ -74,7 +74,10 @@ def embedded_scene(scene: Scene) -> tuple[dict[str, Any], str]:
             "zoom": constants.FINDING_ZOOM,
             "shift": constants.FINDING_SHIFT,
         },
-        "motions": [_movement(scene, blob, movement) for movement in scene.movements],
+        "motions": [
+            _movement(scene, blob, movement)
+            for movement in (*scene.movements, *(one.movement for one in scene.proposed))
+        ],
     }
     return plain(drawn), blob.text()
 

@@ -10,6 +10,7 @@ class Controls {
     this.lists();
     this.tools();
     this.motion();
+    this.proposals();
     this.graph();
     new ResizeObserver(() => {
       if (!this.state.camera.own) {
@@ -407,6 +408,7 @@ class Controls {
     this.listMarks(motion);
     if (!motion) {
       this.play(false);
+      this.showProposal();
       this.redraw();
       return;
     }
@@ -414,6 +416,58 @@ class Controls {
     this.keep();
     this.go(motion.kind === "simulation" ? motion.start : 0);
     this.play(play);
+  }
+
+  // Joints that may be meant: each slider moves what its joint would, each button copies its text.
+  proposals() {
+    const main = this.id("main");
+    main.addEventListener("input", (event) => {
+      const { proposes } = event.target.dataset;
+      if (proposes === undefined) return;
+      const share = Number(event.target.value) / 500 - 1;
+      this.play(false);
+      if (this.state.motion !== this.state.motions[proposes]) this.pickMotion(Number(proposes), false);
+      this.go(share);
+    });
+    main.addEventListener("change", (event) => {
+      if (event.target.dataset.proposes !== undefined) this.show();
+    });
+    main.addEventListener("click", async (event) => {
+      const button = event.target.closest("button[data-copies]");
+      if (!button) return;
+      const box = document.querySelector(`[data-toml="${button.dataset.copies}"]`);
+      let copied = true;
+      try {
+        await navigator.clipboard.writeText(box.textContent);
+      } catch {
+        copied = this.copySelected(box);
+      }
+      this.id("copied").textContent = copied ? "Copied: paste it into the manifest" : "Not copied: open TOML, and select it";
+    });
+  }
+
+  // The older way, where a page may not write to the clipboard.
+  copySelected(box) {
+    const area = document.createElement("textarea");
+    area.value = box.textContent;
+    document.body.append(area);
+    area.select();
+    const done = document.execCommand("copy");
+    area.remove();
+    return done;
+  }
+
+  // The sliders of proposals show what the view does.
+  showProposal() {
+    const { state } = this;
+    for (const slider of document.querySelectorAll("[data-proposes]")) {
+      const on = state.motion && state.motion === state.motions[slider.dataset.proposes];
+      slider.value = on ? String(Math.round(500 * (state.time + 1))) : "500";
+      const text = on ? this.moment(state.motion, state.time) : "";
+      slider.closest(".proposed-tools").querySelector("output").textContent = text;
+      if (text) slider.setAttribute("aria-valuetext", text);
+      else slider.removeAttribute("aria-valuetext");
+    }
   }
 
   // Ticks on the slider, and a button for each that goes there.
@@ -485,6 +539,7 @@ class Controls {
     const struck = state.struck.map((mark) => mark.text);
     slider.setAttribute("aria-valuetext", [text, ...struck].join("; "));
     this.id("clock").textContent = text;
+    this.showProposal();
     if (motion.kind === "simulation") {
       document.querySelectorAll("svg[data-from]").forEach((plot) => {
         const { from, to, left, right } = plot.dataset;
