@@ -271,11 +271,16 @@ def _source(suffix: str) -> Callable[[bytes], None]:
 
 
 def _scene(data: bytes) -> None:
+    """Reads a PLY or an OFF as either; refused where both are."""
     from kinform.form.meshes.by_trimesh import read_by_trimesh
 
-    for kind in ("ply", "off"):
+    try:
+        _mesh(read_by_trimesh(data, "ply"))
+    except MeshError:
+        _mesh(read_by_trimesh(data, "off"))
+    else:
         with contextlib.suppress(MeshError):
-            _mesh(read_by_trimesh(data, kind))
+            _mesh(read_by_trimesh(data, "off"))
 
 
 def _threemf(data: bytes) -> None:

@@ -7,11 +7,11 @@ import json
 import numpy as np
 import pytest
 import trimesh
+from support.sealing import editing
 from tests.form.test_other_scenes import BOX, MM, dae, of_mesh, threemf
 from tests.support.places import FIXTURES
 from tests.support.robots import urdf, write
 from tests.support.scenes import scene_of
-from tests.support.sealing import editing
 
 import kinform
 from kinform import exports, form, results

@@ -128,6 +128,7 @@ BAD = {
     "empty": (lambda text: "", "no STEP"),
     "zipped": (lambda text: "PK\x03\x04" + text, "compressed"),
     "no data": (lambda text: text[: text.index("DATA;")] + "DATA;\nENDSEC;\nEND-ISO-10303-21;\n", ""),
+    "no unit of length": (lambda text: text.replace("LENGTH_UNIT() ", ""), "no unit of length"),
     "a bracket too many": (lambda text: text.replace("CARTESIAN_POINT('',(0.", "CARTESIAN_POINT('',((0.", 1), ""),
     "a number beyond all": (lambda text: text.replace("(0.,0.,50.)", "(0.,0.,1.E400)"), "cannot read"),
     "a transformation of nothing": (

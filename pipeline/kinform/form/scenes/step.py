@@ -32,6 +32,7 @@ AGAIN = "export it again, as AP214 or AP242"
 _PREFIXES = {b"$": "m", b".MILLI.": "mm", b".CENTI.": "cm", b".MICRO.": "um"}
 _NAMED = {b"INCH": "in", b"FOOT": "ft"}
 _COMMENT = re.compile(rb"/\*.*?\*/", re.DOTALL)
+_LENGTH = re.compile(rb"\bLENGTH_UNIT\s*\(", re.IGNORECASE)
 _SI = re.compile(rb"SI_UNIT\s*\(\s*(\$|\.[A-Z]+\.)\s*,\s*\.METRE\.\s*\)")
 _CONVERSION = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'(INCH|FOOT)'", re.IGNORECASE)
 _FAILS = re.compile(r"Fails Count\s*:\s*(\d+)")
@@ -77,6 +78,8 @@ def _check_frame(data: bytes) -> None:
     if b"END-ISO-10303-21" not in data[-STEP_END:]:
         last = data.rstrip().count(b"\n") + 1
         raise MeshError([Fault("is cut short: END-ISO-10303-21 is missing at its end", EXPORT, last)])
+    if not _LENGTH.search(data):
+        raise MeshError([Fault("states no unit of length (LENGTH_UNIT): its lengths could be of any", EXPORT)])
 
 
 def _unit(data: bytes) -> str | None:

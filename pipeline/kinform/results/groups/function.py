@@ -10,7 +10,7 @@ import h5py
 from kinform.model.function import Drive, Function, Law, SimulationRequest
 from kinform.results.held import HeldGroup
 from kinform.results.layout import Layout, Ragged, Row, Rows, Table, Texts
-from kinform.results.records import columns_of, hint
+from kinform.results.records import columns_of, defaults, hint
 from kinform.results.table import read_rows, text, write_rows
 
 
@@ -35,7 +35,7 @@ class _Drives:
             points.write(group, Law, [drive.law or Law("") for drive in drives])
 
     def read(self, group: HeldGroup, cls: type, rows: Rows) -> None:
-        drives = read_rows(group, "drives", self.columns)
+        drives = read_rows(group, "drives", self.columns, defaults(Drive))
         laws: Rows = [{name: row.pop(column.field) for name, column in self.named} for row in drives]
         for row, law in zip(drives, laws, strict=True):
             law.update({column.field: row.pop(column.field) for column in self.numbers})
