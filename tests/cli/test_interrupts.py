@@ -78,7 +78,7 @@ WORK = {
     "kinform.stages.mass": ("mass", "r.h5", "-o", "r.h5"),
     "kinform.stages.simulate": ("simulate", "r.h5", "-o", "r.h5"),
     "kinform.stages.check": ("check", "r.h5", "-o", "r.h5"),
-    "kinform.results.read": ("show", "r.h5"),
+    "kinform.results.read_at_need": ("show", "r.h5"),
 }
 
 
