@@ -15,7 +15,8 @@ from kinform.study.statistics import Statistics, statistics, whole_yield
 _STYLE = """
 :root{color-scheme:light dark;--line:#8886;--ink:#1668c4}
 body{font:15px/1.5 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem}
-table{border-collapse:collapse;margin:.5rem 0 1.5rem}th,td{padding:.2rem .8rem .2rem 0;text-align:right;
+h1,p{overflow-wrap:anywhere}.table{overflow-x:auto;margin:.5rem 0 1.5rem}table{border-collapse:collapse}
+th,td{padding:.2rem .8rem .2rem 0;text-align:right;
 border-bottom:1px solid var(--line)}th:first-child,td:first-child{text-align:left}
 figure{display:inline-block;margin:.5rem 1rem 1rem 0}figcaption{font-size:.85rem}
 svg{background:#8881}svg rect,svg circle{fill:var(--ink)}svg line{stroke:#c33}svg text{font-size:11px;fill:currentColor}
@@ -149,7 +150,8 @@ def _figure(caption: str, drawing: str) -> str:
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     top = "".join(f"<th>{escape(text)}</th>" for text in head)
     lines = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{top}</tr></thead><tbody>{lines}</tbody></table>"
+    table = f"<table><thead><tr>{top}</tr></thead><tbody>{lines}</tbody></table>"
+    return f'<div class="table" role="group" tabindex="0" aria-label="table: {escape(head[0])}">{table}</div>'
 
 
 def _n(value: object) -> str:

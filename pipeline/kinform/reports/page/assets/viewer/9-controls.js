@@ -115,7 +115,7 @@ class Controls {
       mark(`[data-body="${index}"]`);
     } else if (kind === "finding") {
       const finding = scene.findings[index];
-      text = `Finding ${finding.code}: ${[...finding.parts, ...finding.joints].join(", ")}`;
+      text = [`Finding ${finding.code}`, [...finding.parts, ...finding.joints].join(", ")].filter(Boolean).join(": ");
       mark(`[data-finding="${index}"]`);
     }
     this.id("chosen").textContent = text || "Nothing is chosen";
