@@ -240,3 +240,22 @@ def test_sliders_go_in_the_designers_sense(derive_design):
         for t in (-0.7, 0.0, 0.4):
             poses, same = before.at(t), after.at(-t)
             assert all(np.abs(poses[name] - same[name]).max() < 1e-12 for name in poses)
+
+
+def test_only_what_was_compared_with_a_function_is_ticked(derive_design):
+    design = derive_design(SEEKER)
+    passed = tuple(replace(rule, outcome="passed") for rule in design.report.rules)
+    whole = replace(design, report=CheckReport((), passed))
+    silent = replace(whole, assembly=replace(whole.assembly, function=type(whole.assembly.function)()))
+    assert not silent.assembly.function.stated
+    assert (facts.verdict_of(whole).kind, facts.verdict_of(whole).sign) == ("consistent", "✓")
+    told = facts.verdict_of(silent)
+    assert (told.kind, told.sign) == ("unverified", "–")
+    assert "geometry only" in told.line
+
+
+def test_counts_of_rows_are_told_as_a_person_would(derive_design, page_of):
+    found = read(page_of(derive_design(SEEKER)))
+    text = " ".join(found.texts)
+    assert re.search(r"\b\d+ agree\b", text)
+    assert not re.search(r"\b(?!1 )\d+ (agrees|disagrees|contradicts)\b", text)

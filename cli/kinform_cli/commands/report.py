@@ -92,7 +92,7 @@ def report(
         step = lambda done, total: working.step("pictures", done, total)
         images = {} if png is None else page_pictures(artist, notes=notes, progress=step)
     files.write_text(page, text)
-    console.say(f"{page}: {len(text.encode()) / 1e6:.2g} MB, to be opened in a browser")
+    console.say(f"{page}: {max(len(text.encode()) / 1e6, 0.1):.1f} MB, to be opened in a browser")
     if png is not None:
         for name, data in images.items():
             files.write_bytes(png / name, data)

@@ -63,7 +63,7 @@ def _groups(comparison: Comparison, numbers: dict[str, int]) -> list[dict[str, A
             out.append({"title": titles[0], "part": number, "changes": changes})
     if comparison.changes and not groups:
         changes = [_split(change_lines(change)) for change in comparison.changes]
-        out.append({"title": "of no part that was changed:", "part": -1, "changes": changes})
+        out.append({"title": "though no part was changed:", "part": -1, "changes": changes})
     return out
 
 

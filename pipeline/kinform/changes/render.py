@@ -39,7 +39,7 @@ def cause_lines(group: Consequences, comparison: Comparison) -> list[str]:
     """What was done, where this group is the only one of it; else by whose names it follows."""
     names = list(dict.fromkeys(one_line(cause.part) for cause in group.causes))
     if not names:
-        return ["of no part that was changed:"] if group.changes else []
+        return ["of parts that were not changed:"] if group.changes else []
     every = len(names) == len({cause.part for cause in comparison.causes})
     if len(names) > 1:
         return [f"of {'all of them' if every else listed(names)} together:"] if group.changes else []

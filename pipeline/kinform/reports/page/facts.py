@@ -82,9 +82,11 @@ def verdict_of(design: Design) -> Verdict:
     if design.report is None:
         return Verdict("unverified", "?", "not verified: the rules have not been run", "run `kinform check`")
     line = verdict_line(design.report)
-    kind = line if line in ("consistent", "inconsistent") else "unverified"
-    sign = {"consistent": "✓", "inconsistent": "✕", "unverified": "?"}[kind]
-    told = verdict_told(design.report, design.assembly.function.stated)
+    stated = design.assembly.function.stated
+    kind = line if line == "inconsistent" or (line == "consistent" and stated) else "unverified"
+    unsure = "–" if line == "consistent" else "?"
+    sign = {"consistent": "✓", "inconsistent": "✕", "unverified": unsure}[kind]
+    told = verdict_told(design.report, stated)
     return Verdict(kind, sign, told, f"{severity_counts(design.report)} · {rule_counts(design.report)}")
 
 
