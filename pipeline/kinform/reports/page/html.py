@@ -87,7 +87,8 @@ def _bodies(design: Design, scene: Scene) -> list[tuple[int, Body, str, list[tup
 def _counts(kinds: Iterable[str], order: Sequence[str]) -> str:
     """ "1 disagrees, 12 agree", in this order."""
     found = Counter(kinds)
-    return ", ".join(f"{found[kind]} {MANY.get(kind, kind) if found[kind] > 1 else kind}" for kind in order if found[kind])
+    told = ((found[kind], MANY.get(kind, kind) if found[kind] > 1 else kind) for kind in order if found[kind])
+    return ", ".join(f"{count} {words}" for count, words in told)
 
 
 MANY = {"agrees": "agree", "disagrees": "disagree", "contradicts": "contradict"}
