@@ -1,16 +1,18 @@
 # Two commands do all the set-up: `make demo` runs kinform on the bundled seeker, `make test` runs all checks but for
 # the few tests that take minutes, which `make test-slow` runs, and the copies of all fixtures of `make test-sweep`.
+# `make test-least` runs them with the oldest packages allowed.
 # Tests that need other programs (GHDL, rumoca, MuJoCo, Drake, …) skip unless `make validators` has installed them.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
+LEAST ?= $(VENV)-least
 # What these need besides is not needed here: GHDL is a program, and yourdfpy's trimesh is ours.
 ALONE = eitri-hdl==0.1.0 yourdfpy==0.0.60
 DEMO = fixtures/seekers/seeker_2dof/seeker_2dof.toml
 OUT ?= build
 WORKERS ?= 2
 
-.PHONY: demo test test-slow test-sweep fuzz lint validators lock fixtures docs clean
+.PHONY: demo test test-slow test-sweep test-least fuzz lint validators lock fixtures docs clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -29,6 +31,17 @@ test-slow: $(VENV)/.developing
 
 test-sweep: $(VENV)/.developing
 	$(BIN)/python -m pytest -n $(WORKERS) -m sweep
+
+# The suite with the oldest version of each package that pyproject.toml allows, in an environment of its own.
+test-least: $(LEAST)/.installed
+	$(LEAST)/bin/python -m pytest -n $(WORKERS) --dist worksteal
+
+$(LEAST)/.installed: pyproject.toml
+	$(PYTHON) -m venv $(LEAST)
+	$(LEAST)/bin/python -m pip install --quiet uv
+	$(LEAST)/bin/uv pip install --quiet --python $(LEAST)/bin/python --resolution lowest-direct \
+	  --editable '.[dev,step,xacro,batch]'
+	@touch $@
 
 # Mutated files for every format that is read, ten minutes in all: see fuzz/README.md.
 fuzz: $(VENV)/.developing
@@ -77,4 +90,4 @@ docs: $(VENV)/.developing
 	$(BIN)/python docs/generate.py
 
 clean:
-	rm -rf $(VENV) $(OUT) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(LEAST) $(OUT) dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
