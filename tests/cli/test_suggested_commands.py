@@ -70,10 +70,18 @@ def refusal(words: list[str]) -> str | None:
         return f"{left} too many"
     for parameter in command.params:
         value = values.get(parameter.name)
-        choices = set(kind) if isinstance(kind := parameter.type_descriptor.annotation, EnumType) else None
+        choices = allowed(parameter)
         if choices and isinstance(value, str) and value != HOLE and not value.isupper() and value not in choices:
             return f"{value!r} is none of {sorted(choices)}"
     return None
+
+
+def allowed(parameter) -> set[str]:
+    """The words that a parameter takes, where these are few; typer 0.20 and before keep them as click does."""
+    if not hasattr(parameter, "type_descriptor"):
+        return {getattr(choice, "value", choice) for choice in getattr(parameter.type, "choices", ())}
+    kind = parameter.type_descriptor.annotation
+    return set(kind) if isinstance(kind, EnumType) else set()
 
 
 def sources() -> list[Path]:
