@@ -66,6 +66,9 @@ def looked_at(source: Path, *, at_need: bool = False) -> Design:
     from kinform.form.sources import AS_IT_IS
     from kinform_cli.options import cores
 
+    if source.is_dir():
+        (source, *others) = files.sources_of([source])
+        files.is_manifest([source, *others], None)
     if source.suffix.lower() in RESULTS or not is_design(source):
         return files.read(source, at_need=at_need)
     return whole_design(

@@ -205,30 +205,43 @@ def _escape(name: str, *, target: bool = False) -> str:
 
 
 def sources_of(named: Sequence[Path]) -> list[Path]:
-    """What is named; of a folder the manifest in it. InputError where there is none, or several."""
+    """What is named; of a folder the manifest in it, else the robot description, else the CAD or scene file, else all
+    meshes. InputError where there is none of them, or several of the first kind that there is."""
     if len(named) != 1 or not named[0].is_dir():
         return list(named)
     from kinform.foundation.meant import first_names
 
-    manifests = [path for path in sorted(named[0].glob("*.toml")) if _is_manifest_file(path)]
-    if len(manifests) == 1:
-        return manifests
-    if not manifests:
-        raise refuse(
-            "there is no manifest in this folder",
-            file=named[0],
-            remedy="write one: kinform init *.stl --units mm -o NAME.toml",
-        )
+    inside = sorted(path for path in named[0].iterdir() if path.is_file())
+    for kind, ends in (("manifest", (".toml",)), ("robot description", DESCRIPTIONS), ("CAD or scene file", SCENES)):
+        found = [path for path in inside if path.suffix.lower() in ends]
+        found = [path for path in found if _is_of_this_kind(path)]
+        if len(found) == 1:
+            return found
+        if found:
+            raise refuse(
+                f"there are several {kind}s in this folder: {first_names(path.name for path in found)}",
+                file=named[0],
+                remedy=f"name one of them, as in: {command('kinform', 'run', found[0])}",
+            )
+    if meshes := [path for path in inside if path.suffix.lower() in MESHES]:
+        return meshes
     raise refuse(
-        f"there are several manifests in this folder: {first_names(path.name for path in manifests)}",
+        "there is no manifest in this folder, and no robot description, CAD file or mesh",
         file=named[0],
-        remedy=f"name one of them, as in: {command('kinform', 'run', manifests[0])}",
+        remedy="write one: kinform init PARTS/*.stl --units mm -o NAME.toml",
     )
 
 
-def _is_manifest_file(path: Path) -> bool:
-    """Whether it has what a manifest begins with; a file that cannot be read as TOML may be one."""
+def _is_of_this_kind(path: Path) -> bool:
+    """Whether a TOML file has what a manifest begins with, or an XML file is an MJCF; of other names always. A file
+    that cannot be read as TOML may be a manifest."""
     import tomllib
+
+    if path.suffix.lower() == ".xml":
+        with path.open("rb") as stream:
+            return b"<mujoco" in stream.read(1 << 16)
+    if path.suffix.lower() != ".toml":
+        return True
 
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -38,6 +38,7 @@ def import_(
     depfile: Depfile = None,
 ) -> None:
     """Read a manifest or a robot description into a results file, meshes included; other stages need nothing else."""
+    sources = files.sources_of(sources)
     manifest = files.is_manifest(sources, units)
     files.check_outputs(sources, output, depfile)
     files.warn_if_not_whole(output)

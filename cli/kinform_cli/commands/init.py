@@ -49,6 +49,7 @@ def init(
     force: Annotated[bool, typer.Option("--force", help="Overwrite a manifest that exists.")] = False,
 ) -> None:
     """Write a manifest: for meshes and CAD files, ready to be completed; of a robot description, all that it says."""
+    meshes = files.sources_of(meshes)
     described = files.is_description(meshes, units)
     if output is not None:
         if output.exists() and not force:
