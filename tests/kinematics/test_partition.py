@@ -183,3 +183,20 @@ def test_a_pin_stays_where_it_is_tight_and_may_go_with_either(tight):
     placed = partition(whole, contacts.find(whole, found), (hinge,)).placed
     assert placed["pin"].body == placed[tight].body
     assert placed["pin"].unclear
+
+
+def test_a_horn_may_go_either_way_and_a_plate_that_is_screwed_on_beside_the_axis_may_not():
+    """Both have screw holes in line with the arm's, and the turn leaves both free: the horn goes round its axis."""
+    solids = stack() | {"horn": rod(12, 6, 10, 48) - rod(5.02, 5, 11, 48)}
+    for x, y in ((0, 8.5), (0, -8.5)):
+        hole = rod(1, -20, 20, 24).translate((x, y, 0))
+        solids = {n: s - hole if n in ("horn", "low") else s for n, s in solids.items()}
+    del solids["bolt_1"], solids["bolt_2"]
+    whole = assembly(*(part(name, solid, np.eye(4)) for name, solid in solids.items()))
+    found = {p.mesh.digest: surfaces.recover(p.mesh, whole.tolerances) for p in whole.parts}
+    joints = [moved(ARM, np.eye(4), 1e-3)]
+    placed = partition(whole, contacts.find(whole, found), joints).placed
+    assert placed["horn"].body == placed["high"].body == placed["low"].body
+    assert placed["horn"].unclear
+    assert placed["horn"].margin > 100.0  # screws speak for the arm
+    assert not placed["high"].unclear

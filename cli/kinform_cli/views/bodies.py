@@ -32,16 +32,33 @@ def render(design: Design) -> RenderableType:
     unclear = sorted((one for one in kinematics.membership if one.either), key=lambda one: (one.margin, one.part))
     if not unclear:
         return stacked(rows, *alone)
+    lost = [one for one in unclear if one.how == "nearest"]
+    touching = [one for one in unclear if one.how != "nearest"]
+    held = [_touching(touching)] if touching else []
+    return stacked(rows, *alone, *held, *([_lost(lost)] if lost else []))
+
+
+def _touching(unclear: list[Membership]) -> RenderableType:
+    """One row a part that touches what is in other bodies, too."""
     title = f"\n{counted(len(unclear), 'part')} that could be in another body, the least clear first"
     names, texts = ("part", "is in", "could be in"), ("by", "evidence")
     more = Rows(*names, "by", "how clear", "evidence", title=title, right=["how clear"], names=names, texts=texts)
     for one in unclear:
         more.add(one.part, one.body, one.other or NONE, _HOW[one.how], _clear(one), one.evidence or NONE)
     legend = "how clear: by how much breaking the contacts of the other body would be dearer (a journal 40, a flat 300)"
-    return stacked(rows, *alone, more, Text(legend, style="dim"))
+    return stacked(more, Text(legend, style="dim"))
 
 
-_HOW = {"held": "no joint parts it", "cut": "least contact parted", "nearest": "touches nothing: nearest"}
+def _lost(unclear: list[Membership]) -> Rows:
+    """One row a body with what touches nothing and is nearest to it."""
+    title = f"\n{counted(len(unclear), 'part')} that nothing holds: each is in the body that is nearest"
+    more = Rows("is in", "parts", title=title, names=["is in"], texts=["parts"])
+    for body in sorted({one.body for one in unclear}):
+        more.add(body, ", ".join(str(one.part) for one in unclear if one.body == body))
+    return more
+
+
+_HOW = {"held": "no joint parts it", "cut": "least contact parted"}
 
 
 def _clear(one: Membership) -> str:

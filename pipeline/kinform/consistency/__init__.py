@@ -40,7 +40,7 @@ __all__ = [
     "with_baseline",
 ]
 
-CODE_VERSION: int = 26
+CODE_VERSION: int = 27
 
 __getattr__ = first_used(
     __name__,

@@ -421,7 +421,8 @@ class Membership:
     other: BodyName
     """The next best body; empty where none is in question."""
     either: bool
-    """Whether it could be in that body as well, as far as joints and contact tell."""
+    """Whether it could be elsewhere as well: next to nothing but journals and faces round a joint's axis, and what
+    suggests screws, speaks for one side; or it touches nothing."""
     evidence: str = ""
     """What holds it there, what it was parted from, and which standard part it is."""
 

@@ -23,21 +23,33 @@ from kinform.model.findings import Finding
 def check(context: Context) -> Findings:
     """All such parts, as one finding."""
     unclear = sorted((m for m in context.kinematics.membership if m.either), key=lambda m: (m.margin, m.part))
-    return [] if not unclear else [_finding(context, [str(one.part) for one in unclear])]
+    touching = [str(one.part) for one in unclear if one.how != "nearest"]
+    alone = [str(one.part) for one in unclear if one.how == "nearest"]
+    return [] if not unclear else [_finding(context, touching, alone)]
 
 
-def _finding(context: Context, names: list[str]) -> Finding:
-    rest = len(names) - NAMED_UNCLEAR
-    more = f" and {counted(rest, 'more part')}" if rest > 0 else ""
+def _finding(context: Context, touching: list[str], alone: list[str]) -> Finding:
+    said = [
+        f"{counted(len(names), 'part')} {what}: {_some(names)}"
+        for names, what in (
+            (touching, "could be in another body, as far as joints and contact tell"),
+            (alone, "that touched nothing went with the nearest"),
+        )
+        if names
+    ]
     return RULE.finding(
-        names,
-        f"{counted(len(names), 'part')} could be in another body, as far as joints and contact tell: "
-        f"{quoted(names[:NAMED_UNCLEAR])}{more}",
+        touching + alone,
+        "; ".join(said),
         found="placed by the least contact that is parted, or nearest",
         intended="parts that something holds in one body",
         declared=context.assembly.source,
         remedy="Name them in a [[group]] where it matters; `kinform show F.h5 bodies` lists them.",
     )
+
+
+def _some(names: list[str]) -> str:
+    rest = len(names) - NAMED_UNCLEAR
+    return quoted(names[:NAMED_UNCLEAR]) + (f" and {counted(rest, 'more part')}" if rest > 0 else "")
 
 
 RULE = Rule("KF208", "body-unclear", "note", __doc__, check, needs=("kinematics",))

@@ -39,7 +39,8 @@ class Placed:
     along: tuple[PartName, ...] = ()
     """Parts that would go there with it."""
     either: bool = False
-    """Whether the joints would let it be in that body as well."""
+    """Whether it could as well be elsewhere by contact alone, as far as joints may part it; of what touches nothing,
+    always."""
     evidence: str = ""
     """What holds it there, what was parted, and which standard part it is."""
 
@@ -114,7 +115,7 @@ def _placed(assembly: Assembly, graph: Graph, labelling: Labelling) -> dict[Part
             continue
         m = margin.get(piece, Margin(float("inf"), None, (), moves=False))
         along = tuple(sorted(part for n in m.along for part in members[n] if part != name))
-        placed[name] = Placed(name, label, "cut", m.cost, m.label, along, m.moves)
+        placed[name] = Placed(name, label, "cut", m.cost, m.label, along, m.plain < constants.EITHER_WAY)
     models: dict[PartName, fcl.BVHModel] = {}
     for name in lost:
         near = _nearest(assembly, name, known, models)

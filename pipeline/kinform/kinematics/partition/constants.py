@@ -47,6 +47,11 @@ BROKEN = 20000.0
 """Price of a contact between bodies that no joint of theirs may part: legs that cross are drawn touching, too."""
 EITHER = 25.0
 """Margin up to which a part may go either way: less than the price of a flange."""
+EITHER_WAY = 150.0
+"""The same without what suggests that parts are fastened, where joints may part all that would be parted: half a flat
+beside the axis, more than three journals. Horns are screwed to what they drive or to what drives them, and screw holes
+line up either way. On 17 robots the greatest of a part whose author put it elsewhere is 70, and no part's lies between
+120 and 200: with 300 as many are listed for nothing as for a reason."""
 PARTED = 100.0
 """Price up to which contact is made to be parted: it does not say that two names stand for one body."""
 HELD_ACROSS = 250.0

@@ -182,7 +182,7 @@ def _edges(
         for joint, price in parted.items():
             for labels in (sides[joint], sides[joint][::-1]):
                 table[labels] = min(price + touch, table.get(labels, np.inf))
-        edges.append(Edge(ends, table, costs.held[pair] + touch))
+        edges.append(Edge(ends, table, costs.held[pair] + touch, costs.held[pair] - constants.BROKEN))
     return edges
 
 

@@ -8,7 +8,7 @@ label. What seeds separate is solved on its own, so that programs stay small.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,10 +28,16 @@ class Edge:
     """Price for the labels of the first and the second end, where a joint of the two bodies parts it."""
     broken: float
     """Price for any other two labels."""
+    hint: float = 0.0
+    """What of these prices is there because something suggests that its ends are fastened."""
 
     def price(self, first: int, second: int) -> float:
         """What it costs that its ends have these labels."""
         return 0.0 if first == second else min(self.parted.get((first, second), self.broken), self.broken)
+
+    def plain(self, first: int, second: int) -> float:
+        """The same by contact alone, whatever suggests that its ends are fastened."""
+        return 0.0 if first == second else self.price(first, second) - self.hint
 
     def relabelled(self, new: Sequence[int]) -> Edge:
         """The same with label k called new[k]; a joint within one body parts nothing."""
@@ -40,7 +46,7 @@ class Edge:
             ends = (new[first], new[second])
             if ends[0] != ends[1]:
                 table[ends] = min(price, table.get(ends, price))
-        return Edge(self.ends, table, self.broken)
+        return Edge(self.ends, table, self.broken, self.hint)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +190,8 @@ class Margin:
     along: tuple[int, ...]
     moves: bool
     """Whether joints may part all that would be parted then: nothing but likelihood speaks against it."""
+    plain: float = np.inf
+    """By how much such a label is dearer at least by contact alone: screw holes line up across true joints, too."""
 
 
 def margins(labels: Sequence[int | None], seeds: Mapping[int, int], edges: Sequence[Edge]) -> dict[int, Margin]:
@@ -208,7 +216,7 @@ def margins(labels: Sequence[int | None], seeds: Mapping[int, int], edges: Seque
         touched = {labels[n] for e in outward for n in e.ends if n not in members}
         across = {b for e in outward for a, b in e.parted if a == label}
         for other in sorted({one for one in touched | across if one is not None} - {label}):
-            change, moves = 0.0, True
+            change, plain, moves = 0.0, 0.0, True
             for edge in outward:
                 inner = edge.ends[0] in members
                 beyond = labels[edge.ends[1] if inner else edge.ends[0]]
@@ -216,10 +224,14 @@ def margins(labels: Sequence[int | None], seeds: Mapping[int, int], edges: Seque
                     continue
                 then, now = (((one, beyond) if inner else (beyond, one)) for one in (other, label))
                 change += edge.price(*then) - edge.price(*now)
+                plain += edge.plain(*then) - edge.plain(*now)
                 moves &= other == beyond or then in edge.parted
             for node in members:
-                if node not in best or (not moves, change) < (not best[node].moves, best[node].cost):
-                    best[node] = Margin(change, other, tuple(sorted(members)), moves)
+                known = best.get(node)
+                least = min(np.inf if known is None else known.plain, plain if moves else np.inf)
+                if known is None or (not moves, change) < (not known.moves, known.cost):
+                    known = Margin(change, other, tuple(sorted(members)), moves)
+                best[node] = replace(known, plain=least)
 
     for members in clusters.values():
         offer(members)
