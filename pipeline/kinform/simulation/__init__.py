@@ -18,6 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CODE_VERSION", "Course", "SolverSettings", "port_model", "simulate", "simulate_system"]
 
-CODE_VERSION: int = 16
+CODE_VERSION: int = 17
 
 __getattr__ = first_used(__name__, {"Course": "of_system", "simulate_system": "of_system"})

@@ -132,6 +132,12 @@ MOVES_WITHOUT_MASS = 1e-6
 
 LEAST_MOTION = 1e-9
 """Share of the greatest rate above which rates are motions."""
+EVEN = 0.1
+"""Share of the singular value before it above which one goes on with those that count: of n four-bars in a row the
+least are 3, 2 and 1 times 0.27/n of 3.3, and fall below 1e-4 of the largest from n = 150 on. A choice."""
+FALLEN = 1e-4
+"""Share of the singular value before it below which one is nothing: rounding is 1e-12, what snapping leaves 1e-8. Where
+values neither go on nor fall so, the share of the largest decides alone. A choice."""
 START_SHARE = 0.03
 """Of a motion (rad, or lengths) from the start that shows whether the loops bear it."""
 START_GAP = 0.01

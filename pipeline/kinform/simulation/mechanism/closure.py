@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinform.model.arrays import Array, Ints
+from kinform.simulation.constants import EVEN, FALLEN
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.settings import SolverSettings
 
@@ -49,11 +50,30 @@ def factor(rows: Array, scale: Array, rank: int) -> Factor:
 
 
 def rank_of(rows: Array, scale: Array, free: float) -> int:
-    """How many rows (m, k) are independent: singular values above `free` times the largest."""
+    """How many rows (m, k) are independent: `counted` singular values."""
     if rows.size == 0:
         return 0
-    values = np.linalg.svd(rows * scale, compute_uv=False)
-    return int(np.count_nonzero(values > free * values[0])) if values[0] > 0.0 else 0
+    return int(counted(np.asarray(np.linalg.svd(rows * scale, compute_uv=False), dtype=np.float64), free))
+
+
+def counted(values: Array, free: float) -> Ints:
+    """(…) how many of the singular values (…, k), descending, count: those above `free` times the largest; and where
+    they go on evenly below that, as those of a long row of loops do, all before they fall to nothing."""
+    found = np.asarray(np.count_nonzero(values > free * values[..., :1], axis=-1))
+    some = values[..., 0] > 0.0
+    found = np.where(some, found, 0)
+    following = np.zeros_like(values)
+    following[..., :-1] = values[..., 1:]
+    even, fallen = following > EVEN * values, following < FALLEN * values
+    fallen[..., -1] = False  # where they end nothing says that they have not gone on
+    for place in np.argwhere(some & (found < values.shape[-1])):
+        at = tuple(place)
+        last = int(found[at]) - 1
+        while even[at][last]:
+            last += 1
+        if fallen[at][last]:
+            found[at] = last + 1
+    return found
 
 
 def settle(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.foundation.algebra.spatial import along_motion, cross_motion
+from kinform.foundation.algebra.spatial import along_motion, cross_motion, rotation_vector
 from kinform.model.arrays import Array
 from kinform.simulation.mechanism.mechanism import Mechanism
 
@@ -46,6 +46,18 @@ def poses_at(mechanism: Mechanism, q: Array) -> Array:
     for link in range(1, len(mechanism.parent)):
         X[:, link] = X[:, mechanism.parent[link]] @ own[link]
     return X
+
+
+def gaps_at(mechanism: Mechanism, poses: Array, q: Array) -> Array:
+    """(T, 6C + G) what keeps the loops from closing at poses (T, L, 4, 4) and positions (T, nq), as `Mechanism.gap`."""
+    geared = q @ mechanism.gear_q.T
+    if len(mechanism.closures) == 0:
+        return np.asarray(geared)
+    ends, targets = (poses[:, side].reshape(-1, 4, 4) for side in mechanism.closures.T)
+    R = targets[:, :3, :3] @ ends[:, :3, :3].transpose(0, 2, 1)
+    p = targets[:, :3, 3] - (R @ ends[:, :3, 3, None])[..., 0]
+    loops = np.concatenate([rotation_vector(R), p / mechanism.length], axis=1)
+    return np.concatenate([loops.reshape(len(q), -1), geared], axis=1)
 
 
 def states_at(mechanism: Mechanism, q: Array, v: Array, a: Array) -> States:

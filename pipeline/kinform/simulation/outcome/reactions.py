@@ -1,10 +1,9 @@
 """Wrenches in the joints, from motion already whole: Newton and Euler for every body, backwards.
 
 A tree of joints carries what its bodies need; joints left over close loops, and their wrenches λ are
-unknown. Every joint transmits along its freedoms what acts on its shaft: linear conditions on λ. Where
-redundancy leaves λ a choice, taken is the one with the least Σ(|f|² + |τ|²/L²) over all joints, about
-their points, which does not depend on which joints were left over (Haug, Computer Aided Kinematics and
-Dynamics, 1989, section 6.6, for the reactions; the choice is that of the pseudoinverse).
+unknown (`loop_wrenches`). Where redundancy leaves λ a choice, taken is the one with the least Σ(|f|² + |τ|²/L²)
+over all joints, about their points, which does not depend on which joints were left over (Haug, Computer Aided
+Kinematics and Dynamics, 1989, section 6.6, for the reactions; the choice is that of the pseudoinverse).
 """
 
 from __future__ import annotations
@@ -14,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinform.foundation.algebra.spatial import cross_force
-from kinform.foundation.algebra.vectors import cross_matrix
 from kinform.model.arrays import Array, Flags
-from kinform.simulation.constants import CHUNK, UNDETERMINED_SHARE
+from kinform.simulation.constants import CHUNK
 from kinform.simulation.mechanism.closure import rank_of
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.states import States
 from kinform.simulation.mechanism.topology import arrange
 from kinform.simulation.outcome.gear_forces import Transmitted, toothed, transmitted
+from kinform.simulation.outcome.loop_wrenches import Shares, about, add_loops
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,6 +186,11 @@ class Network:
                 if mechanism.moves[a, v] > mechanism.moves[b, v]:
                     self.sign[v] = -1.0
 
+    def shares(self) -> Shares:
+        """What the wrenches of the joints left over do to all joints."""
+        closing = np.array(self.closing, dtype=np.int64)
+        return Shares(self.by_loops, closing, self.owner, self.gears, self.length, self.scale)
+
     def spread(self, needed: Array) -> Array:
         """(T, B, 6) over all bodies, from those with mass."""
         out = np.zeros((len(needed), self._bodies[1], 6))
@@ -206,48 +210,7 @@ def _solve(
     network: Network, screws: Array, needed: Array, points: Array, effort: Array, rank: int
 ) -> tuple[Array, Flags]:
     """(T, J, 6) wrenches on the second bodies about the joints' points, and (J, 6) what is not determined."""
-    count, joints = len(needed), len(network.first)
     carried = np.einsum("jb,tbk->tjk", network.by_needs, needed)
-    loose = np.zeros((joints, 6), dtype=np.bool_)
-    loops = len(network.closing)
-    if loops == 0:
-        return _about(carried, points), loose
-    length = network.length
-    unit = np.array([length, length, length, 1.0, 1.0, 1.0])
-    # λ is sought about the points of its joints, torques over the length.
-    lever = np.zeros((count, loops, 6, 6))
-    lever[:] = np.diag(unit)
-    lever[..., :3, 3:] = cross_matrix(points[:, network.closing])
-    # Conditions: along every freedom, what acts on the shaft; gears pass efforts on among theirs.
-    S = screws * network.sign[:, None] / network.scale[:, None]
-    passed = np.einsum("nc,tnk,tckl->tncl", network.by_loops[network.owner], S, lever).reshape(count, -1, 6 * loops)
-    rest = effort / network.scale - np.einsum("tnk,tnk->tn", S, carried[:, network.owner])
-    if len(network.gears):
-        _, _, right = np.linalg.svd(network.gears / network.scale)
-        keep = right[len(network.gears) :]
-        passed, rest = keep @ passed, rest @ keep.T
-        rank -= len(network.gears)
-    left, values, right = np.linalg.svd(passed)
-    chosen = np.einsum("tmr,tm->tr", left[:, :, :rank], rest) / np.maximum(values[:, :rank], 1e-300)
-    special = np.einsum("trl,tr->tl", right[:, :rank], chosen)
-    open_ = right[:, rank:].transpose(0, 2, 1)
-    # All wrenches about their points, torques over the length: whole part, and what each λ adds.
-    whole = _about(carried, points) / unit
-    adds = np.einsum("jc,tckl->tjkcl", network.by_loops, lever).reshape(count, joints, 6, 6 * loops)
-    adds[:, :, :3] -= cross_matrix(points) @ adds[:, :, 3:]
-    adds = (adds / unit[:, None]).reshape(count, 6 * joints, 6 * loops)
-    whole = whole.reshape(count, -1) + np.einsum("tml,tl->tm", adds, special)
-    freedom = adds @ open_
-    if open_.shape[2]:
-        inner = freedom.transpose(0, 2, 1) @ freedom
-        answer = np.linalg.solve(inner, np.einsum("tmz,tm->tz", freedom, whole)[..., None])
-        whole = whole - (freedom @ answer)[..., 0]
-        loose = (np.abs(freedom).max(axis=(0, 2)) > UNDETERMINED_SHARE).reshape(joints, 6)
-    return whole.reshape(count, joints, 6) * unit, loose
-
-
-def _about(wrenches: Array, points: Array) -> Array:
-    """Wrenches (T, J, 6) about the centre taken to points (T, J, 3)."""
-    out = wrenches.copy()
-    out[..., :3] -= np.cross(points, wrenches[..., 3:])
-    return out
+    if not network.closing:
+        return about(carried, points), np.zeros((len(network.first), 6), dtype=np.bool_)
+    return add_loops(carried, network.shares(), screws * network.sign[:, None], points, effort, rank)

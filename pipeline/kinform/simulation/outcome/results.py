@@ -12,6 +12,7 @@ from kinform.foundation.algebra.spatial import quaternions, rotation_vector
 from kinform.model.arrays import Array, Ints
 from kinform.model.simulation import Simulation
 from kinform.simulation.constants import LEAST_DRIFT, RANK_CHUNK, SNUG, SUMMED_DRIFT, TRUSTED_DRIFT
+from kinform.simulation.mechanism.closure import counted
 from kinform.simulation.mechanism.dynamics import Dynamics
 from kinform.simulation.mechanism.mechanism import Mechanism
 from kinform.simulation.mechanism.states import States, states_at
@@ -179,12 +180,12 @@ def _residuals(mechanism: Mechanism, q: Array, states: States) -> Array:
 
 
 def _ranks(mechanism: Mechanism, states: States, free: float) -> Ints:
-    """(T,) rank of the loops: singular values above `free` times the largest."""
+    """(T,) rank of the loops: their `counted` singular values."""
     out = np.zeros(len(states.poses), dtype=np.int64)
     if not mechanism.closed or not mechanism.rates:
         return out
     for first in range(0, len(out), RANK_CHUNK):
         times = slice(first, first + RANK_CHUNK)
         values = np.linalg.svd(mechanism.closure(states.screws[times]) * mechanism.scale, compute_uv=False)
-        out[times] = np.count_nonzero(values > free * values[:, :1], axis=1)
+        out[times] = counted(np.asarray(values, dtype=np.float64), free)
     return out

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinform.model.arrays import Array
+from kinform.foundation.meant import first_names
+from kinform.model.arrays import Array, Flags, Ints
 from kinform.simulation import constants
 from kinform.simulation.mechanism.actuation import Actuation
-from kinform.simulation.mechanism.closure import factor, rank_of, settle
+from kinform.simulation.mechanism.closure import Factor, factor, rank_of, settle
 from kinform.simulation.mechanism.mechanism import Mechanism
+from kinform.simulation.mechanism.states import gaps_at, poses_at
 from kinform.simulation.settings import SolverSettings
 from kinform.simulation.solver.follow import Follower, Led
 
@@ -175,16 +177,40 @@ def loop_rank(mechanism: Mechanism, actuation: Actuation, start: Start, settings
 def torn_at_start(mechanism: Mechanism, actuation: Actuation, start: Start, rank: int, settings: SolverSettings) -> str:
     """Joints that seem free to move at the start, but tear the loops when they do; "" when none does."""
     free = actuation.free
-    rows = mechanism.closure_at(start.q)[:, free]
-    null = factor(rows, mechanism.scale[free], rank).null
-    if not mechanism.closed or not null.shape[1]:
+    held = factor(mechanism.closure_at(start.q)[:, free], mechanism.scale[free], rank)
+    if not mechanism.closed or not held.null.shape[1]:
         return ""
     # Each motion alone, and all at once: where branches meet, their sum lies on none.
-    for motion in (*null.T, null.sum(axis=1)):
-        step = np.zeros(mechanism.rates)
-        step[free] = constants.START_SHARE * motion / np.abs(motion / mechanism.scale[free]).max()
-        _, gap, _ = settle(mechanism, mechanism.advance(start.q, step), free, rank, settings)
-        if gap > constants.START_GAP * constants.START_SHARE**2:
+    motions = np.vstack([held.null.T, held.null.sum(axis=1)])
+    steps = np.zeros((len(motions), mechanism.rates))
+    steps[:, free] = constants.START_SHARE * motions / np.abs(motions / mechanism.scale[free]).max(axis=1)[:, None]
+    moved = np.array([mechanism.advance(start.q, step) for step in steps])
+    most = constants.START_GAP * constants.START_SHARE**2
+    for k in np.flatnonzero(~_bear(mechanism, moved, free, held, most, settings.newton)):
+        motion = motions[k]
+        _, gap, _ = settle(mechanism, moved[k], free, rank, settings)
+        if gap > most:
             moving = free[np.abs(motion) > constants.START_NAMED * np.abs(motion).max()]
-            return ", ".join(mechanism.joints_of(moving))
+            return first_names(mechanism.joints_of(moving))
     return ""
+
+
+def _bear(mechanism: Mechanism, moved: Array, free: Ints, held: Factor, most: float, steps: int) -> Flags:
+    """(K,) whether the loops at positions (K, nq) close to within `most` by steps of the `held` derivative, that of the
+    start: all at once, so that what bears its motions need not be looked at one by one. Such steps undo no motion."""
+    q, before = moved.copy(), np.full(len(moved), np.inf)
+    going = np.arange(len(moved))
+    for _ in range(steps):
+        gaps = gaps_at(mechanism, poses_at(mechanism, q[going]), q[going])
+        size = np.abs(gaps).max(axis=1)
+        better = size < before[going]
+        before[going] = np.minimum(size, before[going])
+        on = better & (size > most)
+        going, gaps = going[on], gaps[on]
+        if not len(going):
+            break
+        for k, gap in zip(going, gaps, strict=True):
+            step = np.zeros(mechanism.rates)
+            step[free] = -held.solve(gap)
+            q[k] = mechanism.advance(q[k], step)
+    return np.asarray(before <= most)
