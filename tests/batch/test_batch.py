@@ -17,6 +17,7 @@ from support.command_line import ran_here
 from support.places import FIXTURES
 
 import kinform
+from kinform import catalog
 from kinform.batch import Settings, discover, render
 from kinform.batch import run as run_batch
 
@@ -35,14 +36,14 @@ def done(tmp_path_factory) -> tuple[Path, Path, tuple]:
     for name in GOOD:
         shutil.copytree(FIXTURES / "pairs" / name, designs / name)
     (designs / "bad.toml").write_text('schema = 1\n[assembly]\nname = "bad"\n')
-    killer = threading.Thread(target=_kill_workers, daemon=True)
+    killer = threading.Thread(target=_kill, args=(lambda desk: desk,), daemon=True)
     killer.start()
     rows = run_batch(discover([designs]), results, Settings(jobs=2))
     return designs, results, rows
 
 
-def _kill_workers() -> None:
-    """Kill the first desk that is seen at work: the death of a worker in the middle."""
+def _kill(chosen) -> None:
+    """Kill what is `chosen` of the first desk that is seen at work: the death of a worker in the middle."""
     import psutil
 
     me = psutil.Process()
@@ -50,7 +51,7 @@ def _kill_workers() -> None:
         for child in me.children(recursive=True):
             try:
                 if "kinform.batch.desk" in " ".join(child.cmdline()) and child.children():
-                    os.kill(child.pid, signal.SIGKILL)
+                    os.kill(chosen(child).pid, signal.SIGKILL)
                     return
             except psutil.Error:
                 continue
@@ -64,6 +65,29 @@ def test_results_are_the_bytes_of_single_runs_though_a_worker_was_killed(done, t
         kinform.run(designs / name / f"{name}.toml", tmp_path / "one.h5")
         assert (results / name / f"{name}.h5").read_bytes() == (tmp_path / "one.h5").read_bytes()
         (tmp_path / "one.h5").unlink()
+
+
+def test_a_worker_of_dask_that_is_killed_loses_nothing(done, tmp_path):
+    designs, results, _ = done
+    killer = threading.Thread(target=_kill, args=(lambda desk: desk.parent(),), daemon=True)
+    killer.start()
+    (row,) = run_batch(discover([designs / GOOD[0]]), tmp_path, Settings(jobs=1))
+    assert (row.failure, row.tries) == ("", 2)
+    assert (tmp_path / row.results).read_bytes() == (results / GOOD[0] / row.results).read_bytes()
+
+
+def test_a_catalog_is_filled_and_reads_only_what_is_new(done, monkeypatch):
+    designs, _, _ = done
+    words = ("batch", *(f"designs/{name}" for name in GOOD), "-o", "results", "--catalog", "all.sqlite")
+    ran = ran_here(*words, cwd=designs.parent)
+    assert ran.returncode == 0 and "all.sqlite: 2 designs" in ran.stderr, ran.stderr
+    kept = catalog.read(designs.parent / "all.sqlite")
+    assert [entry.path for entry in kept.entries] == [f"results/{name}/{name}.h5" for name in GOOD]
+    alone, _ = catalog.add(catalog.Catalog(), [designs.parent / "results"], designs.parent)
+    assert alone.entries == kept.entries and alone.sources == kept.sources
+    digests = {designs.parent / entry.path: entry.digest for entry in kept.entries}
+    monkeypatch.setattr("kinform.catalog.build._entry", lambda *_: pytest.fail("read again"))
+    assert catalog.fill(kept, digests, designs.parent / "results", designs.parent) == (kept, ())
 
 
 def test_a_bad_design_stops_no_other(done):

@@ -26,6 +26,7 @@ EXAMPLES = examples(
     "kinform batch arms/ hands/ -o results --exclude 'old/*' -f junit=all.xml",
     "kinform batch . -o results --changed-since origin/main -f sarif=all.sarif",
     "kinform batch designs/ -o results --jobs 4 --time 300 --memory 2GB",
+    "kinform batch arms/ -o results --catalog arms.sqlite    # then: kinform catalog find",
     "kinform batch arms/ -o results --scheduler tcp://10.0.0.5:8786 --send",
 )
 
@@ -72,6 +73,10 @@ def batch(
     seconds: Annotated[float | None, option("--time", "SECONDS", "What one design may take.")] = None,
     memory: Annotated[str | None, option("--memory", "SIZE", "What one design may take, as in 500MB or 2GB.")] = None,
     allow_outside: AllowOutside = False,
+    catalog: Annotated[
+        Path | None,
+        option("--catalog -c", "FILE", "Also add all results to this catalog (SQLite), made where there is none."),
+    ] = None,
     fail_on: FailOn = Severity.error,
     format: Annotated[
         list[str] | None,
@@ -99,6 +104,8 @@ def batch(
     from kinform import batch as many
 
     files.check_findings(((None, path) for _, path in written), paths)
+    if catalog is not None:
+        files.check_text_output(catalog, inputs=paths)
     found = many.discover(paths, include=include or (), exclude=exclude or (), ignored=ignored, results=output)
     if changed_since is not None:
         found = _touched(found, changed_since)
@@ -107,10 +114,25 @@ def batch(
     with Pace("batch", began) as pace:
         rows = many.run(found, output, settings, pace) if found else ()
     _tell(rows, output, fail_on.value, shown, written)
+    if catalog is not None:
+        _fill(catalog, rows, output)
     from kinform.batch.renderings import exit_code, summary_line
 
     console.say(f"{summary_line(rows, fail_on.value)}; {time.monotonic() - began:.1f} s")
     raise typer.Exit(exit_code(rows, fail_on.value) if found else 0)
+
+
+def _fill(file: Path, rows: tuple[Row, ...], output: Path) -> None:
+    """Add what has results to the catalog; what it has already with the same bytes is not read again."""
+    from kinform import catalog
+
+    old = catalog.read(file) if file.exists() else catalog.Catalog()
+    designs = {output / row.results: row.digest for row in rows if not row.failure}
+    kept, refused = catalog.fill(old, designs, output, file.parent)
+    catalog.write(kept, file)
+    for item in refused:
+        console.warn(f"left out {item.path}: {item.reason}")
+    console.say(f"{file}: {counted(len(kept.entries), 'design')}")
 
 
 def need_extra() -> None:

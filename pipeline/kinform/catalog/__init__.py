@@ -3,7 +3,7 @@
 It holds nothing that the results files do not say, and can be rebuilt from them at any time.
 """
 
-from kinform.catalog.build import Refused, add, rebuild
+from kinform.catalog.build import Refused, add, fill, rebuild
 from kinform.catalog.entry import CatalogJoint, CatalogRequirement, Entry, entry_of
 from kinform.catalog.search import Wanted, distance, find, joint_count, like, source_state
 from kinform.catalog.store import SCHEMA, Catalog, read, write
@@ -19,6 +19,7 @@ __all__ = [
     "add",
     "distance",
     "entry_of",
+    "fill",
     "find",
     "joint_count",
     "like",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,6 +56,25 @@ def add(catalog: Catalog, sources: Sequence[str | Path], folder: str | Path) -> 
         raise InputError(problems)
     earlier = {entry.path: entry for entry in catalog.entries}
     return Catalog(tuple(sorted(kept)), _sorted((earlier | entries).values())), tuple(refused)
+
+
+def fill(
+    catalog: Catalog, designs: Mapping[Path, str], source: str | Path, folder: str | Path
+) -> tuple[Catalog, tuple[Refused, ...]]:
+    """The catalog with these results files below the folder `source`, each with its SHA-256 (hex): one that the catalog
+    has with the same bytes is not read. `folder` is that of the catalog. What cannot be read is left out and listed."""
+    entries = {entry.path: entry for entry in catalog.entries}
+    refused = []
+    for path, digest in sorted(designs.items()):
+        name = _relative(path, folder)
+        if name in entries and entries[name].digest == digest:
+            continue
+        try:
+            entries[name] = _entry(path, folder)
+        except _NOT_A_DESIGN as error:
+            refused.append(Refused(name, _problem(error, path).message))
+    sources = {*catalog.sources, _relative(Path(source), folder)}
+    return Catalog(tuple(sorted(sources)), _sorted(entries.values())), tuple(refused)
 
 
 def rebuild(catalog: Catalog, folder: str | Path) -> tuple[Catalog, tuple[Refused, ...]]:
